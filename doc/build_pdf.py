@@ -6,6 +6,7 @@ Usage: build_pdf.py DOC PDF          requires doc/requirements.txt and doc/requi
 
 import base64
 import html
+import logging
 import re
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from pathlib import Path
 
 MATH = re.compile(r'<(span|div) class="math[^"]*">\s*\\([(\[])(.*?)\\[)\]]\s*</\1>', re.DOTALL)
 TAG = re.compile(r"\\tag\{([^}]*)\}")
-ID = re.compile(r'\bid="([^"]+)"')
+ANCHOR = re.compile(r'\b(id="|href="#)([^"]+)"')
 STYLE = """
 @page { size: A4; margin: 20mm 18mm; @bottom-center { content: counter(page); font: 9pt serif; } }
 body { font: 9.5pt/1.35 "DejaVu Serif", serif; }
@@ -59,23 +60,39 @@ def with_equations(text):
 
 
 def with_anchors(text):
-    """The page with the anchors of each document named after it, as links name them."""
-    document = ""
+    """The page with the anchors of each document named after it, as links from other documents name them."""
+    document = "document-index"
 
     def named(match):
         nonlocal document
-        if match[1].startswith("document-"):
-            document = match[1]
+        if match[2].startswith("document-"):
+            document = match[2] if match[1] == 'id="' else document
             return match[0]
-        return f'id="{document}#{match[1]}"' if document else match[0]
+        return f'{match[1]}{document}#{match[2]}"'
 
-    return ID.sub(named, text)
+    return ANCHOR.sub(named, text.replace("<body", '<body id="document-index"', 1))
+
+
+class Unresolved(logging.Handler):
+    """Keeps the errors of WeasyPrint, such as links without an anchor; its warnings are about rules for screens."""
+
+    def __init__(self):
+        """Take the place of its own handlers."""
+        super().__init__(logging.ERROR)
+        self.messages = []
+        logger = logging.getLogger("weasyprint")
+        logger.handlers, logger.propagate = [self], False
+
+    def emit(self, record):
+        """Keep a message."""
+        self.messages.append(record.getMessage())
 
 
 def main(doc, pdf):
-    """Build; return 1 if a formula could not be drawn."""
+    """Build; return 1 if a formula could not be drawn, or a link leads nowhere."""
     import weasyprint
 
+    unresolved = Unresolved()
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-B", "-m", "sphinx", "-q", "-E", "-b", "singlehtml", "-D", "html_theme=basic",
                         "-D", "html_permalinks=0", doc, folder], check=True)  # fmt: skip
@@ -83,8 +100,9 @@ def main(doc, pdf):
         text, failed = with_equations(page.read_text(encoding="utf-8"))
         page.write_text(with_anchors(re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)), encoding="utf-8")
         weasyprint.HTML(filename=str(page)).write_pdf(pdf, stylesheets=[weasyprint.CSS(string=STYLE)])
-    print("\n".join(f"not drawn: {formula}" for formula in failed) or f"{pdf}: all equations are drawn")
-    return 1 if failed else 0
+    wrong = [f"not drawn: {formula}" for formula in failed] + unresolved.messages
+    print("\n".join(wrong) or f"{pdf}: all equations are drawn, all links within it lead to a page")
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

@@ -49,13 +49,13 @@ contains
 
   !> Saves or loads the state and the parts of the model that depend on it.
   subroutine visit_evolving(model, stepper, archive, error)
-    !> The model, built with the zones of the archive
+    !> The model with the zones of the archive
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
-    !> Set if the factored operator cannot be made again
+    !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
 
     call visit_zones(model%setup%delaminations, archive)

@@ -21,7 +21,7 @@ module coarse_runs
 
   !> Results of a coarse run.
   type :: coarse_run_t
-    !> True: it is complete; false: the mesh is too coarse, no step converged, or a queue's signal came
+    !> True: complete; false: the mesh is too coarse, no step converged, or it was stopped by a signal
     logical :: done = .false.
     !> Its record
     type(run_record_t) :: record

@@ -33,7 +33,7 @@ module command_lines
     integer :: ranks = 0, seconds = 0
     !> True: a chain of jobs
     logical :: chain = .false.
-    !> True: the setup is run again on a finer mesh with shorter steps
+    !> True: verification by a second run on a finer mesh with shorter steps
     logical :: verify = .false.
     !> True: the log and the summary have a profile of time and memory
     logical :: profile = .false.
@@ -159,7 +159,7 @@ contains
     end select
   end subroutine read_switch
 
-  !> Reads an option with its value, which follows as the next word or behind an equals sign.
+  !> Reads an option with its value, the next word or the text after an equals sign.
   subroutine read_value(command, word, value, error)
     !> Receives the option
     type(command_t), intent(inout) :: command
@@ -222,7 +222,7 @@ contains
     end if
   end subroutine refuse_option
 
-  !> Command most similar to a word; empty: the word is like a file, or like no command.
+  !> Command most similar to a word; empty: none is similar, or the word resembles a file.
   pure function meant_verb(word) result(verb)
     !> The word
     character(len=*), intent(in) :: word
@@ -240,7 +240,7 @@ contains
     verb = nearest_name(word, known)
   end function meant_verb
 
-  !> Refuses a word that is no file and nearly a command, before it is taken for a deck.
+  !> Refuses a word that is no file and similar to a command, instead of reading it as a deck.
   subroutine refuse_misspelt_verb(word, error)
     !> The word; empty: there is none
     character(len=*), intent(in) :: word
@@ -312,7 +312,7 @@ contains
       call fail(error, exit_usage, &
                 'No deck given; `implam new` writes one to start from, `implam help` lists the commands.')
     case (verb_queue)
-      ! The only deck of this folder, if there is one only.
+      ! The deck of this folder, if there is exactly one.
       command%target = file_by_age('.', '.nml', 0)
       if (file_by_age('.', '.nml', 1) /= '') command%target = ''
       if (.not. allocated(command%queue) .or. command%target == '') &

@@ -1,5 +1,5 @@
-!> What a plate whose ends are pressed together has of damage: of each interface where it has delaminated, of each ply
-!> where fibres have failed. Held against the same at the start it shows where the plate has failed.
+!> Damage of a plate under compression: delamination of each interface and fibre failure of each ply, with its position
+!> along the load and its extent over the width. The comparison with the start gives the place of failure.
 module compressed_damage
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive
@@ -15,14 +15,14 @@ module compressed_damage
   private
   public :: compressed_damage_t, damage_of, between_supports
 
-  !> Figures of an interface or a ply, of the full plate: area; mean and greatest distance from the middle along the
-  !> load; share of the width between the supports over which it has failed at some place along the load.
+  !> Quantities of an interface or a ply of the full plate: failed area; mean and largest distance from the middle along
+  !> the load; fraction of the width between the supports with failure anywhere along the load.
   integer, parameter, public :: figure_area = 1, figure_mean = 2, figure_reach = 3, figure_width = 4
   integer, parameter :: number_of_figures = 4
 
   !> Damage at one time, the same on every rank.
   type :: compressed_damage_t
-    !> (figures, interfaces) where interfaces have delaminated, and (figures, plies) where fibres have failed
+    !> (quantities, interfaces) of delamination, and (quantities, plies) of fibre failure
     real(wp), allocatable :: interfaces(:, :), plies(:, :)
   contains
     !> Saves or loads.
@@ -33,9 +33,9 @@ module compressed_damage
   type :: collected_t
     !> Areas, and areas times their distances
     type(exact_sum_t) :: area, moment
-    !> Greatest distance; negative: nothing has failed
+    !> Largest distance; negative: no failure
     real(wp) :: reach = -1
-    !> 1 for each row of cells along the load in which something has failed, else 0
+    !> 1 for each row of cells along the load with failure, else 0
     real(wp), allocatable :: rows(:)
   contains
     !> Adds a failed place.
@@ -81,14 +81,14 @@ contains
     end do
   end function between_supports
 
-  !> Places where an interface has delaminated: nodes where a cohesive law has failed, cells that fronts released.
+  !> Delamination of an interface: failed nodes of a cohesive law, or cells released by fronts.
   function delaminated(model, now, along, zone) result(collected)
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
     !> Axis of the load, and interface
     integer, intent(in) :: along, zone
-    !> What is on this rank
+    !> Contribution of this rank
     type(collected_t) :: collected
     integer :: i, column, row
 
@@ -118,14 +118,14 @@ contains
     end associate
   end function delaminated
 
-  !> Places where the fibres of a ply have failed.
+  !> Fibre failure of a ply.
   function fibres_failed(model, now, along, ply) result(collected)
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
     !> Axis of the load, and ply
     integer, intent(in) :: along, ply
-    !> What is on this rank
+    !> Contribution of this rank
     type(collected_t) :: collected
     integer :: i
 
@@ -139,7 +139,7 @@ contains
     end associate
   end function fibres_failed
 
-  !> Row of cells across the load in whose middle a node lies; 0: it lies between two rows.
+  !> Row of cells with a node on its centre line; 0: the node lies between two rows.
   pure integer function row_of(lines, along) result(row)
     !> Lines of nodes that meet in the node, from 0
     integer, intent(in) :: lines(2)
@@ -152,7 +152,7 @@ contains
 
   !> Adds a failed cell.
   pure subroutine add_cell(collected, model, along, place)
-    !> What is added to
+    !> Receives it
     type(collected_t), intent(inout) :: collected
     type(model_t), intent(in) :: model
     !> Axis of the load
@@ -169,7 +169,7 @@ contains
 
   !> Adds a failed place.
   pure subroutine add(self, area, distance, row)
-    !> What is added to
+    !> Receives it
     class(collected_t), intent(inout) :: self
     !> Area, and distance from the middle along the load
     real(wp), intent(in) :: area, distance
@@ -182,12 +182,12 @@ contains
     if (row > 0) self%rows(row) = 1
   end subroutine add
 
-  !> Figures of what all ranks have collected. Collective.
+  !> Quantities from the contributions of all ranks. Collective.
   function figures_of(model, along, collected) result(figures)
     type(model_t), intent(in) :: model
     !> Axis of the load
     integer, intent(in) :: along
-    !> What this rank has of each interface or ply
+    !> Contribution of this rank for each interface or ply
     type(collected_t), intent(in) :: collected(:)
     !> (figures, interfaces or plies)
     real(wp) :: figures(number_of_figures, size(collected))
@@ -210,13 +210,13 @@ contains
     end do
   end function figures_of
 
-  !> Share of the width between the supports in whose rows something has failed. A strip as wide as the plate is thick
-  !> is left out at each side: there the supports hold the layers together.
+  !> Fraction of the width between the supports with failure in its rows. A strip of the plate's thickness is excluded
+  !> at each side, where supports prevent opening.
   pure real(wp) function share_of_width(model, along, failed) result(share)
     type(model_t), intent(in) :: model
     !> Axis of the load
     integer, intent(in) :: along
-    !> True for rows in which something has failed
+    !> True for rows with failure
     logical, intent(in) :: failed(:)
     real(wp) :: widths(size(failed)), middles(size(failed))
     logical :: either(size(failed))
@@ -233,7 +233,7 @@ contains
       end associate
     end if
     either = failed
-    ! What a half that is turned onto the other has failed in a row, the other has in its image.
+    ! With point symmetry failure in a row implies failure in its image.
     if (model%setup%plate%symmetry == symmetry_point .and. along == 1) either = failed .or. failed(size(failed):1:-1)
     widths = merge(widths, 0.0_wp, abs(middles) < between_supports(model, 3 - along)/2 - model%thickness)
     share = 0

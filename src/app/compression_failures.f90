@@ -1,5 +1,6 @@
-!> Where a plate whose ends were pressed together has failed: interfaces and plies that went across its width, and the
-!> three-place code of ASTM D7137 as far as these give it. Its letters are not compared with the standard's text.
+!> Failure of a plate in compression: interfaces and plies that have failed across the width, and the three-place
+!> failure code of ASTM D7137 as far as these determine it. Its letters have not been compared with the text of the
+!> standard.
 module compression_failures
   use compressed_damage, only: compressed_damage_t, figure_area, figure_mean, figure_reach, figure_width
   use kinds, only: wp
@@ -17,10 +18,10 @@ module compression_failures
 
   !> The failure.
   type :: compression_failure_t
-    !> Interfaces that have delaminated and plies whose fibres have failed across the whole width between the supports,
-    !> and had not at the start
+    !> Interfaces that have delaminated and plies with fibre failure across the full width between the supports since
+    !> the start
     logical, allocatable :: interfaces(:), plies(:)
-    !> Code; empty: nothing went across
+    !> Code; empty: no failure across the width
     character(len=:), allocatable :: code
   end type compression_failure_t
 
@@ -35,8 +36,8 @@ contains
     !> The failure
     type(compression_failure_t) :: failure
 
-    failure%interfaces = went_across(before%interfaces, after%interfaces)
-    failure%plies = went_across(before%plies, after%plies)
+    failure%interfaces = failed_across(before%interfaces, after%interfaces)
+    failure%plies = failed_across(before%plies, after%plies)
     failure%code = ''
     associate (grown => any(failure%interfaces), torn => any(failure%plies))
       if (grown .and. torn) then
@@ -53,19 +54,19 @@ contains
     end associate
   end function failure_of
 
-  !> True for what has failed across the whole width, and had not before.
-  pure function went_across(before, after) result(across)
-    !> Figures at the start and at the end
+  !> True for interfaces or plies that failed across the full width since the start.
+  pure function failed_across(before, after) result(across)
+    !> Quantities at the start and at the end
     real(wp), intent(in) :: before(:, :), after(:, :)
-    !> One an interface or ply
+    !> One per interface or ply
     logical :: across(size(after, 2))
 
     across = before(figure_width, :) < 1 .and. .not. after(figure_width, :) < 1
-  end function went_across
+  end function failed_across
 
-  !> Mean distance from the middle of what has failed since the start in some interfaces or plies.
+  !> Mean distance from the middle of failure since the start in some interfaces or plies.
   pure real(wp) function mean_place(before, after, chosen) result(place)
-    !> Figures at the start and at the end
+    !> Quantities at the start and at the end
     real(wp), intent(in) :: before(:, :), after(:, :)
     !> True for those
     logical, intent(in) :: chosen(:)

@@ -66,8 +66,8 @@ contains
     ended = self%failed .and. self%strain > strains(1)
     self%strain = strain
     self%stress = stress
-    ! The halves of a plate that has failed vibrate, and press on its ends with more than it bore. Vibration left by an
-    ! impact may drop as far, but under small strains.
+    ! After failure the halves of the plate vibrate, and their force on the ends may exceed the strength. Residual
+    ! vibration of an impact may cause drops as large, but at small strains.
     if (ended) return
     if (stress > self%strength) then
       self%strength = stress

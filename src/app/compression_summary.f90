@@ -54,15 +54,15 @@ contains
            rounded_text(record%at)
     if (record%modulus() > 0) text = text//', effective modulus '//rounded_text(record%modulus())
     if (record%buckling > 0) text = text//', buckled at a strain of '//rounded_text(record%buckling)
-    if (.not. record%failed) text = text//'; the plate has not failed, so it is borne at least'
+    if (.not. record%failed) text = text//'; a lower bound, as the plate has not failed'
   end function compression_text
-  !> Where it has failed, for the file.
+  !> Place of failure, for the file.
   subroutine put_collapse(json, record, figures, below_plies)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> Figures of the state reached
+    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)
@@ -93,13 +93,13 @@ contains
 
     !> One interface or ply.
     subroutine put_place(name, number, before, after, across)
-      !> What it is
+      !> Its name
       character(len=*), intent(in) :: name
       !> Its number
       integer, intent(in) :: number
-      !> Figures before the load, and at the end
+      !> Quantities before the load, and at the end
       real(wp), intent(in) :: before(:), after(:)
-      !> True: it went across in between
+      !> True: it has failed across the width since
       logical, intent(in) :: across
 
       call json%open_object('')
@@ -116,9 +116,9 @@ contains
 
   !> The same for the log.
   pure function collapse_text(record, figures, below_plies) result(text)
-    !> What the run remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> Figures of the state reached
+    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)
@@ -141,7 +141,7 @@ contains
 
   !> Numbers, each after a blank.
   pure function numbers_of(numbers) result(text)
-    !> They
+    !> The numbers
     integer, intent(in) :: numbers(:)
     !> Such as 2 4 6
     character(len=:), allocatable :: text

@@ -159,7 +159,7 @@ contains
     call print_changes(deck, finer, communicator, error)
   end subroutine verify
 
-  !> Continues the run of an earlier command.
+  !> Continues a run of an earlier command.
   subroutine go_on(deck, communicator, profile, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -252,12 +252,12 @@ contains
     call archive%open_for_loading(communicator, path, error)
     if (allocated(error)) return
     call read_deck_text(archive%provenance%deck, path, deck, problems)
-    ! A deck without a name has that of its file, which isn't the checkpoint's.
+    ! The default name of a deck is that of its file, not that of the checkpoint.
     deck%name = archive%provenance%case_name
     call deck%settings%derive(case_group, key_name, deck%name, .true.)
     if (problems%errors() == 0 .and. adopted_values(deck%settings) /= archive%provenance%library) &
       call fail(error, exit_files, path//' was written by version '//archive%provenance%version// &
-                ', whose library of materials has other values; go on with that version, or begin anew.')
+                ', whose library of materials has other values; continue with that version, or start a new run.')
     if (problems%errors() == 0) call visit_zones(deck%delaminations, archive)
     call archive%close(error)
     deck%output%directory = '.'

@@ -19,10 +19,10 @@ module energy_watches
 
   !> State of the check.
   type :: energy_watch_t
-    !> Largest energy so far of the impactor, of external work, or in the plate, without residual stresses: these may
-    !> have far more energy than the loads.
+    !> Largest energy so far of the impactor, of external work, or of the plate without residual stresses, whose energy
+    !> may be far larger than that of the loads.
     real(wp) :: largest = 0
-    !> Too much had been created after the step before
+    !> True: the previous step had created more than the tolerance
     logical, private :: doubtful = .false.
   contains
     procedure :: check
@@ -32,21 +32,21 @@ module energy_watches
 
 contains
 
-  !> Energies above 1 %: created by the integrators or by the indentation, whose work can't be negative; dissipated;
-  !> unaccounted for. An integrator creates energy in the first step of a sudden load and removes it in the next: in
-  !> time two consecutive steps must have created energy.
+  !> Energies above 1 %: created by the integrators or by the indentation, whose work cannot be negative; dissipated;
+  !> energy error. An integrator creates energy in the first step of a sudden load and removes it in the next, so that
+  !> in time two consecutive steps must have created energy.
   function check(self, ledger, deficit, amplitude, static) result(alarms)
-    !> The watch
+    !> The check
     class(energy_watch_t), intent(inout) :: self
     !> The ledger after an accepted step
     type(ledger_t), intent(in) :: ledger
-    !> Energy booked as fracture that the fronts have not released yet; it is not algorithmic
+    !> Energy booked as fracture energy but not yet released by fronts; it is not algorithmic
     real(wp), intent(in) :: deficit
-    !> Load over its full value: the energies to come are larger by its square, which small ones are judged by
+    !> Load over its full value; small energies are compared with those of the full load, larger by its inverse square
     real(wp), intent(in) :: amplitude
     !> True: load steps
     logical, intent(in) :: static
-    !> Which of them are
+    !> True for the kinds of errors found
     logical :: alarms(3)
     logical :: before
     real(wp) :: most
@@ -63,7 +63,7 @@ contains
 
   !> Saves or loads the check.
   subroutine visit(self, archive)
-    !> The watch
+    !> The check
     class(energy_watch_t), intent(inout) :: self
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive

@@ -21,7 +21,7 @@ module explicit_costs
 
 contains
 
-  !> Equal steps, with any damage.
+  !> Sentence on the steps and the time of a run.
   function explicit_sentence(deck, model_size) result(sentence)
     !> The deck, checked
     type(deck_t), intent(in) :: deck

@@ -18,7 +18,7 @@ module field_results
   private
   public :: part_of, write_fields, write_mesh
 
-  !> Fields that stay with the mesh.
+  !> Constant fields of the mesh.
   character(len=*), parameter :: mesh_field_rows(*) = [character(len=result_row_length) :: &
     'first_ply | cells | - | - | - | First ply of the element''s layer, from the struck face.', &
     'last_ply | cells | - | - | - | Last ply of the element''s layer.', &
@@ -51,13 +51,13 @@ contains
     real(wp) :: coordinates(3, model%distribution%owned)
     integer :: values(3, model%elements%elements)
 
-    associate (mesh => model%mesh, share => model%distribution)
-      coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(share%points(:share%owned)))
+    associate (mesh => model%mesh, partition => model%distribution)
+      coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(partition%points(:partition%owned)))
       coordinates(3, :) = heights(model)
-      values(:2, :) = mesh%element_plies(:, share%elements)
+      values(:2, :) = mesh%element_plies(:, partition%elements)
       values(3, :) = starters_above(model)
-      call fields%write_mesh(share%points(:share%owned), mesh%points(), coordinates, share%elements, mesh%elements(), &
-                             mesh%connectivity(:, share%elements), &
+      call fields%write_mesh(partition%points(:partition%owned), mesh%points(), coordinates, partition%elements, &
+                             mesh%elements(), mesh%connectivity(:, partition%elements), &
                              [character(len=13) :: 'first_ply', 'last_ply', 'starter_above'], values, error)
     end associate
   end subroutine write_mesh
@@ -88,12 +88,12 @@ contains
     end associate
   end function heights
 
-  !> Writes the fields of the state reached that are wanted and whose physics is modelled.
+  !> Writes the requested fields of the state reached, if their physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Which fields
+    !> Requested fields
     type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields

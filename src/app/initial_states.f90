@@ -20,7 +20,7 @@ module initial_states
   use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
   use mapped_figures, only: after_mapping, before_mapping, mapped_figures_t
-  use mapped_interfaces, only: put_shares, take_shares, take_slips
+  use mapped_interfaces, only: put_fractions, take_fractions, take_slips
   use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
@@ -34,7 +34,8 @@ module initial_states
 
 contains
 
-  !> Compares a deck with the run it starts from, and gives its interfaces the zones of that run. Collective.
+  !> Compares a deck with the run from which it starts, and sets the zones of its interfaces to those of that run.
+  !> Collective.
   subroutine fit_initial_state(deck, communicator, error, lacks)
     !> The deck, without faults
     type(deck_t), intent(inout) :: deck
@@ -42,7 +43,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Set (files) if the checkpoint can't be read, (deck) if it is of another plate
     type(error_t), allocatable, intent(inout) :: error
-    !> Returns true instead of an error if there is no such file, as the other run may be still to come
+    !> Returns true instead of an error if there is no such file, as the other run may be pending
     logical, intent(out), optional :: lacks
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: old
@@ -71,7 +72,7 @@ contains
     end do
   end subroutine fit_initial_state
 
-  !> Refuses the checkpoint that a deck begins from.
+  !> Refuses the checkpoint of the initial state.
   subroutine refuse(deck, reason, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -84,8 +85,8 @@ contains
               initial_state_group//' from='''//deck%initial%from//''': '//reason//'.')
   end subroutine refuse
 
-  !> Extents of a zone that reach over the cells of the other run's zone, and over one more, as nodes on the border of a
-  !> zone have no interface.
+  !> Extents of a zone that cover the cells of the other run's zone and one more, as nodes on the border of a zone have
+  !> no interface.
   pure function covering_extents(deck, old, zone) result(extents)
     !> The deck, and that of the other run with the zones at its end
     type(deck_t), intent(in) :: deck, old
@@ -138,7 +139,7 @@ contains
     type(model_t), intent(inout) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
-    !> Receives what mapping to another mesh has kept
+    !> Receives the quantities before and after mapping
     type(mapped_figures_t), intent(inout) :: mapping
     !> Receives a note
     type(log_t), intent(inout) :: log
@@ -155,8 +156,8 @@ contains
     if (is_mapped(deck, old)) then
       call mapping%note(model, stepper%now, after_mapping)
       call log%note(mapping%line(deck%delaminations%below_ply))
-      if (mapping%loser() > 0) then
-        call refuse(deck, 'the interface below ply '//to_text(deck%delaminations(mapping%loser())%below_ply)// &
+      if (mapping%first_loss() > 0) then
+        call refuse(deck, 'the interface below ply '//to_text(deck%delaminations(mapping%first_loss())%below_ply)// &
                     ' has delaminated beyond the '//key_zone//' that it has here', error)
         return
       end if
@@ -171,11 +172,11 @@ contains
     type(deck_t), intent(in) :: deck
     !> The model
     type(model_t), intent(in) :: model
-    !> The time stepper; receives what it takes over
+    !> The time stepper; receives the inherited state
     type(time_stepper_t), intent(inout) :: stepper
-    !> Receives where points and elements come from
+    !> Receives the map of points and elements
     class(layer_transfer_t), allocatable, intent(out) :: transfer
-    !> Receives what there is on the other mesh if this one differs
+    !> Receives the quantities on the other mesh if this one differs
     type(mapped_figures_t), intent(inout) :: mapping
     !> Receives the other run's deck
     type(deck_t), intent(out) :: old
@@ -197,7 +198,7 @@ contains
     if (is_mapped(deck, old)) then
       allocate (mesh_transfer_t :: transfer)
       call mapping%note(old_model, state, before_mapping)
-      call put_shares(state%interfaces%cohesive, old_model)
+      call put_fractions(state%interfaces%cohesive, old_model)
     else
       allocate (layer_transfer_t :: transfer)
     end if
@@ -207,7 +208,7 @@ contains
     call visit_inheritance(stepper%now, transfer, model)
     if (.not. is_mapped(deck, old)) return
     associate (now => stepper%now)
-      call take_shares(now%interfaces%cohesive, model)
+      call take_fractions(now%interfaces%cohesive, model)
       call take_slips(now%interfaces%cohesive, model, now%motion%displacement)
     end associate
   end subroutine load_transfer

@@ -1,4 +1,5 @@
-!> What mapping to another mesh keeps: areas and energies of interfaces, damage and energy of plies, before and after.
+!> Conservation in mapping to another mesh: areas and energies of interfaces, damage and energy of plies, before and
+!> after.
 module mapped_figures
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
@@ -14,23 +15,23 @@ module mapped_figures
 
   !> Before the mapping and after it.
   integer, parameter, public :: before_mapping = 1, after_mapping = 2
-  !> Part of an area or an energy by which mapping changes it at most.
+  !> Relative tolerance of area and energy in mapping.
   real(wp), parameter :: tolerance = 1.0e-6_wp
 
-  !> The figures, of the full plate, the same on every rank; unallocated: nothing has been mapped.
+  !> Quantities of the full plate, the same on every rank; unallocated: no mapping.
   type :: mapped_figures_t
     !> Area and energy dissipated of each interface, (zones, before and after)
     real(wp), allocatable :: area(:, :), energy(:, :)
     !> Areas of all plies times the damage of fibres and of the matrix, and energy of plies, (3, before and after)
     real(wp), allocatable :: plies(:, :)
   contains
-    !> Notes the figures of a state.
+    !> Stores the quantities of a state.
     procedure :: note
-    !> First interface that has lost some of its area or energy; 0: none.
-    procedure :: loser
+    !> First interface with a loss of area or energy; 0: none.
+    procedure :: first_loss
     !> One line for the log.
     procedure :: line
-    !> Puts them into the summary.
+    !> Adds them to the summary.
     procedure :: put
     !> Saves or loads.
     procedure :: visit
@@ -38,9 +39,9 @@ module mapped_figures
 
 contains
 
-  !> Notes the figures of a state. Collective.
+  !> Stores the quantities of a state. Collective.
   subroutine note(self, model, state, moment)
-    !> The figures
+    !> The quantities
     class(mapped_figures_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state
@@ -85,18 +86,18 @@ contains
     areas = totals_of(model%communicator, sums)*model%mesh%multiplicity
   end function damage_of_plies
 
-  !> First interface that has lost some of its area or energy, as its zone is too small for it; 0: none.
-  pure integer function loser(self)
-    !> The figures
+  !> First interface with a loss of area or energy, as its zone is too small; 0: none.
+  pure integer function first_loss(self)
+    !> The quantities
     class(mapped_figures_t), intent(in) :: self
 
-    loser = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
+    first_loss = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
                     self%energy(:, 2) < (1 - tolerance)*self%energy(:, 1), .true., dim=1)
-  end function loser
+  end function first_loss
 
   !> One line for the log.
   pure function line(self, below_plies)
-    !> The figures
+    !> The quantities
     class(mapped_figures_t), intent(in) :: self
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)
@@ -123,9 +124,9 @@ contains
     text = rounded_text(values(1))//' -> '//rounded_text(values(2))
   end function both
 
-  !> Puts them into the summary.
+  !> Adds them to the summary.
   subroutine put(self, json, below_plies)
-    !> The figures
+    !> The quantities
     class(mapped_figures_t), intent(in) :: self
     !> The summary
     type(json_t), intent(inout) :: json
@@ -151,9 +152,9 @@ contains
 
   contains
 
-    !> Puts both values.
+    !> Adds both values.
     subroutine put_both(name, values)
-      !> What they are
+      !> Their name
       character(len=*), intent(in) :: name
       !> Before and after
       real(wp), intent(in) :: values(2)
@@ -163,9 +164,9 @@ contains
     end subroutine put_both
   end subroutine put
 
-  !> Saves or loads the figures.
+  !> Saves or loads the quantities.
   subroutine visit(self, archive)
-    !> The figures
+    !> The quantities
     class(mapped_figures_t), intent(inout) :: self
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive

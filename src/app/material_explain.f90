@@ -1,4 +1,4 @@
-!> Explains the published materials that decks can name, for the terminal and for the manual.
+!> Published materials for the terminal and for the manual.
 module material_explain
   use material_library, only: library_lines
   use text, only: append, line_t, lower_case

@@ -1,4 +1,4 @@
-!> Files that the program writes for a user to keep: never over another one.
+!> New files of the user, written only if they do not exist.
 module new_files
   use errors, only: error_t, fail, exit_files
   use files, only: file_exists
@@ -9,13 +9,13 @@ module new_files
 
 contains
 
-  !> Writes lines into a file that isn't there yet.
+  !> Writes lines to a new file.
   subroutine write_new_file(path, lines, error)
     !> Its path
     character(len=*), intent(in) :: path
     !> Its lines
     type(line_t), intent(in) :: lines(:)
-    !> Raised if there is such a file, or it can't be written
+    !> Set if the file exists or cannot be written
     type(error_t), allocatable, intent(inout) :: error
     integer :: unit, status, i
 

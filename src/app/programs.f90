@@ -37,12 +37,13 @@ module programs
 
 contains
 
-  !> Executes a command. Without a launcher MPI starts only for computations: commands that read or explain decks return
-  !> at once, also on machines where MPI must not start.
+  !> Executes a command. Without a launcher MPI is started only for computations: commands that read or explain decks
+  !> also work where MPI must not be started.
   subroutine run_program(code, close_failed)
     !> Exit code
     integer, intent(out) :: code
-    !> True: a file could not be closed and the libraries' own ends, MPI's too, would crash on it; leave without them
+    !> True: a file could not be closed, so that the finalization of the libraries, MPI included, would crash and has to
+    !> be omitted
     logical, intent(out) :: close_failed
     type(command_t) :: command
     type(communicator_t) :: communicator
@@ -143,7 +144,7 @@ contains
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Set if the deck has faults or the script is there already
+    !> Set if the deck has faults or the script exists
     type(error_t), allocatable, intent(inout) :: error
     type(queue_job_t) :: job
     type(line_t), allocatable :: lines(:)
@@ -225,7 +226,7 @@ contains
     call fit_initial_state(deck, communicator, error, lacks)
     if (allocated(error)) return
     if (lacks) call print_lines(communicator, [line_t('The initial state '//deck%initial%from// &
-                                                      ' is not there, so the deck is not held against it.')])
+                                                      ' does not exist, so the deck is not compared with it.')])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), strength_lines(deck)])

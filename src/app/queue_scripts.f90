@@ -16,9 +16,9 @@ module queue_scripts
 
   !> Requested memory over the estimate: ply failure and growing fronts need more than the first factor.
   real(wp), parameter :: spare_memory = 1.5_wp
-  !> Wall-clock seconds of a job without `--time`, and the most that are reserved for the checkpoint.
+  !> Wall-clock seconds of a job without `--time`, and largest reserve for the checkpoint.
   integer, parameter :: usual_seconds = 86400, max_kept = 600
-  !> Most parts of a chain, so that one without progress ends.
+  !> Largest number of parts of a chain, which ends one without progress.
   integer, parameter :: max_parts = 100
 
   !> Content of a script.
@@ -29,7 +29,7 @@ module queue_scripts
     character(len=:), allocatable :: target
     !> The program as it was called
     character(len=:), allocatable :: program
-    !> Ranks; 0: as the deck's size suggests
+    !> Ranks; 0: by the size of the deck
     integer :: ranks = 0
     !> Wall-clock seconds; 0: a day
     integer :: seconds = 0
@@ -37,7 +37,7 @@ module queue_scripts
     logical :: chain = .false.
     !> Name of the job, and checkpoint of the run
     character(len=:), allocatable, private :: name, checkpoint
-    !> Memory a rank
+    !> Memory per rank
     integer, private :: megabytes = 0
     !> Lines of an array's list; 0: no array
     integer, private :: tasks = 0
@@ -45,13 +45,13 @@ module queue_scripts
 
 contains
 
-  !> Writes the script beside the caller and prints what to do with it.
+  !> Writes the script to the working directory, and gives instructions for it.
   subroutine write_queue_script(job, lines, error)
     !> Its content
     type(queue_job_t), intent(inout) :: job
-    !> What to print for the user
+    !> Instructions to print
     type(line_t), allocatable, intent(out) :: lines(:)
-    !> Raised if the deck or list has faults, or the script is there already
+    !> Set if the deck or list has faults, or the script exists
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: script(:)
     character(len=:), allocatable :: path
@@ -68,7 +68,7 @@ contains
       call size_deck(job, error)
     end if
     if (job%chain .and. job%tasks > 0 .and. job%queue == 'pbs') call fail(error, exit_usage, &
-      'An array of PBS can''t be a chain; list what is left with implam-sweep --array and submit that.')
+      'An array of PBS can''t be a chain; list the remaining runs with implam-sweep --array and submit that list.')
     if (allocated(error)) return
     allocate (script(0))
     if (job%queue == 'slurm') then
@@ -103,7 +103,7 @@ contains
     job%megabytes = ceiling(spare_memory*found%megabytes_a_rank(job%ranks))
   end subroutine size_deck
 
-  !> Number of commands of a sweep's list, and the largest of its decks, which decks.txt names beside it.
+  !> Number of commands of a sweep's list, and the largest of its decks, listed in decks.txt.
   subroutine size_array(job, error)
     !> Receives them
     type(queue_job_t), intent(inout) :: job
@@ -124,7 +124,7 @@ contains
       call read_valid_deck(trim(path), deck, error)
       if (allocated(error)) exit
       found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
-      ! Ranks follow from `--program` of the sweep: one without it.
+      ! Ranks are those of `--program` of the sweep, by default one.
       if (job%ranks == 0) job%ranks = 1
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
     end do
@@ -202,7 +202,7 @@ contains
     type(line_t), allocatable, intent(inout) :: script(:)
     character(len=:), allocatable :: launcher
 
-    call append(script, '# Written by implam queue '//job%queue//' for '//job%target//'; what stands above may be '// &
+    call append(script, '# Written by implam queue '//job%queue//' for '//job%target//'; the lines above may be '// &
                 'changed.')
     call append(script, 'export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1')
     if (job%tasks > 0) then
@@ -211,7 +211,7 @@ contains
       launcher = ''
       if (job%ranks > 1) launcher = 'mpirun -n '//to_text(job%ranks)//' '
       call append(script, 'command=('//launcher//'"${IMPLAM:-'//job%program//'}")')
-      call append(script, '# A job that comes again, or is submitted with the word restart, goes on from a checkpoint.')
+      call append(script, '# A requeued job, or one submitted with the word restart, continues from a checkpoint.')
       call append(script, 'checkpoint='//quoted(job%checkpoint))
       call append(script, 'if [[ ${1:-} == restart ]]; then parts=1; fi')
       call append(script, 'if [[ -e $checkpoint && $parts -gt 0 ]]; then')

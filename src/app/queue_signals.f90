@@ -15,7 +15,7 @@ module queue_signals
     subroutine announce_stop_signals() bind(c, name='implam_announce_stop_signals')
     end subroutine announce_stop_signals
 
-    !> Number of such a signal that has come; 0: none.
+    !> Number of a received signal; 0: none.
     integer(c_int) function stop_signal() bind(c, name='implam_stop_signal')
       import :: c_int
     end function stop_signal

@@ -25,7 +25,7 @@ contains
     is_result_topic = lower_case(topic) == 'history' .or. lower_case(topic) == 'fields'
   end function is_result_topic
 
-  !> A column of the history or a field of a name, with a number in place of its N too; none: no lines.
+  !> A column of the history or a field by name, also with a number for its N; no lines if there is none.
   subroutine explain_column(name, lines)
     !> Such as work_external or area_below_3
     character(len=*), intent(in) :: name

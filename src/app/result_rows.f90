@@ -1,5 +1,5 @@
-!> The columns of the history, joined from the rows that each folder brings, and the values of an accepted step. The
-!> rows behind them come again for each interface that may delaminate and for each line.
+!> Columns of the history, joined from the rows of each folder, and the values of an accepted step. The last rows are
+!> repeated for each interface and for each line.
 module result_rows
   use deck_contents, only: deck_t
   use dent_depths, only: dent_depth, dent_rows
@@ -29,7 +29,7 @@ module result_rows
   !> The low-pass filtered force.
   character(len=result_row_length), parameter :: filter_rows(*) = [character(len=result_row_length) :: &
     'force_filtered | real | force | Contact force behind the low pass of &output force_filter.']
-  !> Columns that every history has, of which the first seventeen are the public interface.
+  !> Columns of every history; the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &
     border_rows, rig_rows, heat_rows, limit_rows, contact_rows, damping_rows, permanent_rows, dent_rows]
@@ -66,7 +66,7 @@ contains
   pure function names_of(rows) result(names)
     !> Rows of the table
     character(len=*), intent(in) :: rows(:)
-    !> As they stand there
+    !> In the order of the rows
     character(len=result_name_length) :: names(size(rows))
     integer :: i
 
@@ -81,7 +81,7 @@ contains
     character(len=*), intent(in) :: rows(:)
     !> The number
     integer, intent(in) :: number
-    !> One a row
+    !> One per row
     character(len=result_name_length) :: names(size(rows))
     integer :: i
 
@@ -90,11 +90,11 @@ contains
     end do
   end function numbered
 
-  !> Which of some rows have whole numbers.
+  !> True for rows of integers.
   pure function are_whole(rows) result(whole)
     !> Rows of the table
     character(len=*), intent(in) :: rows(:)
-    !> One a row
+    !> One per row
     logical :: whole(size(rows))
     integer :: i
 
@@ -103,7 +103,7 @@ contains
     end do
   end function are_whole
 
-  !> Which columns have whole numbers.
+  !> True for columns of integers.
   pure function column_whole(deck) result(whole)
     !> The deck
     type(deck_t), intent(in) :: deck

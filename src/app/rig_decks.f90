@@ -4,7 +4,7 @@ module rig_decks
   implicit none
   private
 
-  !> Rigs there are decks for, separated by blanks, and the name of the file without another.
+  !> Names of rigs with a deck, separated by blanks, and the default name of its file.
   character(len=*), parameter, public :: rig_names = 'd7136', rig_deck_name = 'd7136.nml'
   !> Lines of the deck.
   character(len=110), parameter, public :: d7136_lines(*) = [character(len=110) :: &

@@ -1,4 +1,4 @@
-!> Progress of a run: steps if all have one length, else time or load.
+!> Progress of a run: in steps if all have one length, else in time or load.
 module run_advances
   use deck_contents, only: deck_t
   use kinds, only: wp
@@ -17,7 +17,7 @@ contains
   subroutine start_progress(progress, stepper, end)
     !> The progress
     type(progress_t), intent(inout) :: progress
-    !> What has been reached
+    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
     !> End of the run
     real(wp), intent(in) :: end
@@ -25,17 +25,17 @@ contains
     call progress%start(stepper%now%time/end, done(stepper))
   end subroutine start_progress
 
-  !> Shows how far a run is, if it is time for that.
+  !> Prints the progress of a run, if it is due.
   subroutine show_progress(progress, deck, stepper, end, log)
     !> The progress
     type(progress_t), intent(inout) :: progress
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> What has been reached
+    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
     !> End of the run
     real(wp), intent(in) :: end
-    !> Where it is shown
+    !> The log
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: of
 
@@ -48,7 +48,7 @@ contains
     end associate
   end subroutine show_progress
 
-  !> What has been done.
+  !> The completed part.
   pure real(wp) function done(stepper)
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper

@@ -16,7 +16,7 @@ module run_costs
   real(wp), parameter :: seconds_per_unknown = 2.5e-8_wp, seconds_per_megabyte = 2.0e-5_wp
   !> Solves of such a step with von Karman's strains, and tangents of a load step: as measured, doc/manual/queue.md.
   real(wp), parameter :: solves_if_curved = 3, tangents_of_load_step = 4
-  !> Seconds to factor a matrix over a solve: 18 to 30 on 76 000 to 130 000 unknowns (doc/manual/queue.md).
+  !> Ratio of the times of a factorization and a solve: 18 to 30 on 76 000 to 130 000 unknowns (doc/manual/queue.md).
   real(wp), parameter :: factor_over_solve = 25
 
 contains
@@ -61,13 +61,13 @@ contains
     sentence = sentence//min_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
   end function implicit_sentence
 
-  !> The time that an undamaged plate takes.
+  !> Processor time for an undamaged plate.
   function min_time(deck, model_size, solves, residuals) result(clause)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Size of its model
     type(model_size_t), intent(in) :: model_size
-    !> Solves, factorizations counted as so many, and residuals
+    !> Number of solves, with factorizations converted to solves, and of residuals
     real(wp), intent(in) :: solves, residuals
     !> The end of a sentence
     character(len=:), allocatable :: clause

@@ -8,13 +8,13 @@ module run_errors
   private
   public :: run_errors_t, errors_by_elastic_impact, errors_by_coarse_run
 
-  !> Errors of figures, in their units; negative: not known.
+  !> Errors of results, in their units; negative: not known.
   type :: run_errors_t
     !> Their source: none, elastic or coarse_run
     character(len=10) :: source = 'none'
     !> Of the largest force and its time
     real(wp) :: peak_force = -1, peak_time = -1
-    !> Of the time in contact
+    !> Of the duration of contact
     real(wp) :: contact_duration = -1
     !> Of the largest deflection
     real(wp) :: deflection = -1
@@ -64,7 +64,8 @@ contains
 
   !> Errors by a run of the same setup with half the elements and twice the step. Its error of the step is four times as
   !> large, that of the mesh larger, so that a third of the difference is the estimate. Both may cancel in a difference,
-  !> and unresolved peaks differ by chance: the relative error of the elastic impact on the same mesh is a lower bound.
+  !> and the difference of unresolved peaks is arbitrary: the relative error of the elastic impact on the same mesh is a
+  !> lower bound.
   pure function errors_by_coarse_run(deck, record, velocity, area, coarse_run) result(errors)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -87,7 +88,7 @@ contains
                                   abs(record%contact_duration - coarse_run%record%contact_duration)/3)
     errors%deflection = max(errors%deflection, abs(record%deflection - coarse_run%record%deflection)/3)
     errors%velocity = max(errors%velocity, abs(velocity - coarse_run%velocity)/3)
-    ! A delamination grows by whole elements: the error of its area is of first order in their side.
+    ! A delamination grows by entire elements: the error of its area is of first order in their side.
     errors%area = abs(area - coarse_run%area)
   end function errors_by_coarse_run
 end module run_errors

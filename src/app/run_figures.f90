@@ -16,7 +16,7 @@ module run_figures
   private
   public :: run_figures_t, ending_t, find_figures, ending_of
 
-  !> How a run ended.
+  !> End of a run.
   type :: ending_t
     !> Exit code of the program
     integer :: code = exit_done
@@ -26,11 +26,11 @@ module run_figures
     character(len=:), allocatable :: message
   end type ending_t
 
-  !> Figures of the state that a run has reached, of the full plate.
+  !> Results of the state reached, for the full plate.
   type :: run_figures_t
     !> Each interface
     type(interface_figures_t), allocatable :: interfaces(:)
-    !> Area that a C-scan sees
+    !> Projected delaminated area
     real(wp) :: projected_area = 0
     !> Depth of the dent, and the permanent indentation in it
     real(wp) :: dent(2) = 0
@@ -38,11 +38,12 @@ module run_figures
     integer :: failures(failure_modes) = 0
     !> Area in which each ply has failed in each mode, (modes, plies)
     real(wp), allocatable :: failed_area(:, :)
-    !> Closed form of the force at which each interface grows, as many equal ones above each other as there are, (zones)
+    !> Closed form of the delamination threshold force of each interface, for equal delaminations in all interfaces,
+    !> (zones)
     real(wp), allocatable :: threshold(:)
-    !> The same of a single interface with a starter under the loaded patch; 0: there are none, or several
+    !> The same for a single interface with a starter under the loaded patch; 0: no or several interfaces
     real(wp) :: starter_threshold = 0
-    !> Damage along and across the load of lines that press ends of the plate together; unallocated parts: none do
+    !> Damage of a plate under compression by lines; unallocated components: none
     type(compressed_damage_t) :: compressed
     !> Length between the supports along that load, and thickness of the plate
     real(wp) :: length = 0, thickness = 0
@@ -50,12 +51,12 @@ module run_figures
 
 contains
 
-  !> Figures of the state reached. Collective.
+  !> Results of the state reached. Collective.
   subroutine find_figures(model, now, figures)
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    !> Its figures
+    !> Its results
     type(run_figures_t), intent(out) :: figures
     real(wp) :: bending, toughness(2)
     integer :: zone, zones, along
@@ -84,7 +85,7 @@ contains
     end associate
   end subroutine find_figures
 
-  !> How a run ended.
+  !> End of a run.
   pure function ending_of(error) result(ending)
     !> Reason of a premature end; not allocated: complete
     type(error_t), allocatable, intent(in) :: error

@@ -1,4 +1,4 @@
-!> When something happened in a run, in words: at a time, or under a load.
+!> Time or load of an event in words.
 module run_moments
   use deck_contents, only: deck_t
   use kinds, only: wp
@@ -13,7 +13,7 @@ contains
   pure function moment(deck, time) result(words)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Time at the end of a step; in a static analysis what grows from 0 to 1
+    !> Time at the end of a step; in a static analysis the progress from 0 to 1
     real(wp), intent(in) :: time
     !> Such as time 0.001, load factor 0.5, or 0.5 of the run
     character(len=:), allocatable :: words

@@ -16,10 +16,10 @@ module run_records
   private
   public :: run_record_t, new_run_record
 
-  !> Kinds of warnings that a run gives: a delamination has reached the border of its zone; integrators have created or
-  !> taken energy; an indentation over the thickness; slopes beyond small rotations; a clamped plate with failed fibres,
-  !> stretched far; a hole; adaptive layers out of the core; steps that err too much and get no shorter;
-  !> energy that the ledger does not account for; kinetic energy in slow motion, and of motions with scaled inertia.
+  !> Kinds of warnings of a run: a delamination at the border of its zone; energy created or dissipated by integrators;
+  !> an indentation above the thickness; slopes beyond moderate rotations; a clamped plate with failed fibres and large
+  !> membrane strains; a hole; adaptive layers beyond the core; steps of the smallest length with too large an error;
+  !> energy error; kinetic energy in slow motion; kinetic energy of motions with scaled inertia.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
                                 warning_slopes = 5, warning_torn = 6, warning_hole = 7, warning_core = 8, &
                                 warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
@@ -29,31 +29,31 @@ module run_records
   type :: run_record_t
     !> Largest contact force and its time
     real(wp) :: peak_force = 0, peak_time = 0
-    !> Low pass of the force
+    !> Low-pass filter of the force
     type(force_filter_t) :: filter
-    !> Largest force that it lets pass, and its time
+    !> Largest filtered force, and its time
     real(wp) :: peak_filtered = 0, peak_filtered_time = 0
     !> Largest deflection of the struck point in magnitude, with its sign, and its time
     real(wp) :: deflection = 0, deflection_time = 0
-    !> How often impactor and plate came into contact
+    !> Number of contacts
     integer :: contacts = 0
-    !> How long in all they were, and when that last ended or was seen
+    !> Total duration of contacts, and end of the last one so far
     real(wp) :: contact_duration = 0, contact_end = 0
-    !> Time and force of the last step seen
+    !> Time and force of the last observed step
     real(wp) :: time = 0, force = 0
-    !> Stage that each interface has reached, (zones)
+    !> Stage of failure of each interface, (zones)
     integer, allocatable :: stage(:)
-    !> Time, contact force and deflection when each was first seen damaged and grown, (3, zones)
+    !> Time, contact force and deflection at the onset and at the first growth of each interface, (3, zones)
     real(wp), allocatable :: onset(:, :), growth(:, :)
-    !> Ends of a plate under compression by lines
+    !> Record of a compression by lines
     type(compression_record_t) :: compression
-    !> What was damaged before they were pressed
+    !> Damage before the compression
     type(compressed_damage_t) :: before
-    !> What mapping to this mesh has kept
+    !> Quantities before and after mapping to this mesh
     type(mapped_figures_t) :: mapping
-    !> Largest kinetic energy in motions whose inertia is scaled, and largest energy of the run
+    !> Largest kinetic energy of motions with scaled inertia, and largest energy of the run
     real(wp) :: scaled_energy = 0, energy = 0
-    !> Warnings given: their kinds, and the zones that they concern or 0
+    !> Warnings given: kinds, and zones or 0
     integer, allocatable :: warning_kinds(:), warning_zones(:)
     !> Their times
     real(wp), allocatable :: warning_times(:)
@@ -62,11 +62,11 @@ module run_records
     procedure :: observe
     !> Updates the record with a complete state.
     procedure :: observe_reactions
-    !> Notes the energy in motions whose inertia is scaled.
+    !> Updates the energy of motions with scaled inertia.
     procedure :: note_scaled
-    !> Their largest share of the energy.
+    !> Their largest fraction of the energy.
     procedure :: scaled_share
-    !> Notes a warning.
+    !> Stores a warning.
     procedure :: note_warning
     !> True if a warning was given before.
     procedure :: has_warned
@@ -76,7 +76,7 @@ module run_records
 
 contains
 
-  !> The record of a run that has not begun.
+  !> The record at the start of a run.
   pure function new_run_record(model) result(self)
     type(model_t), intent(in) :: model
     !> The record
@@ -152,15 +152,16 @@ contains
   pure function figures_at(now)
     !> The state
     type(state_t), intent(in) :: now
-    !> Its three figures
+    !> The three values
     real(wp) :: figures_at(3)
 
     figures_at = [shown_time(now%time), now%force, now%deflection]
   end function figures_at
 
-  !> Counts contacts and their time. A contact begins or ends at mid-step; one at the start begins with the run.
+  !> Counts contacts and their duration. A contact starts or ends at mid-step; one at the start of the run starts with
+  !> it.
   pure subroutine count_contacts(self, time, force)
-    !> The record, of the step before
+    !> The record of the previous step
     type(run_record_t), intent(inout) :: self
     !> Time and contact force at the end of the step
     real(wp), intent(in) :: time, force
@@ -178,7 +179,7 @@ contains
     self%contact_end = to
   end subroutine count_contacts
 
-  !> Notes the energy in motions whose inertia is scaled.
+  !> Updates the energy of motions with scaled inertia.
   pure subroutine note_scaled(self, scaled, energy)
     !> The record
     class(run_record_t), intent(inout) :: self
@@ -189,7 +190,7 @@ contains
     self%energy = energy
   end subroutine note_scaled
 
-  !> Largest share of the energy in motions whose inertia is scaled.
+  !> Largest fraction of the energy in motions with scaled inertia.
   pure real(wp) function scaled_share(self) result(share)
     !> The record
     class(run_record_t), intent(in) :: self
@@ -198,15 +199,15 @@ contains
     if (self%energy > 0) share = self%scaled_energy/self%energy
   end function scaled_share
 
-  !> Notes a warning.
+  !> Stores a warning.
   pure subroutine note_warning(self, kind, zone, time)
     !> The record
     class(run_record_t), intent(inout) :: self
     !> One of the kinds above
     integer, intent(in) :: kind
-    !> Zone that it concerns; 0: none
+    !> Its zone; 0: none
     integer, intent(in) :: zone
-    !> When it is given
+    !> Its time
     real(wp), intent(in) :: time
 
     self%warning_kinds = [self%warning_kinds, kind]
@@ -220,7 +221,7 @@ contains
     class(run_record_t), intent(in) :: self
     !> One of the kinds above
     integer, intent(in) :: kind
-    !> Zone that it concerns; 0: none
+    !> Its zone; 0: none
     integer, intent(in) :: zone
 
     has_warned = any(self%warning_kinds == kind .and. self%warning_zones == zone)

@@ -21,7 +21,7 @@ module run_reports
 
 contains
 
-  !> Lists every key in effect in the log, and zones and starters as they are.
+  !> Lists all keys in effect in the log, and zones and starters on the mesh.
   subroutine log_echo(deck, log)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -51,9 +51,9 @@ contains
     integer :: unknowns, most, least
 
     if (allocated(stepper%explicit)) then
-      associate (share => model%distribution)
-        unknowns = count(.not. model%held(:, :share%owned))
-        most = size(share%elements)
+      associate (partition => model%distribution)
+        unknowns = count(.not. model%held(:, :partition%owned))
+        most = size(partition%elements)
       end associate
       least = most
       call model%communicator%sum(unknowns)
@@ -72,7 +72,7 @@ contains
     end associate
   end subroutine log_model
 
-  !> Reports the element that sets the stable step, and whether the deck's step is longer.
+  !> Reports the element that determines the stable step, and whether the deck's step is longer.
   subroutine log_stable_step(stepper, log)
     !> The time stepper, by central differences
     type(time_stepper_t), intent(in) :: stepper
@@ -115,7 +115,7 @@ contains
 
   !> Lists time and memory in the log; the second part of the list is contained in the steps.
   subroutine log_costs(timers, operator, log)
-    !> Time spent in set-up, steps and results
+    !> Time of set-up, steps and output
     type(timer_set_t), intent(in) :: timers
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator

@@ -17,7 +17,7 @@ module run_steps
 
 contains
 
-  !> Takes steps up to the next one whose results are due or looked at: each implicit one. Collective.
+  !> Takes steps up to the next one with output or a check: a single implicit one. Collective.
   subroutine advance_to_output(deck, model, stepper, record, event, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -25,7 +25,7 @@ contains
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
-    !> Looks at each step
+    !> The record, updated in each step
     type(run_record_t), intent(inout) :: record
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
@@ -50,7 +50,7 @@ contains
 
   !> True: a row of the history is due by the number of steps.
   pure logical function row_is_due(output, step)
-    !> What is written
+    !> The output
     type(output_t), intent(in) :: output
     !> Accepted steps
     integer, intent(in) :: step

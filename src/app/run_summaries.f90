@@ -1,4 +1,4 @@
-!> The end of a run in words and figures: found once, printed in the log and written to NAME_summary.json.
+!> Summary of a run, printed in the log and written to NAME_summary.json.
 module run_summaries
   use case_deck, only: needs_coarse_run
   use coarse_runs, only: coarse_run_t, run_coarse_model
@@ -19,7 +19,7 @@ module run_summaries
   private
   public :: summarise
 
-  !> Why errors are not known, or not as requested.
+  !> Reasons why errors are not known, or not as requested.
   character(len=*), parameter :: &
     unasked = 'not known; a coarser run, about an eighth of the work, gives them with &case error_estimate=.true.', &
     cut = 'not known; the coarser run that gives them is not complete', &
@@ -35,11 +35,11 @@ contains
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> What it remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
-    !> Wall-clock time since this process began
+    !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -53,18 +53,18 @@ contains
     type(error_t), allocatable :: fault
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: unknown_because
-    logical :: ended, wanted
+    logical :: ended, needed
     integer :: i
 
     call find_figures(model, stepper%now, figures)
     if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record)
     ended = .not. (allocated(error) .or. deck%is_static() .or. deck%inherits)
-    wanted = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
-    if (wanted) call run_coarse_model(deck, model%communicator, coarse_run)
+    needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
+    if (needed) call run_coarse_model(deck, model%communicator, coarse_run)
     if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impactor%velocity, &
                                                      sum(figures%interfaces%area), coarse_run)
     unknown_because = ''
-    if (wanted .and. .not. coarse_run%done) then
+    if (needed .and. .not. coarse_run%done) then
       unknown_because = cut
       if (errors%source == 'elastic') unknown_because = elastic_only
     else if (ended .and. errors%source == 'none') then

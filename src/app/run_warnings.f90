@@ -1,5 +1,5 @@
-!> Warnings that a run gives: limits of the model that it passes. Each is given once, in the log at that time and in the
-!> summary at the end.
+!> Warnings of a run that exceeds limits of the model. Each is given once, in the log at that time and in the summary at
+!> the end.
 module run_warnings
   use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
@@ -27,9 +27,9 @@ module run_warnings
   private
   public :: give_warnings, warnings_given
 
-  !> Rotation up to which its cosine counts as 1, as von Karman's strains take it: 2 % are lost there.
+  !> Largest rotation with a cosine of about 1, as assumed by von Karman's strains: the error is 2 %.
   real(wp), parameter :: steepest = 0.2_wp
-  !> Deflection over thickness beyond which membrane forces carry a clamped plate.
+  !> Deflection over thickness beyond which a clamped plate carries loads mainly by membrane forces.
   real(wp), parameter :: deepest = 3
   !> Relative round-off of an area.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
@@ -37,8 +37,8 @@ module run_warnings
   !> Permitted ratio of kinetic energy to work in slow motion, a few per cent, and fraction of the run after which it is
   !> checked: the velocity is then constant.
   real(wp), parameter :: max_kinetic = 0.05_wp, slow_start = 0.25_wp
-  !> Share of the energy that may be kinetic energy of motions whose inertia is scaled. Forces and velocities go by the
-  !> root of energies: 2 % of these is 1 % of them, the error that the default factor may make. On decks of input/ it
+  !> Permitted fraction of kinetic energy of motions with scaled inertia. Forces and velocities are proportional to the
+  !> root of energies: 2 % of energy is 1 % of force, the error permitted for the default factor. On decks of input/ it
   !> is .02 to 1 % (input/peanut.nml to input/small/breaking_bursts.nml).
   real(wp), parameter :: max_scaled = 0.02_wp
 
@@ -49,15 +49,15 @@ contains
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> What has been reached
+    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Receives what is reported
+    !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
     type(energy_watch_t), intent(inout) :: watch
-    !> Where it is reported
+    !> The log
     type(log_t), intent(inout) :: log
-    !> Set if the run is strict and has passed a limit of the model
+    !> Set if the run is strict and exceeds a limit of the model
     type(error_t), allocatable, intent(out) :: error
     type(line_t), allocatable :: warnings(:)
     integer :: i
@@ -72,20 +72,20 @@ contains
     end do
   end subroutine give_warnings
 
-  !> Finds the warnings that an accepted step calls for and notes them. Collective.
+  !> Finds and stores new warnings of an accepted step. Collective.
   subroutine find_warnings(deck, model, now, step_errs, record, watch, warnings)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    !> True: the step to it errs beyond the tolerance of those that follow their error, and none is to be shorter
+    !> True: the error of the step exceeds the tolerance of error control at the smallest length
     logical, intent(in) :: step_errs
-    !> Receives what is reported
+    !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
     type(energy_watch_t), intent(inout) :: watch
-    !> One sentence each; empty: nothing new
+    !> One sentence each; empty: none
     type(line_t), allocatable, intent(out) :: warnings(:)
     real(wp) :: thickness
     integer :: zone
@@ -123,9 +123,9 @@ contains
 
   contains
 
-    !> Reports a limit that is passed for the first time.
+    !> Adds a warning at its first occurrence.
     subroutine add_warning(kind, zone)
-      !> Its kind, and the zone that it concerns
+      !> Its kind and zone
       integer, intent(in) :: kind, zone
 
       if (record%has_warned(kind, zone)) return
@@ -146,7 +146,7 @@ contains
       any(deck%lines%prescribed .and. deck%lines%history == line_ramp .and. abs(deck%lines%value) > 0)
   end function is_slow_motion
 
-  !> True: adaptive layers reach so far beyond the core that what they follow does too.
+  !> True: adaptive layers extend so far beyond the core that damage does, too.
   pure logical function leaves_core(deck, interface) result(leaves)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -158,7 +158,7 @@ contains
                                                       thicknesses_ahead*deck%expected%scales%thickness))
   end function leaves_core
 
-  !> True: somewhere the plate's section turns beyond small rotations. Collective.
+  !> True: a rotation of the plate exceeds the limit of moderate rotations. Collective.
   logical function is_steep(model, now)
     type(model_t), intent(in) :: model
     !> The step reached
@@ -183,7 +183,7 @@ contains
     has_hole = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
   end function has_hole
 
-  !> True: a clamped plate has lost fibres. Collective.
+  !> True: fibres of a clamped plate have failed. Collective.
   logical function is_torn(deck, model, now)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -198,13 +198,13 @@ contains
     is_torn = counts(fibre_failure) > 0
   end function is_torn
 
-  !> What a warning says.
+  !> Sentence of a warning.
   pure function warning_text(kind, zone, at, deck) result(text)
     !> One of the kinds of warnings
     integer, intent(in) :: kind
-    !> Zone that it concerns; 0: none
+    !> Its zone; 0: none
     integer, intent(in) :: zone
-    !> When it was given, such as time 0.001
+    !> Its time, such as time 0.001
     character(len=*), intent(in) :: at
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -234,7 +234,7 @@ contains
       text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
              at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
     case (warning_scaled)
-      text = 'Motions with scaled inertia have held more than '//short_text(100*max_scaled)// &
+      text = 'Kinetic energy of motions with scaled inertia exceeds '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
       text = 'The indentation exceeds the thickness of the laminate since '//at// &
@@ -282,8 +282,8 @@ contains
     end function energy_text
   end function warning_text
 
-  !> Remedy for what central differences take. The layers that a growing zone separates relax; what that releases is
-  !> damped.
+  !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
+  !> released is damped.
   pure function loss_cure(deck) result(cure)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -297,7 +297,7 @@ contains
 
   !> All warnings of a run, with those before a restart.
   function warnings_given(record, deck) result(lines)
-    !> What was given
+    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -82,7 +82,7 @@ contains
     end subroutine append_key
   end subroutine manual_page
 
-  !> A line that begins with no macro by accident, its dashes and backslashes as they stand.
+  !> A line with dashes, backslashes and initial dots escaped.
   pure function escaped(line) result(safe)
     !> The line
     character(len=*), intent(in) :: line
@@ -134,7 +134,7 @@ contains
       call append(lines, '# Completion of implam for zsh, written by `implam completion zsh`.')
       call append(lines, 'autoload -U +X bashcompinit && bashcompinit')
       call append_words(lines, topics)
-      ! The file is first read when a word is to be completed: zsh then waits for a response.
+      ! The file is read at the first completion: zsh then waits for a response.
       call append(lines, 'if [[ ${zsh_eval_context[-1]} == loadautofunc ]]; then _bash_complete -F _implam; fi')
     case default
       call fail(error, exit_usage, 'implam completion knows bash and zsh.')
@@ -145,7 +145,7 @@ contains
   subroutine append_words(lines, topics)
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> What explain takes
+    !> Topics of explain
     character(len=*), intent(in) :: topics
     character(len=:), allocatable :: verbs, options
     integer :: i

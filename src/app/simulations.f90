@@ -40,19 +40,19 @@ module simulations
   private
   public :: simulation_t
 
-  !> A run with its open files. It has many components because it alone owns files, clocks and timers.
+  !> A run with its open files. It has many components because it owns files, clocks and timers.
   type :: simulation_t
     !> The deck
     type(deck_t) :: deck
     !> The ranks
     type(communicator_t) :: communicator
-    !> What does not change
+    !> The model
     type(model_t) :: model
     !> The time stepper, with the state
     type(time_stepper_t) :: stepper
     !> Log, progress and result files
     type(log_t) :: log
-    !> Time spent in set-up, steps and results
+    !> Time of set-up, steps and output
     type(timer_set_t) :: timers
     !> Bar or lines of progress
     type(progress_t) :: progress
@@ -64,11 +64,11 @@ module simulations
     type(fields_file_t) :: fields
     !> Clocks of history, fields and checkpoints
     type(clock_t) :: history_clock, fields_clock, checkpoint_clock
-    !> Wall-clock time granted
+    !> Wall-clock limit
     type(wall_limit_t), private :: wall_limit
     !> Record for the summary
     type(run_record_t), private :: record
-    !> The run has been set up: it can report what it has reached
+    !> True: set up, so that a summary can be written
     logical, private :: is_ready = .false.
     !> The check of energies
     type(energy_watch_t), private :: energy_watch
@@ -209,7 +209,7 @@ contains
                              rows, last_row, error)
     if (allocated(error)) return
     if (self%history%rows /= rows) &
-      call self%log%warning('The history before the checkpoint is not there; it goes on from here.')
+      call self%log%warning('The history before the checkpoint is missing; it continues from here.')
     call self%fields%resume(communicator, self%base, self%provenance, part_of(self%deck), &
                             shown_time(self%stepper%now%time), error)
     if (allocated(error)) return
@@ -218,7 +218,7 @@ contains
     if (.not. allocated(error)) call make_ready(self)
   end subroutine resume
 
-  !> Saves or loads all that evolves.
+  !> Saves or loads the evolving state.
   subroutine visit(self, archive, rows, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -226,7 +226,7 @@ contains
     type(checkpoint_archive_t), intent(inout) :: archive
     !> Rows of the history
     integer, intent(inout) :: rows
-    !> Set if the factored operator cannot be made again
+    !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
 
     call visit_evolving(self%model, self%stepper, archive, error)
@@ -248,7 +248,7 @@ contains
     if (.not. self%deck%is_static()) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
   end function end_of
 
-  !> Steps until the end, or until a queue's signal or the wall-clock time ends the run.
+  !> Steps until the end, or until a signal or the wall-clock limit.
   subroutine run(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -276,7 +276,7 @@ contains
     end do
   end subroutine run
 
-  !> Ends the run with a checkpoint if a queue's signal has come or another step might take too long.
+  !> Ends the run with a checkpoint after a signal, or if another step might exceed the wall-clock limit.
   subroutine stop_if_due(self, error)
     !> The run
     class(simulation_t), intent(inout) :: self
@@ -317,13 +317,13 @@ contains
       closest = self%stepper%smallest_step
       if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)
-      ! The last fields are those of the state that the summary is about.
+      ! The last fields are those of the state of the summary.
       if (self%fields_clock%interval > 0 .and. self%stepper%now%time >= end_of(self)) fields_due = .true.
       checkpoint_due = self%checkpoint_clock%strikes_at(self%stepper%now%time, closest) .or. &
                        self%deck%output%checkpoint_at_end .and. self%stepper%now%time >= end_of(self)
     end if
     if (allocated(error)) then
-      ! The row that passed the limit ends the history.
+      ! The row beyond the limit is the last of the history.
       call self%history%write_row(row_of(self%model, self%stepper, self%record), row_error)
       if (.not. allocated(row_error)) call self%history%flush(row_error)
       return

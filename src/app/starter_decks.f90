@@ -9,7 +9,7 @@ module starter_decks
   private
   public :: write_starter
 
-  !> Name that it has without another.
+  !> Its default name.
   character(len=*), parameter, public :: starter_name = 'impact.nml'
   !> Its lines. Material and interface are those of input/peanut.nml.
   character(len=105), parameter :: lines(*) = [character(len=105) :: &
@@ -35,7 +35,7 @@ module starter_decks
     '', &
     '&impactor     mass=1.0  energy=3.5     ! or velocity instead of energy', &
     '              radius=8e-3 /            ! of the nose', &
-    '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! how the struck face gives way', &
+    '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! indentation of the struck face', &
     '', &
     '! The interface below ply 12, where the lower 0-degree plies begin, delaminates: leave this group out', &
     '! for a plate that stays whole, add &ply_damage for plies that crack.', &
@@ -53,7 +53,7 @@ contains
     character(len=*), intent(in) :: path
     !> Name of a rig; empty: none
     character(len=*), intent(in) :: rig
-    !> Raised if there is such a file already, or it can't be written
+    !> Set if the file exists or cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: deck(:)
     integer :: i

@@ -37,17 +37,17 @@ contains
     type(deck_t), intent(in) :: deck
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> What it remembers
+    !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> Figures of the state reached
+    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
-    !> How far they may be off
+    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
-    !> How it ended
+    !> The ending
     type(ending_t), intent(in) :: ending
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
-    !> Wall-clock time since this process began
+    !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
     !> The text
     character(len=:), allocatable :: content
@@ -143,9 +143,9 @@ contains
 
   contains
 
-    !> Puts an error, or null.
+    !> Adds an error, or null.
     subroutine put_known(name, error)
-      !> What it is of
+      !> Its name
       character(len=*), intent(in) :: name
       !> The error; negative: not known
       real(wp), intent(in) :: error
@@ -181,7 +181,7 @@ contains
     end associate
   end subroutine put_energies
 
-  !> Energy of the impactor at first touch, at the end, and lost; the last is known once it has left the plate.
+  !> Energy of the impactor at first contact, at the end, and absorbed; the last is known after it has left the plate.
   subroutine put_impact_energies(json, deck, now)
     !> The summary
     type(json_t), intent(inout) :: json
@@ -201,7 +201,7 @@ contains
     call json%put('energy_impactor', now%ledger%impactor)
   end subroutine put_impact_energies
 
-  !> What has delaminated.
+  !> Results of the interfaces.
   subroutine put_interfaces(json, deck, now, record, figures)
     !> The summary
     type(json_t), intent(inout) :: json
@@ -238,11 +238,11 @@ contains
     call json%close()
   end subroutine put_interfaces
 
-  !> When something was first seen, and under what force.
+  !> Time, force and deflection of an event.
   subroutine put_event(json, name, event, deck)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> What
+    !> Its name
     character(len=*), intent(in) :: name
     !> Time, contact force, deflection; time 0: never
     real(wp), intent(in) :: event(3)
@@ -264,7 +264,7 @@ contains
   subroutine put_failures(json, figures)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> Figures of the state reached
+    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
 
     call json%put('fibre_failures', figures%failures(1))
@@ -278,7 +278,7 @@ contains
     type(json_t), intent(inout) :: json
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Figures of the state reached
+    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     integer :: ply
 
@@ -328,13 +328,13 @@ contains
     call json%close()
   end subroutine put_warnings
 
-  !> What the run took.
+  !> Cost of the run.
   subroutine put_costs(json, stepper, seconds)
     !> The summary
     type(json_t), intent(inout) :: json
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Wall-clock time since this process began
+    !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
 
     call json%open_object('costs')
@@ -369,7 +369,7 @@ contains
     call json%close()
   end subroutine put_profile
 
-  !> Writes the summary aside and puts it in its place in one step.
+  !> Writes the summary to a temporary file and renames it.
   subroutine write_summary(path, content, error)
     !> Path of the file
     character(len=*), intent(in) :: path

@@ -31,9 +31,9 @@ contains
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
-    !> How far they may be off
+    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
-    !> Why that is not known; empty: it is, or isn't to be reported
+    !> Reason why errors are not known; empty: known, or not to be reported
     character(len=*), intent(in) :: unknown_because
     !> The lines
     type(line_t), allocatable :: lines(:)
@@ -57,7 +57,7 @@ contains
     if (struck) call add_impact_energy(lines, deck, now)
     if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
     call add_energies(lines, now%ledger)
-    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'motions with it held at most '// &
+    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'its motions have at most '// &
                                             rounded_text(100*record%scaled_share(), 2)//' % of the energy')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, record, figures, errors)
     if (deck%has_ply_damage) call add_figure(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
@@ -73,7 +73,7 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The label; empty: the line continues the one before
     character(len=*), intent(in) :: label
-    !> Its figures
+    !> Its results
     character(len=*), intent(in) :: figures
 
     call append(lines, '  '//label//repeat(' ', max(1, label_width - len(label)))//figures)
@@ -144,7 +144,7 @@ contains
     if (abs(figure) > 0) clause = ' (+-'//rounded_text(100*error/abs(figure), 2)//' %)'
   end function within
 
-  !> In how many contacts.
+  !> Clause on the number of contacts.
   pure function repeated(contacts) result(clause)
     !> Number of contacts
     integer, intent(in) :: contacts
@@ -175,7 +175,7 @@ contains
     call add_figure(lines, 'impact energy', clause)
   end subroutine add_impact_energy
 
-  !> Where the energy is, under the names of the columns.
+  !> The energy ledger, with the names of the columns.
   subroutine add_energies(lines, ledger)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -196,7 +196,7 @@ contains
               rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
   end subroutine add_energies
 
-  !> What has delaminated.
+  !> Results of the interfaces.
   subroutine add_interfaces(lines, deck, record, figures, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -204,9 +204,9 @@ contains
     type(deck_t), intent(in) :: deck
     !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> Figures of the state reached
+    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
-    !> How far they may be off
+    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
     integer :: zone
 
@@ -227,9 +227,9 @@ contains
 
   contains
 
-    !> When something was first seen, if it was.
+    !> Time and force of an event, if it occurred.
     subroutine add_event(name, event)
-      !> What
+      !> Its name
       character(len=*), intent(in) :: name
       !> Time, contact force, deflection; time 0: never
       real(wp), intent(in) :: event(3)
@@ -256,7 +256,7 @@ contains
 
   !> The closed form with the radius of the starter.
   pure function of_starter(force) result(clause)
-    !> The force; 0: without meaning
+    !> The force; 0: not defined
     real(wp), intent(in) :: force
     !> Empty without
     character(len=:), allocatable :: clause

@@ -8,7 +8,7 @@ module summary_provenance
 
 contains
 
-  !> Where the result comes from.
+  !> Provenance of the result.
   subroutine put_provenance(json, provenance)
     !> The summary
     type(json_t), intent(inout) :: json

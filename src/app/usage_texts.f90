@@ -99,7 +99,7 @@ contains
     character(len=*), intent(in) :: term
     !> The explanation
     character(len=*), intent(in) :: words
-    !> Blanks in front of each line of it
+    !> Column of the explanation
     integer, intent(in) :: column
     type(line_t), allocatable :: word(:)
     character(len=:), allocatable :: line

@@ -14,13 +14,13 @@ module verifications
   private
   public :: stage_of, print_changes
 
-  !> How far an earlier command has come with a run.
+  !> Stage of a run of an earlier command.
   integer, parameter, public :: stage_none = 0, stage_stopped = 1, stage_done = 2
   !> Ending of the file's name.
   character(len=*), parameter :: verification_ending = '_verification.json'
   !> Largest summary read.
   integer, parameter :: max_bytes = 10000000
-  !> Figures compared, members of the summary, and what they are called.
+  !> Compared results: members of the summary, and their names.
   character(len=*), parameter :: figures(2, 10) = reshape([character(len=24) :: &
     'peak_force', 'peak force', 'peak_force_at', '  its time', 'contact_duration', 'time in contact', &
     'impactor_velocity', 'impactor''s velocity', 'largest_deflection', 'largest deflection', &
@@ -29,7 +29,7 @@ module verifications
 
 contains
 
-  !> How far an earlier command has come with a run of the same deck by the same program. Collective.
+  !> Stage of a run of the same deck by the same program in an earlier command. Collective.
   integer function stage_of(base, deck, commit, communicator) result(stage)
     !> Folder and name of its results
     character(len=*), intent(in) :: base
@@ -152,7 +152,7 @@ contains
     character(len=*), intent(in) :: name
     !> Its number
     real(wp), intent(out) :: value
-    !> False: there is none, or it isn't known
+    !> False: there is none, or it is not known
     logical, intent(out) :: found
     character(len=:), allocatable :: opening
     integer :: first, status
@@ -167,7 +167,7 @@ contains
     found = status == 0
   end subroutine find_number
 
-  !> A word with blanks behind it.
+  !> A word padded with blanks.
   pure function wide(word)
     !> The word
     character(len=*), intent(in) :: word
@@ -179,7 +179,7 @@ contains
 
   !> Relative change of a figure.
   pure function change(values) result(word)
-    !> As it is, and finer
+    !> Original and finer value
     real(wp), intent(in) :: values(2)
     !> Such as -0.27 %; empty if the first value is 0
     character(len=:), allocatable :: word

@@ -1,13 +1,13 @@
-!> What evolves is visited, once, by a routine that both saves and loads: a checkpoint, a rollback
-!> and a restart can then never disagree about what the state consists of.
+!> Each evolving type has one routine that both saves and loads it, so that checkpoint, rollback and restart have the
+!> same state.
 module archives
   use kinds, only: wp
   implicit none
   private
   public :: archive_t
 
-  !> A place where named items are saved to or loaded from, in the order of the visit.
-  !> Errors are kept inside and asked for at the end by whoever owns the archive.
+  !> Storage of named items, saved or loaded in the order of the visit. Errors are stored, and checked at the end by the
+  !> owner of the archive.
   type, abstract :: archive_t
     !> True: items are read into the variables visited; false: variables are written out.
     logical :: loading = .false.
@@ -94,7 +94,7 @@ module archives
       character(len=*), intent(in) :: name
       !> Global columns (1-based) of the leading columns of `value`, which this rank owns
       integer, intent(in) :: columns(:)
-      !> Number of columns of the whole field
+      !> Number of columns of the global field
       integer, intent(in) :: global_columns
       !> The field; columns after `size(columns)` (ghosts) are left alone
       real(wp), intent(inout) :: value(:, :)

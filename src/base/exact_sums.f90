@@ -1,5 +1,5 @@
-!> Sums of reals that are exact until they are rounded once at the end, so that neither the order of the terms nor the
-!> way they are dealt out to ranks has any influence.
+!> Exact sums of reals, rounded once at the end, independent of the order of the terms and of their distribution over
+!> ranks.
 !>
 !> Small superaccumulator of R. M. Neal, Fast exact summation using small and large superaccumulators (2015,
 !> arXiv:1505.05571): a fixed-point number as wide as the range of double precision, in chunks of 64 bits whose places
@@ -22,7 +22,7 @@ module exact_sums
   !> Leading bits of a sum from which it is rounded: as many as an integer of 64 bits holds besides its sign, less one;
   !> a real has 53, and one more decides a tie
   integer, parameter :: leading_bits = 62
-  !> Terms after which carries are due: each adds less than 2^32 to a chunk that bears 2^63
+  !> Terms after which carries are due: each adds less than 2^32 to a chunk with a capacity of 2^63
   integer, parameter :: max_terms = 2**30
   !> Largest number in a place, and fraction, as masks
   integer(long), parameter :: place_mask = 2_long**place_bits - 1, fraction_mask = 2_long**fraction_bits - 1

@@ -36,7 +36,7 @@ module file_locks
 
 contains
 
-  !> Takes the lock without waiting. Where the file system knows no locks there is none, and all goes on.
+  !> Takes the lock without waiting; without effect on file systems without locks.
   subroutine take(self, path, refused)
     !> The lock
     class(file_lock_t), intent(inout) :: self

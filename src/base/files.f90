@@ -9,7 +9,7 @@ module files
 
   !> Permissions of new folders before the user's mask: rwx for all (octal 777).
   integer(c_int), parameter :: all_permissions = 511_c_int
-  !> `access` asks: may the file be read?
+  !> Mode of `access` for reading
   integer(c_int), parameter :: may_read = 4_c_int
 
   interface
@@ -113,7 +113,7 @@ contains
     if (.not. is_directory(path)) is_readable = c_access(path//c_null_char, may_read) == 0
   end function is_readable
 
-  !> Renames a file in one step: whoever looks sees the old file of that name or the new one, never a part.
+  !> Renames a file atomically: other processes find either the old file of that name or the new one.
   subroutine rename_file(from, to, error)
     !> Paths; a file `to` is replaced
     character(len=*), intent(in) :: from, to
@@ -124,7 +124,7 @@ contains
     call fail(error, exit_files, "Can't rename "//from//' to '//to//'.')
   end subroutine rename_file
 
-  !> Removes a file if it is there. One that can't be removed stays: whoever writes it anew will report it.
+  !> Removes a file if it exists. A failure is reported when the file is written again.
   subroutine remove_file(path)
     !> Its path
     character(len=*), intent(in) :: path
@@ -133,7 +133,7 @@ contains
     ignored = c_unlink(path//c_null_char)
   end subroutine remove_file
 
-  !> Makes a folder and the folders above it, as far as they are not there yet.
+  !> Makes a folder and its parents, if they do not exist.
   subroutine make_directory(path, error)
     !> Its path
     character(len=*), intent(in) :: path
@@ -145,11 +145,11 @@ contains
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, all_permissions)
     end do
     status = c_mkdir(path//c_null_char, all_permissions)
-    ! A folder made meanwhile by another process is as good as ours, so only the result counts.
+    ! Another process may have made the folder, so only the result matters.
     if (.not. is_directory(path)) call fail(error, exit_files, "Can't make the folder "//path//'.')
   end subroutine make_directory
 
-  !> Reads a file whole, byte by byte as it is.
+  !> Reads an entire file, byte by byte.
   subroutine read_whole_file(path, max_bytes, content, error)
     !> Its path
     character(len=*), intent(in) :: path

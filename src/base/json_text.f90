@@ -1,4 +1,5 @@
-!> Builds a text in JSON (RFC 8259), a member a line. Numbers read back as the same doubles; what isn't finite is null.
+!> Builds a text in JSON (RFC 8259), one member per line. Numbers read back as the same doubles; those that are not
+!> finite are null.
 module json_text
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use kinds, only: wp

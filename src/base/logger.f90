@@ -1,6 +1,5 @@
-!> The log: what happened, for the user at the terminal and for whoever opens NAME.log later.
-!> Any rank may call at any time, with what it has to say; only the rank that was opened with
-!> `writes` does anything. No routine is collective, so none can hang.
+!> The log on the terminal and in NAME.log. Any rank may call at any time, but only the rank opened with `writes`
+!> prints. No routine is collective.
 module logger
   use, intrinsic :: iso_c_binding, only: c_int
   use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
@@ -29,7 +28,7 @@ module logger
     logical, private :: writes = .false.
     !> The file
     type(output_stream_t), private :: file
-    !> Keeps other runs from writing the same log, and with it the results beside it
+    !> Prevents other runs from writing the same log and results
     type(file_lock_t), private :: lock
     !> Length of the transient line on the terminal now
     integer, private :: transient = 0
@@ -89,7 +88,7 @@ contains
     call system_clock(self%flushed)
   end subroutine open
 
-  !> Keeps what ends the run; on the terminal the program says it last of all.
+  !> Records the error that ends the run; on the terminal the program prints it at the end.
   subroutine error(self, text)
     !> The log
     class(log_t), intent(inout) :: self
@@ -99,7 +98,7 @@ contains
     call self%to_file('error: '//text, at_once=.true.)
   end subroutine error
 
-  !> Says what the user should look at although the run goes on.
+  !> Prints a warning.
   subroutine warning(self, text)
     !> The log
     class(log_t), intent(inout) :: self
@@ -122,7 +121,7 @@ contains
     call self%to_file(text, at_once=.true.)
   end subroutine note
 
-  !> Records what only the file need know.
+  !> Writes a line to the file only.
   subroutine detail(self, text)
     !> The log
     class(log_t), intent(inout) :: self

@@ -40,7 +40,7 @@ module output_streams
       type(c_ptr), value :: stream
     end function c_fwrite
 
-    !> C library: hands what was written to the operating system.
+    !> C library: flushes a stream to the operating system.
     integer(c_int) function c_fflush(stream) bind(c, name='fflush')
       import :: c_int, c_ptr
       !> The open file
@@ -115,7 +115,7 @@ contains
     call self%put(line//new_line('a'))
   end subroutine put_line
 
-  !> Hands what was written to the operating system.
+  !> Flushes to the operating system.
   subroutine flush(self)
     !> The stream
     class(output_stream_t), intent(inout) :: self
@@ -123,7 +123,7 @@ contains
     if (.not. self%failed) self%failed = c_fflush(self%stream) /= 0
   end subroutine flush
 
-  !> Waits until what was written is on the disk.
+  !> Waits until the file is on the disk.
   subroutine synchronise(self)
     !> The stream
     class(output_stream_t), intent(inout) :: self

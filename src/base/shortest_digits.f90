@@ -1,6 +1,5 @@
-!> The fewest decimal digits that distinguish a double from all others, in a twentieth of the time that writing and
-!> reading it
-!> takes. Where double the precision can't decide, it says so.
+!> The fewest decimal digits that distinguish a double from all others, in a twentieth of the time of writing and
+!> reading it. Cases that double the precision cannot decide are reported.
 module shortest_digits
   use, intrinsic :: iso_fortran_env, only: real128
   use kinds, only: long, wp

@@ -40,7 +40,7 @@ contains
 
   !> Name and title; a case without a name is named after its deck.
   subroutine fill_case(settings, source, name, title)
-    !> Keys in effect; gets the name that the deck doesn't give
+    !> Keys in effect; receives a default of the name
     type(settings_t), intent(inout) :: settings
     !> Path of the deck
     character(len=*), intent(in) :: source
@@ -54,7 +54,7 @@ contains
     title = settings%text_of(group, 'title')
   end subroutine fill_case
 
-  !> True: the deck states the accuracy that mesh and steps follow from.
+  !> True: mesh and steps are chosen by the accuracy of the deck.
   pure logical function has_accuracy(settings)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -62,11 +62,11 @@ contains
     has_accuracy = settings%is_given(group, key_accuracy)
   end function has_accuracy
 
-  !> True: a coarse run run is to give the errors of the results.
+  !> True: errors of the results are estimated by a coarse run.
   pure logical function needs_coarse_run(settings, has_estimate)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> True: the preliminary elastic impact gives them
+    !> True: they are estimated by the preliminary elastic impact
     logical, intent(in) :: has_estimate
 
     needs_coarse_run = has_accuracy(settings) .and. .not. has_estimate
@@ -77,11 +77,11 @@ contains
   pure subroutine fill_claims(settings, accuracy, units, strict, refine)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Error of the peak force allowed, %; 0: mesh and steps are the deck's
+    !> Permitted error of the peak force, %; 0: mesh and steps are given in the deck
     real(wp), intent(out) :: accuracy
     !> Units of the deck; empty: any that are consistent
     character(len=:), allocatable, intent(out) :: units
-    !> True: a run ends where it passes the model's limits
+    !> True: a run ends beyond the limits of the model
     logical, intent(out) :: strict
     !> Times that elements and steps are halved
     integer, intent(out) :: refine
@@ -101,7 +101,7 @@ contains
     end select
   end subroutine fill_claims
 
-  !> File name of a path without folders and extension; characters that a case name can't have become _.
+  !> File name of a path without folders and extension; invalid characters of a case name become _.
   pure function name_from(path) result(name)
     !> The path
     character(len=*), intent(in) :: path

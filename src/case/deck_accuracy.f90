@@ -22,15 +22,15 @@ module deck_accuracy
   private
   public :: check_left_out, choose_by_accuracy
 
-  !> Error of the history allowed over that of the peak: 3 % and 1 %. Mesh and step get half of both each.
+  !> Permitted error of the history over that of the peak: 3 % and 1 %. Half of each is for the mesh, half for the step.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Most elements along one direction of the modelled part, twice that of a full plate, with factorizations and
-  !> without: more take hours. Central differences take .2 us an element and step (`explicit_costs`): 1e5 steps of
-  !> 400 x 400 elements are an hour.
+  !> Largest number of elements along one direction of the modelled part, twice that for a full plate, with
+  !> factorizations and without: more take hours. Central differences take .2 us an element and step (`explicit_costs`):
+  !> 1e5 steps of 400 x 400 elements are an hour.
   integer, parameter :: max_factored = 100, max_explicit = 400
-  !> Waves of first contact on either side of the patch that have the required elements, where these are too many for
-  !> the plate. On random model 9 of `tests/bench/elastic_models.py` the error of the first peak is 2.9 % without, 0.3 %
-  !> with one wave, 0.03 % with two.
+  !> Extent of the core with the required elements on either side of the patch, in wavelengths of first contact, if
+  !> these elements are too many for the full plate. On random model 9 of `tests/bench/elastic_models.py` the error of
+  !> the first peak is 2.9 % without, 0.3 % with one wave, 0.03 % with two.
   real(wp), parameter :: core_waves = 2
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
@@ -43,11 +43,11 @@ module deck_accuracy
 
 contains
 
-  !> Keys that only `accuracy` makes up for.
+  !> Checks keys that are optional only with `accuracy`.
   subroutine check_left_out(settings, explicit, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> True: central differences find their step, and the end by the contact
+    !> True: central differences choose the step, and the end by the contact
     logical, intent(in) :: explicit
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -67,9 +67,9 @@ contains
 
     !> Reports a key that is missing.
     subroutine require(group, key, allowed)
-      !> Names of group and key
+      !> Group and key
       character(len=*), intent(in) :: group, key
-      !> What it takes
+      !> Its values
       character(len=*), intent(in) :: allowed
 
       if (settings%is_given(group, key) .or. problems%concern(group, key)) return
@@ -143,13 +143,13 @@ contains
                                             follows), scales, problems)
   end subroutine choose_for_impact
 
-  !> Sets the step.
+  !> Chooses the step.
   subroutine choose_step(deck, end, error, step)
     !> The deck
     type(deck_t), intent(inout) :: deck
     !> End of the run, and the history's error with the step
     real(wp), intent(in) :: end, error
-    !> The step; receives the one that is set
+    !> The step
     real(wp), intent(inout) :: step
 
     call choose_one(deck, time_group, key_step, step)
@@ -178,11 +178,11 @@ contains
     end if
   end subroutine choose_for_pressure
 
-  !> Number and sizes of elements that are nowhere longer than a side.
+  !> Number and grading of elements with a largest side.
   subroutine choose_elements(deck, side, scales, problems)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Largest side wanted
+    !> Largest side
     real(wp), intent(in) :: side
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
@@ -219,11 +219,12 @@ contains
     end if
   end subroutine choose_elements
 
-  !> Elements of the required size around the struck point: the first contact ends before its waves have left them.
+  !> Core of elements of the required size around the struck point, which waves of first contact do not leave before its
+  !> end.
   subroutine choose_core(deck, cell, wave_length)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Side of the elements wanted
+    !> Side of the elements
     real(wp), intent(in) :: cell
     !> Length of the waves; 0: no impactor
     real(wp), intent(in) :: wave_length
@@ -263,7 +264,7 @@ contains
     deck%impactor%integrator = integrator_trapezoidal
   end subroutine choose_integrator
 
-  !> Fields are written at the ends of steps; a draft has only the last.
+  !> Chooses output times of fields, at the ends of steps; a draft has only the last.
   subroutine choose_clocks(deck, step, end)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -279,7 +280,7 @@ contains
   subroutine choose_one(deck, group, key, value)
     !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Names of group and key
+    !> Group and key
     character(len=*), intent(in) :: group, key
     !> The number
     real(wp), intent(in) :: value

@@ -27,17 +27,16 @@ module deck_central_differences
   !> Largest factor of in-plane and rotary inertia that is chosen. It also slows membrane waves by its root, which no
   !> estimate covers.
   real(wp), parameter :: max_scaling = 10
-  !> Share by which scaled inertia may slow the bending waves of first contact and change the history of the contact
-  !> force (relative L2 norm). Half of the 1 % that a run with `accuracy='reference'` is allowed in all; mesh and step
-  !> have the other half.
+  !> Permitted relative change of bending wave speed and contact force history (L2 norm) in first contact by scaled
+  !> inertia. Half of the 1 % permitted with `accuracy='reference'`; mesh and step have the other half.
   real(wp), parameter :: permitted_change = 0.005_wp
-  !> Approximate rows of a history, as many as a plot shows. They are written at the ends of steps; no step is shortened
-  !> for them.
+  !> Approximate number of rows of a history, enough for a plot. They are written at the ends of steps, which are not
+  !> shortened for them.
   real(wp), parameter :: rows = 2000
 
 contains
 
-  !> Chooses what follows from the setup: end and scaling. The rest goes by the method.
+  !> Chooses end and scaling from the setup, then the values that depend on the step.
   subroutine choose_for_central_differences(deck, problems)
     !> The deck, its bodies and loads filled
     type(deck_t), intent(inout) :: deck

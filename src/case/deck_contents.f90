@@ -18,29 +18,29 @@ module deck_contents
   type, extends(setup_t) :: deck_t
     !> Path or name it was read from
     character(len=:), allocatable :: source
-    !> Text as it was read, kept for the results and a restart
+    !> Text of the deck, for the results and a restart
     character(len=:), allocatable :: text
     !> Name of the case, which names its files
     character(len=:), allocatable :: name
     !> Title of the case
     character(len=:), allocatable :: title
-    !> Error of the peak force that mesh and steps follow from, %; 0: they are the deck's
+    !> Error of the peak force for the choice of mesh and steps, %; 0: they are given in the deck
     real(wp) :: accuracy = 0
     !> Units of the deck; empty: any that are consistent
     character(len=:), allocatable :: units
-    !> True: the run ends where it passes the model's limits
+    !> True: the run ends beyond the limits of the model
     logical :: strict = .false.
     !> Times that elements and steps are halved
     integer :: refine = 0
-    !> The state that another run has left, if this one begins from it
+    !> Initial state from another run
     type(initial_state_t) :: initial
     !> Values chosen for the accuracy, with reasons
     type(line_t), allocatable :: reasons(:)
     !> Scales of the setup, and expected results
     type(expected_scales_t) :: expected
-    !> Which groups on the steps the deck has
+    !> True for groups of the deck on steps
     logical :: has_time = .false., has_adapt = .false.
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t) :: stepping
     !> The linear solver
     type(linear_solver_parameters_t) :: linear_solver
@@ -48,7 +48,7 @@ module deck_contents
     type(output_t) :: output
     !> Warnings on the deck, repeated at the end of its run
     type(line_t), allocatable :: remarks(:)
-    !> Every key in effect, for the echo
+    !> All keys in effect
     type(settings_t) :: settings
   end type deck_t
 end module deck_contents

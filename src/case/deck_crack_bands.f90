@@ -22,8 +22,8 @@ module deck_crack_bands
   private
   public :: check_crack_bands
 
-  !> Energy that failure takes over the fracture energy from which it is reported: in two digits smaller ratios are 1.
-  real(wp), parameter :: noted = 1.1_wp
+  !> Ratio of dissipated energy to fracture energy from which it is reported: smaller ratios are 1 in two digits.
+  real(wp), parameter :: reported_ratio = 1.1_wp
 
 contains
 
@@ -67,7 +67,7 @@ contains
     end do
   end subroutine check_crack_bands
 
-  !> Permanent shear strains need a curve of shear, and steps that follow it.
+  !> Permanent shear strains require nonlinear shear and central differences.
   subroutine check_permanent_shear(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -83,9 +83,9 @@ contains
               key_shear_strain//' of a &'//material_group//'; give it, or leave this out.')
   end subroutine check_permanent_shear
 
-  !> Strengths in place need fracture energies.
+  !> In-situ strengths require fracture energies.
   subroutine refuse_in_situ(deck, problems)
-    !> The deck, which has none
+    !> The deck, without fracture energies
     type(deck_t), intent(in) :: deck
     !> The fault is added
     type(problems_t), intent(inout) :: problems
@@ -101,7 +101,7 @@ contains
         &material, or leave it out.')
   end subroutine refuse_in_situ
 
-  !> Energies come all four, and for all materials.
+  !> Checks that all four energies are given, for all materials.
   subroutine check_energies(deck, place, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -123,7 +123,7 @@ contains
       '; give G_ft, G_fc, G_mt and G_mc of every material, or none.', place)
   end subroutine check_energies
 
-  !> Shear that is not linear strains a ply more than a straight line would.
+  !> Checks that nonlinear shear has a larger failure strain than linear shear.
   subroutine check_shear(deck, place, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -162,7 +162,7 @@ contains
     do mode = 1, size(toughness_keys)
       if (longest(mode) < present(2)) &
         call append(limits, length_text(deck, longest(mode))//' ('//toughness_keys(mode)//')')
-      if (usual > noted*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
+      if (usual > reported_ratio*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
                                              toughness_keys(mode))
     end do
     if (size(limits) == 0) return
@@ -176,8 +176,8 @@ contains
                 '. Use shorter ones where plies fail.'//excess, place)
   end subroutine check_lengths
 
-  !> Longest elements that take no more than the fracture energies, in every block of a material. Strengths in place are
-  !> never below the material's, so that they only make them shorter.
+  !> Longest elements that dissipate no more than the fracture energies, over all blocks of a material, with in-situ
+  !> strengths.
   pure function longest_elements(deck, place) result(longest)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -196,11 +196,11 @@ contains
     end do
   end function longest_elements
 
-  !> Shortest and longest side of the cells, or of the two together that are one beside the struck point's lines.
+  !> Shortest and longest side of the cells, with joined cells at the lines of the struck point counted as one.
   pure function element_lengths(deck) result(lengths)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Least and largest
+    !> Smallest and largest
     real(wp) :: lengths(2)
     real(wp), allocatable :: edges(:)
     logical :: joined(2)
@@ -225,13 +225,13 @@ contains
     end associate
   end function longest_pair
 
-  !> Least and largest distance of neighbouring edges, and of two before.
+  !> Smallest and largest distance of adjacent edges, and the previous values.
   pure function extremes(edges, before) result(lengths)
     !> Ascending coordinates
     real(wp), intent(in) :: edges(:)
-    !> Least and largest so far
+    !> Smallest and largest so far
     real(wp), intent(in) :: before(2)
-    !> Least and largest
+    !> Smallest and largest
     real(wp) :: lengths(2)
 
     associate (sides => edges(2:) - edges(:size(edges) - 1))

@@ -1,5 +1,5 @@
-!> Checks across the groups of a deck: whether they can be modelled together. Checks within a group are beside its rows,
-!> those of sizes in `deck_extents`. A check with invalid keys is omitted, so that an error is reported once.
+!> Checks of combinations of groups. Checks within a group are next to its rows, those of sizes in `deck_extents`. A
+!> check with invalid keys is omitted, so that an error is reported once.
 module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
@@ -35,7 +35,7 @@ module deck_cross_checks
 
 contains
 
-  !> All checks across groups but those of sizes.
+  !> All checks of combinations of groups except for those of sizes.
   subroutine check_across_groups(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -57,7 +57,7 @@ contains
     call remark_idle_fields(deck%settings, deck%output, size(deck%delaminations) > 0, deck%has_ply_damage, problems)
   end subroutine check_across_groups
 
-  !> Is there a load, and one only?
+  !> Checks that there is a load, and no conflicting ones.
   subroutine check_loads(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -79,7 +79,7 @@ contains
     end if
   end subroutine check_loads
 
-  !> An impactor that moves slowly goes a way, and is the only load.
+  !> Checks the travel of an impactor in load steps, which must be the only load.
   subroutine check_travel(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -98,7 +98,7 @@ contains
                      keys_of_motion(deck%settings), 'has no effect on a static analysis.')
   end subroutine check_travel
 
-  !> An impactor whose travel is prescribed in time.
+  !> Checks an impactor with a travel prescribed in time.
   subroutine check_travel_in_time(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -187,7 +187,7 @@ contains
       end if
       if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
         call report(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
-      ! The force acts on all of the patch, which has no nose above it there.
+      ! The force acts on the full patch, also beyond the nose.
       if (deck%impactor%spreads .and. deck%impactor%radius > 0 .and. &
           deck%mesh%patch/sqrt(2.0_wp) > deck%impactor%radius) &
         call remark(s, problems, mesh_group, key_patch, 'reaches beyond the nose that presses on it: its corners '// &
@@ -206,7 +206,7 @@ contains
     end associate
   end subroutine check_impact
 
-  !> Interfaces that lie within the laminate.
+  !> Checks that interfaces lie within the laminate.
   subroutine check_interfaces(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -225,7 +225,7 @@ contains
     end do
   end subroutine check_interfaces
 
-  !> Strengths that the failure criteria need. Those given with another fault are left out.
+  !> Checks strengths required by the failure criteria, except those with another fault.
   subroutine check_strengths(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

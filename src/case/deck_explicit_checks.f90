@@ -18,7 +18,7 @@ module deck_explicit_checks
   private
   public :: check_central_differences
 
-  !> Why keys of implicit integrators are left unused.
+  !> Reason why keys of implicit integrators have no effect.
   character(len=*), parameter :: no_effect = 'has no effect with &time integrator = ''central_difference''.'
 
 contains
@@ -36,14 +36,14 @@ contains
         call report(s, problems, mesh_group, key_mass, 'central differences need a lumped mass; leave it out, or '// &
                   'write &time integrator = ''generalized_alpha''.')
       if (s%has_group(adapt_group)) call remark(s, problems, adapt_group, '', no_effect)
-      ! Residual stresses are brought into equilibrium before the first step.
+      ! Equilibrium with residual stresses is found before the first step.
       if (s%has_group(solver_group) .and. .not. deck%has_thermal) call remark(s, problems, solver_group, '', no_effect)
       if (deck%impactor%integrator /= integrator_central) &
         call remark_idle(s, problems, impactor_group, key_integrator, no_effect)
     end associate
   end subroutine check_central_differences
 
-  !> A front is released by its energy release rate at a frozen time, in equilibrium.
+  !> Refuses fronts, whose release requires equilibrium at a frozen time.
   subroutine check_fronts(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

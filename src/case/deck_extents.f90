@@ -1,5 +1,5 @@
-!> Sizes of plate, laminate, mesh and interfaces against each other. Zones and starters are whole cells of the mesh, so
-!> their sizes may differ from the deck's.
+!> Checks of sizes of plate, laminate, mesh and interfaces. Zones and starters consist of entire cells, so that their
+!> sizes may differ from those of the deck.
 module deck_extents
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -25,7 +25,7 @@ module deck_extents
   private
   public :: check_sizes, check_extents, extent_lines
 
-  !> Length over thickness beyond which rounding spoils the result, and below which plate theory does.
+  !> Length over thickness: upper limit by round-off, lower limit of plate theory.
   real(wp), parameter :: max_slenderness = 1.0e5_wp, min_slenderness = 5
   !> Smallest patch, fraction of the plate's shorter side.
   real(wp), parameter :: min_patch = 1.0e-5_wp
@@ -33,14 +33,14 @@ module deck_extents
   real(wp), parameter :: min_starter = 1.5_wp
   !> Relative difference from the requested size above which a warning is given.
   real(wp), parameter :: size_tolerance = 0.05_wp
-  !> Distance from its place at which a line counts as moved, relative to the plate's length.
+  !> Distance, relative to the plate's length, above which the move of a line to a line of nodes is reported.
   real(wp), parameter :: moved_line = 1.0e-3_wp
   !> Relative round-off of a length at its limit.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
-  !> Sizes as the deck gives them.
+  !> Checks sizes given in the deck.
   subroutine check_sizes(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -57,7 +57,7 @@ contains
       call check_line_places(deck, problems)
   end subroutine check_sizes
 
-  !> Lines that lie on the plate, and on the part of it that is modelled.
+  !> Checks that lines are on the modelled part of the plate.
   subroutine check_line_places(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -75,7 +75,7 @@ contains
         half = deck%plate%length(direction)/2
         if (abs(line%at) > half*(1 + rounded_off)) then
           call report(deck%settings, problems, line_group, line_key_at, &
-                      'the line passes beside the plate; allowed: '// &
+                      'the line is not on the plate; allowed: '// &
                     to_text(-half)//' to '//to_text(half)//'.', place)
         else if (mirrored(direction) .and. line%at < 0) then
           call report(deck%settings, problems, line_group, line_key_at, 'one side stands for the plate, and a line '// &
@@ -85,7 +85,7 @@ contains
     end do
   end subroutine check_line_places
 
-  !> Warns of lines that the mesh moves, as they lie on its nodes.
+  !> Warns of lines that are moved to lines of nodes.
   subroutine check_line_nodes(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
@@ -307,7 +307,7 @@ contains
                   /product([columns(2) - columns(1), rows(2) - rows(1)] + 1))
   end function mean_cell
 
-  !> Zone and starter of each interface, for the log.
+  !> Zone and starter of each interface on the mesh, for the log.
   pure function extent_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -348,7 +348,7 @@ contains
     starter = min(starter, zone)
   end subroutine extents_of
 
-  !> True if a size differs noticeably from the requested one.
+  !> True if a size differs from the requested one by more than `size_tolerance`.
   pure logical function differs(given, asked)
     !> Extents on the mesh and in the deck
     real(wp), intent(in) :: given(2), asked(2)
@@ -356,7 +356,7 @@ contains
     differs = any(abs(given - asked) > size_tolerance*asked)
   end function differs
 
-  !> Two extents for the reader, to four digits.
+  !> Two extents to four digits.
   pure function shown(extents) result(text)
     !> Along x and y
     real(wp), intent(in) :: extents(2)

@@ -1,5 +1,4 @@
-!> Where interfaces with adaptive layers have them at the start: under the loaded patch or the starter, and
-!> in some cells around it.
+!> Initial zones of adaptive layers: the loaded patch or the starter, and some cells around it.
 module deck_first_zones
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -18,8 +17,8 @@ module deck_first_zones
 
 contains
 
-  !> Zones can adapt to the damage of a cohesive law. A front has no damage ahead of it, a strip crosses the full width
-  !> of a zone, and lines act on the initial layers.
+  !> Reports missing zones: only zones of a cohesive law are adaptive. A front has no damage ahead of it, a strip
+  !> crosses the full width of a zone, and lines act on the initial layers.
   subroutine check_left_out_zones(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -34,27 +33,27 @@ contains
       end if
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
       if (deck%delaminations(i)%law == law_front) then
-        call want('a front needs it, and layers follow the damage of law = ''cohesive'' only')
+        call require('a front needs it, and layers follow the damage of law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
-        call want(key_strip//' runs across its whole width')
+        call require(key_strip//' runs across its whole width')
       else if (.not. all(beside_layers(deck))) then
-        call want('a &line acts on layers that are there from the start')
+        call require('a &line acts on layers that are there from the start')
       end if
     end do
 
   contains
 
     !> Reports a zone that is missing.
-    subroutine want(reason)
-      !> Why it is needed
+    subroutine require(reason)
+      !> Reason why it is required
       character(len=*), intent(in) :: reason
 
       if (are_clear(deck%settings, problems, delamination_group, key_zone, place)) &
         call report(deck%settings, problems, delamination_group, key_zone, 'is missing; '//reason//'.', place)
-    end subroutine want
+    end subroutine require
   end subroutine check_left_out_zones
 
-  !> Lines outside of layers: those that move an edge of the plate in its plane.
+  !> Lines outside of layers: those that displace an edge of the plate in its plane.
   pure function beside_layers(deck)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -67,7 +66,7 @@ contains
     end do
   end function beside_layers
 
-  !> Sets the zones that the deck leaves to the damage.
+  !> Sets the initial extents of adaptive zones.
   subroutine set_first_zones(deck, problems)
     !> The deck, filled; its interfaces receive the zones
     type(deck_t), intent(inout) :: deck
@@ -96,9 +95,9 @@ contains
     end do
   end subroutine set_first_zones
 
-  !> Gives interfaces with adaptive zones their largest zones from the start. By equilibrium through the thickness the
-  !> plate is more compliant in transverse shear than its layers together, a sandwich many times: its strain energy
-  !> would be discontinuous as layers appear.
+  !> Sets adaptive zones to their largest extents. With the energy-consistent shear stiffness the plate is more
+  !> compliant than its layers, a sandwich many times, so that the strain energy would be discontinuous when layers are
+  !> inserted.
   subroutine set_permanent_zones(deck)
     !> The deck; its interfaces receive the zones
     type(deck_t), intent(inout) :: deck

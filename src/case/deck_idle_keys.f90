@@ -49,7 +49,7 @@ contains
     end associate
   end subroutine check_idle_keys
 
-  !> A material without plies, and constants without use.
+  !> Remarks on a material without plies, and on constants without effect.
   subroutine check_material(deck, place, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -24,7 +24,7 @@ module deck_initial_states
   private
   public :: check_initial_state, inheritance_objection, is_mapped
 
-  !> Digits of numbers in a list: numbers contradict each other from a relative difference of 1e-9 on.
+  !> Digits of numbers in a list, for numbers with a relative difference above 1e-9.
   integer, parameter :: digits = 10
 
 contains
@@ -164,9 +164,9 @@ contains
 
   contains
 
-    !> Whether a group is there, in words.
+    !> Presence of a group in words.
     pure function given(is_given) result(word)
-      !> True if it is
+      !> True: the group is given
       logical, intent(in) :: is_given
       !> The words
       character(len=:), allocatable :: word
@@ -240,7 +240,7 @@ contains
 
   !> A clause with both values.
   pure function both(what, here, there) result(clause)
-    !> What it is of
+    !> The quantity
     character(len=*), intent(in) :: what
     !> Value in the deck, and in that of the other run
     character(len=*), intent(in) :: here, there
@@ -258,7 +258,7 @@ contains
     differ = abs(here - there) > 1.0e-9_wp*max(abs(here), abs(there))
   end function differ
 
-  !> Numbers for the reader.
+  !> Numbers as text.
   pure function short_list(numbers) result(list)
     !> The numbers
     real(wp), intent(in) :: numbers(:)
@@ -273,7 +273,7 @@ contains
     list = list(min(2, len(list) + 1):)
   end function short_list
 
-  !> Whole numbers for the reader.
+  !> Integers as text.
   pure function integer_list(numbers) result(list)
     !> The numbers
     integer, intent(in) :: numbers(:)

@@ -1,5 +1,5 @@
-!> The integrator of a deck that names none, by its setup. Where plies or interfaces soften, implicit steps find
-!> equilibrium by many solves, and central differences need none.
+!> Default integrator by the setup of the deck: with softening plies or interfaces implicit steps need many solves,
+!> central differences none.
 module deck_integrators
   use deck_contents, only: deck_t
   use delamination_parameters, only: law_cohesive, law_front

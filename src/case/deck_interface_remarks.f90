@@ -1,5 +1,5 @@
-!> Remarks on interfaces that a deck may mean otherwise: plies of one angle on both sides, and a zone that reaches
-!> beyond the fine core of the mesh.
+!> Remarks on interfaces that may be unintended: plies of one angle on both sides, and a zone beyond the fine core of
+!> the mesh.
 module deck_interface_remarks
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -15,7 +15,7 @@ module deck_interface_remarks
   private
   public :: check_interfaces
 
-  !> Angles nearer than this, in degrees, are one.
+  !> Tolerance of equal angles, degrees.
   real(wp), parameter :: same = 1.0e-6_wp
 
 contains

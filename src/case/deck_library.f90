@@ -18,9 +18,9 @@ module deck_library
 
 contains
 
-  !> Values of all materials with `library`, and of interfaces whose toughness is left out.
+  !> Fills in values of all materials with `library`, and of interfaces without toughness.
   subroutine take_library(settings, problems)
-    !> Keys in effect; get the values
+    !> Keys in effect; receive the values
     type(settings_t), intent(inout) :: settings
     !> A fault is added if the deck's units are not known
     type(problems_t), intent(inout) :: problems
@@ -32,9 +32,9 @@ contains
     system = system_of(settings)
     if (system == 0) then
       if (are_clear(settings, problems, case_group, key_units)) call report(settings, problems, material_group, &
-        key_library, 'the values are known in SI; say what units the deck is in by '//key_units//' of &'// &
+        key_library, 'the values are known in SI; give the units of the deck by '//key_units//' of &'// &
         case_group//'.', first_with_library(settings))
-      ! Reported once; with any system the values are there, so that no check finds them missing.
+      ! Reported once; values are filled in with an arbitrary system, so that no check reports them as missing.
       system = 1
     end if
     call load_deck_table(vocabulary)
@@ -93,9 +93,9 @@ contains
     character(len=*), intent(in) :: name
     !> Name of the group
     character(len=*), intent(in) :: group
-    !> Which of this name
+    !> Index among groups of this name
     integer, intent(in) :: place
-    !> Keys in effect; get the values
+    !> Keys in effect; receive the values
     type(settings_t), intent(inout) :: settings
     type(library_value_t), allocatable :: values(:)
     integer :: i

@@ -1,4 +1,4 @@
-!> Lines and what supports the plate: whether they hold it, and whether a line moves what a support holds.
+!> Checks that supports and lines constrain rigid-body motions, and that prescribed lines do not act on supports.
 module deck_line_supports
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -12,40 +12,40 @@ module deck_line_supports
   private
   public :: check_line_supports, check_moved_lines
 
-  !> Difference of lengths, relative to them, that is none.
+  !> Relative tolerance of equal lengths.
   real(wp), parameter :: rounding = 1.0e-9_wp
 
 contains
 
-  !> Lines and edges that together support the plate: its deflection, and its tilt along x and along y.
+  !> Checks that lines and edges constrain the rigid-body deflection and rotations about x and y.
   subroutine check_line_supports(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    type(line_load_t), allocatable :: held(:)
+    type(line_load_t), allocatable :: supporting(:)
     logical, allocatable :: across(:)
     logical :: tilts(2), edges(4)
     integer :: along, n
 
     if (any(deck%plate%edges == edge_clamped)) return
-    held = pack(deck%lines, deck%lines%prescribed)
+    supporting = pack(deck%lines, deck%lines%prescribed)
     edges = deck%plate%edges /= edge_free
     do along = 1, 2
-      ! Two lines or edges across this direction stop the tilt, or one that runs along it.
-      across = held%component == 3 .and. held%direction == merge(along_y, along_x, along == 1)
+      ! The rotation is constrained by two lines or edges across this direction, or one along it.
+      across = supporting%component == 3 .and. supporting%direction == merge(along_y, along_x, along == 1)
       n = count(edges(2*along - 1:2*along))
-      if (any(across)) n = n + merge(2, 1, minval(held%at, mask=across) < maxval(held%at, mask=across))
-      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(held%component == 3 + along) .or. &
-                     any(held%component == 3 .and. .not. across)
+      if (any(across)) n = n + merge(2, 1, minval(supporting%at, mask=across) < maxval(supporting%at, mask=across))
+      tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(supporting%component == 3 + along) .or. &
+                     any(supporting%component == 3 .and. .not. across)
     end do
     tilts = tilts .or. is_mirrored(deck%plate%symmetry)
-    if (all(tilts) .and. (any(held%component == 3) .or. any(edges))) return
+    if (all(tilts) .and. (any(supporting%component == 3) .or. any(edges))) return
     call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports
 
-  !> Lines whose deflection is prescribed where supports hold the plate.
+  !> Reports prescribed deflections of lines where supports constrain the plate.
   subroutine check_moved_lines(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -69,7 +69,7 @@ contains
     end do
   end subroutine check_moved_lines
 
-  !> True: an edge holds the deflection.
+  !> True: an edge constrains the deflection.
   elemental logical function holds(edge, stiffness)
     !> Kind of the edge
     integer, intent(in) :: edge

@@ -1,4 +1,4 @@
-!> Lines that rigs, and decks to come, need in the mesh.
+!> Lines required in the mesh, by rigs and by later decks.
 module deck_mesh_lines
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -14,8 +14,8 @@ module deck_mesh_lines
 
 contains
 
-  !> Windows, and lines that the mesh is to have, that it has no lines for, because all are taken by the patch or by
-  !> other windows.
+  !> Reports windows and requested lines without a line in the mesh, because all are used by the patch or by other
+  !> windows.
   subroutine check_window_lines(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck

@@ -117,7 +117,7 @@ contains
              longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
     zone%modulus = largest_modulus(bending)
     zone%cell = maxval(cells)
-    ! The front of a strip runs along y and moves along x.
+    ! The front of a strip runs along y and advances along x.
     if (delamination%starter_strip(1) < delamination%starter_strip(2)) then
       zone%modulus = bending(1)
       zone%cell = cells(1)
@@ -130,7 +130,7 @@ contains
     zone%is_pulled = .not. deck%has_impactor
   end function process_zone
 
-  !> Thickness of some plies.
+  !> Total thickness of plies.
   pure real(wp) function thickness_of(layer)
     !> The plies, from the struck face
     type(ply_t), intent(in) :: layer(:)
@@ -138,7 +138,7 @@ contains
     thickness_of = layer(size(layer))%z_bottom - layer(1)%z_top
   end function thickness_of
 
-  !> Bending moduli of some plies about their own middle, 12 D/h**3.
+  !> Bending moduli of plies about their own mid-plane, 12 D/h**3.
   pure function bending_moduli(layer) result(moduli)
     !> The plies, from the struck face
     type(ply_t), intent(in) :: layer(:)

@@ -1,4 +1,4 @@
-!> Reads a deck: scan, rules, parameters, checks across groups. All faults are reported, none stops the reading.
+!> Reads a deck: scan, rules, parameters, checks of combinations. All faults are reported, none stops the reading.
 module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
   use case_deck, only: fill_case, fill_claims, has_accuracy
@@ -72,7 +72,7 @@ contains
   subroutine read_deck(path, deck, problems)
     !> Path of the file
     character(len=*), intent(in) :: path
-    !> The deck; only to be used if there are no errors among the problems
+    !> The deck, valid if there are no errors among the problems
     type(deck_t), intent(out) :: deck
     !> All faults and remarks
     type(problems_t), intent(out) :: problems
@@ -96,7 +96,7 @@ contains
     character(len=*), intent(in) :: content
     !> Path or name that messages begin with
     character(len=*), intent(in) :: source
-    !> The deck; only to be used if there are no errors among the problems
+    !> The deck, valid if there are no errors among the problems
     type(deck_t), intent(out) :: deck
     !> All faults and remarks
     type(problems_t), intent(out) :: problems
@@ -142,7 +142,7 @@ contains
     deck%remarks = problems%remarks()
   end subroutine read_deck_text
 
-  !> Which groups the deck has, of those that bring physics or a kind of analysis.
+  !> Finds the groups of the deck that define physics or a kind of analysis.
   subroutine note_groups(deck)
     !> Receives it
     type(deck_t), intent(inout) :: deck
@@ -197,7 +197,7 @@ contains
                                                           ply=1, size(deck%laminate%material))])
   end function changes_of_angle
 
-  !> Strengths of the plies that their interfaces have too.
+  !> Strengths of the plies that are defaults of their interfaces.
   pure function ply_strengths(deck) result(strengths)
     !> The deck with its plies; without, the list is empty
     type(deck_t), intent(in) :: deck
@@ -260,7 +260,7 @@ contains
     if (any(deck%delaminations%law == law_front)) rho_infinity = 0
   end function natural_rho_infinity
 
-  !> How steps are taken and written.
+  !> Parameters of steps and written.
   subroutine fill_steps(deck)
     !> Receives it
     type(deck_t), intent(inout) :: deck
@@ -272,7 +272,7 @@ contains
     call fill_gauges(deck%settings, deck%gauges)
   end subroutine fill_steps
 
-  !> Checks of each group by itself.
+  !> Checks of each group.
   subroutine check_groups(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck

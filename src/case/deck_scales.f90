@@ -16,21 +16,21 @@ module deck_scales
   private
   public :: check_scales
 
-  !> Errors of peak and history, by preliminary elastic impacts, that a user is warned of.
+  !> Errors of peak and history, by preliminary elastic impacts, above which a warning is given.
   real(wp), parameter :: error_limits(2) = [0.05_wp, 0.2_wp]
-  !> The same for the size of the patch, which is an estimate itself.
+  !> The same for the effect of the size of the patch.
   real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
   !> Ratio of estimated to requested error above which it is reported: estimates are 1.2 to 2 times the true errors.
   real(wp), parameter :: missed = 1.5_wp
-  !> Steps of elastic impacts in the rise of first contact where the run has many more, as by central differences: their
-  !> error is below .1 %, and larger than that of the run.
+  !> Steps of elastic impacts per rise time of first contact for runs with many more, as by central differences: their
+  !> error is below .1 %, and an upper bound of that of the run.
   real(wp), parameter :: fine_steps = 64
 
 contains
 
   !> Estimates the run, and warns of a step, a mesh and a patch that don't resolve the impact.
   subroutine check_scales(deck, problems)
-    !> The deck, checked; receives the outlook
+    !> The deck, checked; receives the expected results
     type(deck_t), intent(inout) :: deck
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
@@ -72,7 +72,7 @@ contains
         'impact the largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
         short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
       if (any(o%patch_error > patch_error_limits)) call remark(deck%settings, problems, mesh_group, key_patch, &
-        'is larger than the contact that it stands for, whose force spreads over '//short_text(o%contact_side)// &
+        'is larger than the contact, with a force distributed over '//short_text(o%contact_side)// &
         ' in the middle of the thickness: the largest force changes by '//short_text(100*o%patch_error(1))// &
         ' %, its history by '//short_text(100*o%patch_error(2))//' %.')
     end associate

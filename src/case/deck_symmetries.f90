@@ -23,9 +23,9 @@ module deck_symmetries
   private
   public :: check_symmetry, note_symmetry, symmetry_sentence
 
-  !> Coupling stiffness that counts as none, relative to the stiffness it couples.
+  !> Relative tolerance of zero coupling stiffness.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
-  !> Distance of a clamp from the image of another one that counts as none, relative to the plate.
+  !> Tolerance of the position of a clamp and the image of another one, relative to the plate.
   real(wp), parameter :: same_place = 1.0e-6_wp
 
 contains
@@ -43,10 +43,10 @@ contains
     part = trim(merge('quarter', 'half   ', deck%plate%symmetry == symmetry_quarter))
     associate (s => deck%settings, symmetry => deck%plate%symmetry)
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
-        culprit(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or A45 '// &
-        'isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
+        coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
+        'A45 isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
       if (struck_aside(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
-        call report(s, problems, impactor_group, key_at, 'the impactor strikes beside the lines of symmetry = '// &
+        call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
       call check_starters(deck, name, problems)
@@ -80,7 +80,7 @@ contains
       if (starter_aside(deck%delaminations(i), deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_starter_at, &
-                    'the starter lies beside the lines '// &
+                    'the starter is not on the lines '// &
                   'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
     end do
   end subroutine check_starters
@@ -125,7 +125,7 @@ contains
     end do
   end function smallest_part
 
-  !> Notes the symmetry that a full plate keeps during failure. Without failure it keeps it by itself.
+  !> Sets the symmetry that is enforced on a full plate during failure; without failure it is preserved anyway.
   subroutine note_symmetry(deck)
     !> The deck, checked
     type(deck_t), intent(inout) :: deck
@@ -144,7 +144,7 @@ contains
     integer :: i
 
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
-    ! Lines and strips are where the deck puts them, whether or not an image faces them.
+    ! Lines and strips need not have images.
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
             .not. any([(starter_aside(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
@@ -176,7 +176,7 @@ contains
                       i=1, size(deck%delaminations))])
   end function any_strip
 
-  !> True if the impactor strikes off the centre in a direction that matters.
+  !> True if the struck point is not on a line of symmetry.
   pure logical function struck_aside(deck, symmetry)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -208,9 +208,9 @@ contains
 
   contains
 
-    !> True if the image of each clamp is one too.
+    !> True if the image of each clamp is a clamp.
     pure logical function have_images(signs)
-      !> Factors of x and y that make the image
+      !> Signs of x and y of the image
       integer, intent(in) :: signs(2)
       integer :: j, k
 
@@ -223,7 +223,7 @@ contains
   end function rigs_alike
 
   !> Subject of a message on coupling: the laminate, or parts of it.
-  pure function culprit(deck) result(words)
+  pure function coupled_part(deck) result(words)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Such as `the laminate`
@@ -233,7 +233,7 @@ contains
     if (couples(stacked_plies(deck%laminate, deck%materials))) return
     words = 'a layer between interfaces'
     if (deck%has_ply_damage) words = 'a ply that may fail'
-  end function culprit
+  end function coupled_part
 
   !> True: the laminate is valid and not symmetric about the axes of the plate, or a part of it is not: a layer between
   !> interfaces, or with damage each ply.

@@ -1,5 +1,5 @@
-!> The one table of the deck, joined from the rows that each folder brings, in the order of the manual. The scan, the
-!> checks, the echo, `implam explain` and the manual are all made from it.
+!> The table of the deck, joined from the rows of each folder, in the order of the manual. It is the source of scan,
+!> checks, list of keys, `implam explain` and the manual.
 module deck_table
   use adapt_deck, only: adapt_group_row, adapt_rows
   use case_deck, only: case_group_row, case_rows

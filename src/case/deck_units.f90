@@ -1,9 +1,9 @@
-!> Values of the deck that are probably in another unit than the rest.
+!> Warnings of values of the deck that are probably in another unit than the rest.
 !>
-!> The system of units is that of `&case units`, or else the one that most values fit. A value is reported only if its
-!> size is unusual in that system and usual in another common unit. Three values are compared with others rather than
-!> with ranges: the run's time with the plate's period, the mass of a steel ball with its radius, and the contact
-!> stiffness with Sun's formula.
+!> The system of units is that of `&case units`, or by default the one with the fewest unusual values. A value is
+!> reported only if its size is unusual in that system and usual in another common unit. Three values are compared with
+!> others rather than with ranges: the run's time with the plate's period, the mass of a steel ball with its radius, and
+!> the contact stiffness with Sun's formula.
 module deck_units
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -44,7 +44,7 @@ module deck_units
   real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
   !> Times that a contact takes as long as its force rises.
   real(wp), parameter :: contact_rises = 10
-  !> Density of steel, kg/m^3, and how near to it a ball's is taken to be steel's.
+  !> Density of steel, kg/m^3, and relative tolerance within which a ball is assumed to be of steel.
   real(wp), parameter :: steel = 7850, near = 0.03_wp
   !> Contact stiffness over that of Sun's formula for a rigid ball: usual and improbable values.
   real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
@@ -55,7 +55,7 @@ contains
 
   !> Warns of values in other units.
   subroutine check_units(deck, problems)
-    !> The deck, checked, with its outlook
+    !> The deck, checked, with its expected results
     type(deck_t), intent(in) :: deck
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
@@ -87,14 +87,14 @@ contains
     type(quantity_t), intent(in) :: item
     !> Index of the system
     integer, intent(in) :: system
-    !> What is odd about it
+    !> The finding
     character(len=*), intent(in) :: finding
     !> Unit that fits
     character(len=*), intent(in) :: fits
 
     call remark(deck%settings, problems, trim(item%group), trim(item%key), short_text(item%value)//' '// &
                 unit_name(item%quantity, system)//' '//finding//' beside the other values, which fit '// &
-                trim(systems(system))//'; it looks as if it were in '//fits//'.', item%place)
+                trim(systems(system))//'; it is probably in '//fits//'.', item%place)
   end subroutine report_unit
 
   !> Values with a size that can be recognised as odd.
@@ -132,13 +132,13 @@ contains
 
   contains
 
-    !> Adds a value that is there.
+    !> Adds a value if it is given.
     subroutine add(quantity, value, group, key, place)
       !> Kind of the quantity
       integer, intent(in) :: quantity
       !> The value
       real(wp), intent(in) :: value
-      !> Names of group and key
+      !> Group and key
       character(len=*), intent(in) :: group, key
       !> Which of the groups of this name
       integer, intent(in) :: place
@@ -174,7 +174,7 @@ contains
     if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
   end function likeliest_system
 
-  !> Kinds of quantities with a value of odd size. Lengths are typed in one unit: all sorts of them count as one.
+  !> Number of kinds of quantities with an unusual value; lengths of all kinds count as one.
   pure integer function odd_kinds(list, system) result(number)
     !> Values of the deck
     type(quantity_t), intent(in) :: list(:)
@@ -192,7 +192,7 @@ contains
     number = count(odd)
   end function odd_kinds
 
-  !> The run's time against the expected events.
+  !> Checks the end of the run against the expected events.
   subroutine check_times(deck, system, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -217,13 +217,13 @@ contains
       associate (unit => merge(of_ms(i), of_si(i), unit_name(of_time, system) == 'ms'))
         if (unit /= '') call report_unit(deck, problems, &
                                        quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
-                                       system, 'is '//short_text(ratio)//' times what happens', trim(unit))
+                                       system, 'is '//short_text(ratio)//' times the expected duration', trim(unit))
       end associate
       return
     end do
   end subroutine check_times
 
-  !> Mass and contact stiffness of the ball against its radius.
+  !> Checks mass and contact stiffness of the ball against its radius.
   subroutine check_ball(deck, system, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -249,13 +249,13 @@ contains
       ratio = law%k/sun_stiffness(impactor%radius, 1/deck%materials(deck%laminate%material(1))%e2)
       if (ratio > odd_stiffness(1) .and. ratio < odd_stiffness(2)) return
       if (usual(ratio*per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
-        short_text(ratio)//' times that of Sun''s formula; it looks as if it were in N/mm^1.5.')
+        short_text(ratio)//' times that of Sun''s formula; it is probably in N/mm^1.5.')
       if (usual(ratio/per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
-        short_text(ratio)//' times that of Sun''s formula; it looks as if it were in N/m^1.5.')
+        short_text(ratio)//' times that of Sun''s formula; it is probably in N/m^1.5.')
     end associate
   end subroutine check_ball
 
-  !> True: a contact stiffness that balls have.
+  !> True: a usual contact stiffness.
   pure logical function usual(ratio)
     !> Over that of Sun's formula
     real(wp), intent(in) :: ratio

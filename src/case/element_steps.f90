@@ -1,8 +1,8 @@
 !> Stable step of central differences before there is a model: that of the smallest element with all its layers.
 !>
-!> The grid is a product of its lines along x and y, so that one of its elements has the shortest side along both. No
-!> element has a higher frequency, as sections are the same everywhere. In a run with layers that are not there yet the
-!> step is longer, and the contact's stiffness makes it shorter.
+!> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both;
+!> with equal sections it has the highest frequency. Before layers are inserted the step of a run is longer; contact
+!> stiffness makes it shorter.
 module element_steps
   use cell_grids, only: cell_edges
   use communicators, only: communicator_t
@@ -21,7 +21,7 @@ module element_steps
 
 contains
 
-  !> Longest stable step; 0: none could be found.
+  !> Longest stable step; 0: not found.
   real(wp) function smallest_element_step(deck, scaling, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck

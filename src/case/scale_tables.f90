@@ -1,6 +1,5 @@
-!> The table of `implam check`, which the log of a run repeats: scales of the setup, expected figures, and strengths in
-!> place. Where &case names its units, values are in those that engineers read: mm, ms, N, J, kg, MPa; else they are in
-!> the deck's own and have the dimension beside them.
+!> The table of `implam check` and of the log: scales of the setup, expected results, and in-situ strengths. If &case
+!> gives units, values are in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
 module scale_tables
   use deck_contents, only: deck_t
   use in_situ_strengths, only: material_in_place
@@ -82,7 +81,7 @@ contains
 
   contains
 
-    !> Adds a line; what isn't known, or nil, has none.
+    !> Adds a line for a known, non-zero value.
     subroutine put(name, value, dimension)
       !> What it is
       character(len=*), intent(in) :: name
@@ -95,7 +94,7 @@ contains
     end subroutine put
   end function scale_lines
 
-  !> The strengths in place of all blocks of plies, from the struck face; blocks in a row that have the same are one
+  !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a
   !> line.
   function strength_lines(deck) result(lines)
     !> The deck, checked
@@ -127,7 +126,7 @@ contains
 
   contains
 
-    !> The line of some plies.
+    !> The line of a range of plies.
     function strength_line(from, to, strengths) result(line)
       !> First and last ply
       integer, intent(in) :: from, to

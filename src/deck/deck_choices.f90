@@ -7,7 +7,7 @@ module deck_choices
 
 contains
 
-  !> Number that stands for a choice; the first one if the word is none of them.
+  !> Code of a choice; the first one for an unknown word.
   pure integer function code_of(word, names, codes) result(code)
     !> The choice
     character(len=*), intent(in) :: word

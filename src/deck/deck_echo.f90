@@ -35,7 +35,7 @@ contains
     end do
   end subroutine echo
 
-  !> The values that are not from the deck but from a table that it refers to, one a line; empty: there are none.
+  !> Values from the table of published materials, one per line; empty: none.
   pure function adopted_values(settings) result(words)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -7,7 +7,7 @@ module deck_problems
   private
   public :: problems_t
 
-  !> Faults reported at most; a deck with more is not a deck.
+  !> Largest number of faults reported.
   integer, parameter :: max_problems = 100
   !> Characters of a name or value shown in a message.
   integer, parameter, public :: max_shown = 60
@@ -133,7 +133,7 @@ contains
     self%list = [self%list, problem]
   end subroutine add
 
-  !> True: so many faults that looking further is of no use.
+  !> True: the largest number of faults is reached.
   pure logical function is_full(self)
     class(problems_t), intent(in) :: self
 

@@ -110,7 +110,7 @@ contains
     type(scan_t), intent(in) :: scan
     !> Index of the key in it
     integer, intent(in) :: entry
-    !> Which of the groups of this name the key stands in
+    !> Index of the key's group among those of this name
     integer, intent(in) :: place
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary

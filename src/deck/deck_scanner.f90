@@ -121,9 +121,9 @@ contains
     if (is_line_end .and. at < len(deck)) is_line_end = iachar(deck(at + 1:at + 1)) == 10
   end function is_line_end
 
-  !> Adds one word of the deck to what was found so far.
+  !> Adds a word of the deck to the result.
   subroutine take(scan, token, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The word
     type(token_t), intent(in) :: token
@@ -154,7 +154,7 @@ contains
 
   !> A group begins.
   subroutine begin_block(scan, token, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The group's name
     type(token_t), intent(in) :: token
@@ -179,7 +179,7 @@ contains
 
   !> The open group isn't ended.
   subroutine report_missing_slash(scan, event, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(in) :: scan
     !> What happens instead
     character(len=*), intent(in) :: event
@@ -194,7 +194,7 @@ contains
 
   !> A key begins.
   subroutine begin_entry(scan, token, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The key's name
     type(token_t), intent(in) :: token
@@ -231,7 +231,7 @@ contains
 
   !> The last key gets no more values.
   subroutine finish_entry(scan, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -248,7 +248,7 @@ contains
 
   !> A value of the last key.
   subroutine take_value(scan, token, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The value
     type(token_t), intent(in) :: token
@@ -286,7 +286,7 @@ contains
 
   !> A value without a key.
   subroutine report_stray_value(scan, token, problems)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The value
     type(token_t), intent(in) :: token
@@ -311,7 +311,7 @@ contains
 
   !> The writing of the last key is wrong: reports it once, and bars the key from further checks.
   subroutine mark_faulty(scan, line, fault, problems, keys)
-    !> What was found so far
+    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> Line of the fault
     integer, intent(in) :: line

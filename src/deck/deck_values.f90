@@ -1,4 +1,4 @@
-!> Judges single values of a deck: is it a number, a choice, within its range, and what would be allowed.
+!> Checks single values of a deck: type, choice, range, and the allowed values for messages.
 module deck_values
   use deck_entries, only: value_t, shown
   use deck_vocabulary, only: key_entry_t
@@ -258,7 +258,7 @@ contains
     end if
   end function limit_of_size
 
-  !> The value that the default of a key stands for.
+  !> The value of the default of a key.
   pure function literal_value(default) result(value)
     !> A default as the table has it
     character(len=*), intent(in) :: default
@@ -270,7 +270,7 @@ contains
     if (value%quoted) value%text = default(2:len(default) - 1)
   end function literal_value
 
-  !> The number that a word stands for, which was checked before.
+  !> The number of a word, which is valid.
   pure real(wp) function real_value(value)
     !> The word
     type(value_t), intent(in) :: value
@@ -280,7 +280,7 @@ contains
     if (status /= 0) real_value = 0
   end function real_value
 
-  !> The whole number that a word stands for, which was checked before.
+  !> The integer of a word, which is valid.
   pure integer function integer_value(value)
     !> The word
     type(value_t), intent(in) :: value
@@ -290,7 +290,7 @@ contains
     if (status /= 0) integer_value = 0
   end function integer_value
 
-  !> The truth value that a word stands for, which was checked before.
+  !> The logical value of a word, which is valid.
   pure logical function logical_value(value)
     !> The word
     type(value_t), intent(in) :: value

@@ -13,11 +13,11 @@ module deprecated_names
   !> Stands in a row for no value and for no replacement.
   character(len=*), parameter :: none = '-'
 
-  !> A key, or a value of it, that goes.
+  !> A deprecated key, or a deprecated value.
   type :: deprecation_t
     !> Group and key in lower case
     character(len=:), allocatable :: group, key
-    !> The value in lower case; empty: the key itself goes
+    !> The value in lower case; empty: the key itself is deprecated
     character(len=:), allocatable :: value
     !> Key or value to write instead; empty: nothing
     character(len=:), allocatable :: replacement
@@ -68,7 +68,7 @@ contains
 
   !> Puts the replacement in an entry of the deck, if it has the deprecated name.
   subroutine replace_entry(deprecation, entry, problems)
-    !> What goes
+    !> The deprecation
     type(deprecation_t), intent(in) :: deprecation
     !> A key with its values
     type(entry_t), intent(inout) :: entry
@@ -94,9 +94,9 @@ contains
     if (found) call problems%warning(entry%line, deprecation%group, entry%key, head//sentence(deprecation))
   end subroutine replace_entry
 
-  !> What a warning says.
+  !> Sentence of a warning.
   pure function sentence(deprecation) result(words)
-    !> What goes
+    !> The deprecation
     type(deprecation_t), intent(in) :: deprecation
     !> The sentence
     character(len=:), allocatable :: words

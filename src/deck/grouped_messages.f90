@@ -1,12 +1,11 @@
-!> Messages that differ in numbers alone, reported as one: numbers that differ stand as a range, those of plies as a
-!> list.
+!> Messages that differ in numbers alone, reported as one, with ranges of numbers and lists of plies.
 module grouped_messages
   use text, only: line_t
   implicit none
   private
   public :: skeleton, merged
 
-  !> Stands for a number in a skeleton.
+  !> Placeholder of a number.
   character, parameter :: mark = achar(1)
   character(len=*), parameter :: figures = '0123456789', letters = 'abcdefghijklmnopqrstuvwxyz_'// &
                                                                    'ABCDEFGHIJKLMNOPQRSTUVWXYZ'

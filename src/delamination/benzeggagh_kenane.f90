@@ -1,6 +1,5 @@
-!> When an interface gives way: energy release rate against toughness (Eq. 7 of the paper), with one
-!> toughness or with the mixed-mode one of M. L. Benzeggagh and M. Kenane, Composites Science and
-!> Technology 56 (1996) 439-449.
+!> Growth criterion of an interface: energy release rate over toughness (Eq. 7 of the paper), with one toughness or with
+!> the mixed-mode one of M. L. Benzeggagh and M. Kenane, Composites Science and Technology 56 (1996) 439-449.
 module benzeggagh_kenane
   use delamination_parameters, only: delamination_t
   use kinds, only: wp
@@ -10,14 +9,13 @@ module benzeggagh_kenane
 
 contains
 
-  !> Toughness of a mixture of modes less that of opening, (G_IIc - G_Ic) B**eta. Fronts and cohesive laws have it from
-  !> here.
+  !> Toughness of a mixture of modes minus that of opening, (G_IIc - G_Ic) B**eta, for fronts and cohesive laws.
   elemental real(wp) function toughness_gain(opening, shear, exponent, share) result(gain)
     !> Toughness of pure opening and of pure shear
     real(wp), intent(in) :: opening, shear
     !> Exponent eta
     real(wp), intent(in) :: exponent
-    !> Share B of shear in the energy
+    !> Fraction B of shear in the energy
     real(wp), intent(in) :: share
 
     gain = share**exponent*(shear - opening)
@@ -27,8 +25,7 @@ contains
   pure real(wp) function critical_release_rate(delamination, modes) result(critical)
     !> Toughnesses of the interface
     type(delamination_t), intent(in) :: delamination
-    !> Energy release rates G_I, G_II, G_III, none negative; only their ratios matter, and nothing
-    !> released counts as opening
+    !> Energy release rates G_I, G_II, G_III, not negative; only their ratios matter, zero rates count as opening
     real(wp), intent(in) :: modes(3)
     real(wp) :: shear
 

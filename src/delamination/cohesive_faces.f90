@@ -1,9 +1,8 @@
-!> Two faces at a point of a cohesive interface: the law while they part, the stiffness of the undamaged interface while
-!> they are pressed together, and friction between the damaged parts of faces that press on each other. Faces without
-!> contact pass through each other as far as they were damaged when the step began, so that tractions have a potential
-!> within a step; what is intact holds them in both directions. What it stores as they close is released as damage
-!> grows,
-!> and is found again in what the integrators take.
+!> Two faces at a point of a cohesive interface: cohesive law in opening, penalty stiffness of the undamaged interface
+!> in closing, and friction on the damaged part of the area under pressure. Without contact the damaged part, with the
+!> damage at the start of the step, has no stiffness in closing, so that tractions have a potential within a step; the
+!> undamaged part acts in both directions. Energy stored in closing is released by growing damage and booked as
+!> algorithmic dissipation.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, grown_damage, stored_energy
@@ -14,18 +13,18 @@ module cohesive_faces
   private
   public :: cohesive_faces_t
 
-  !> The faces at a point: how they are held together and apart.
+  !> Law, contact and friction of the faces at a point.
   type :: cohesive_faces_t
-    !> The law that holds them together
+    !> The cohesive law
     type(cohesive_law_t) :: law
-    !> True: they do not pass through each other where they are damaged
+    !> True: contact prevents penetration of damaged faces
     logical :: closing = .true.
-    !> Coulomb's coefficient of friction; 0: they slide freely
+    !> Coulomb's coefficient of friction; 0: none
     real(wp) :: friction = 0
   contains
     !> Traction of trial jumps.
     procedure :: traction
-    !> Energy per area that the jumps store.
+    !> Energy per area stored by the jumps.
     procedure :: stored
     !> Derivative of the traction.
     procedure :: slopes
@@ -37,7 +36,7 @@ module cohesive_faces
 
 contains
 
-  !> Traction of trial jumps, and what the point will remember if they are accepted.
+  !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine traction(self, jumps, old, force, new)
     !> The faces
     class(cohesive_faces_t), intent(in) :: self
@@ -45,7 +44,7 @@ contains
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
-    !> Force per area that pulls the faces back, or pushes them apart
+    !> Force per area against the jumps
     real(wp), intent(out) :: force(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(out) :: new
@@ -58,7 +57,7 @@ contains
     force(:2) = force(:2) + friction
   end subroutine traction
 
-  !> Energy per area that the jumps store.
+  !> Energy per area stored by the jumps.
   pure real(wp) function stored(self, jumps, point)
     !> The faces
     class(cohesive_faces_t), intent(in) :: self
@@ -80,7 +79,7 @@ contains
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
-    !> Derivatives of each traction (row) by each jump (column)
+    !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(3, 3)
 
     slopes = traction_slopes(self%law, jumps, separation_of(self%law, jumps, 0.0_wp), old)
@@ -88,7 +87,7 @@ contains
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
 
-  !> Diagonal for a factored operator, one value a class of point.
+  !> Diagonal for a factored operator, constant within a class of points.
   pure function diagonal(self, jumps, old)
     !> The faces
     class(cohesive_faces_t), intent(in) :: self
@@ -107,8 +106,8 @@ contains
     diagonal(:2) = diagonal(:2) + [slopes(1, 1), slopes(2, 2)]
   end function diagonal
 
-  !> Friction limit once a step is accepted: Coulomb's part of the pressure, on the part of the point that is
-  !> damaged (G. Alfano, E. Sacco 2006).
+  !> Friction limit of an accepted state: coefficient of friction times pressure times damaged fraction of the area (G.
+  !> Alfano, E. Sacco 2006).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
     !> The faces
     class(cohesive_faces_t), intent(in) :: self
@@ -121,7 +120,7 @@ contains
     if (pressed(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_opening*jumps(3)
   end function friction_limit
 
-  !> Slopes of friction.
+  !> Derivatives of the friction traction.
   pure function sticking(self, jumps, old) result(slopes)
     !> The faces
     type(cohesive_faces_t), intent(in) :: self
@@ -129,13 +128,13 @@ contains
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
-    !> Pressure per jump along the faces
+    !> Force per area and tangential jump
     real(wp) :: slopes(2, 2)
 
     slopes = friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
   end function sticking
 
-  !> Stiffness of faces that close: that of the interface, without contact that of what is left of it.
+  !> Stiffness of closing faces: that of the undamaged interface with contact, that of its undamaged part without.
   pure real(wp) function closing_stiffness(self, point) result(stiffness)
     !> The faces
     type(cohesive_faces_t), intent(in) :: self
@@ -146,7 +145,7 @@ contains
     if (.not. self%closing) stiffness = (1 - point%damage)*stiffness
   end function closing_stiffness
 
-  !> True where the faces press on each other.
+  !> True if the faces are under contact pressure.
   pure logical function pressed(self, jumps)
     !> The faces
     class(cohesive_faces_t), intent(in) :: self

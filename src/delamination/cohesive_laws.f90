@@ -1,10 +1,10 @@
-!> Cohesive law of an interface: what its traction against the jumps between two faces is made of.
+!> Cohesive law of an interface: parameters of the traction against the jumps between two faces.
 !>
-!> The curve is bilinear: linear up to the onset, then straight down to nothing at N times the jump of the onset.
-!> The area under it is the toughness of the present mixture of modes (M. L. Benzeggagh and M. Kenane, Composites
-!> Science and Technology 56 (1996) 439-449). N is the same for every mixture if stiffnesses and strengths keep
-!> K_s/K_n = (G_Ic/G_IIc) (tau/sigma)**2 (A. Turon et al., Composite Structures 92 (2010) 1857-1864); a point then
-!> needs no history but its damage.
+!> The curve is bilinear: linear up to the onset, then linear softening to zero at N times the jump of the onset. The
+!> area under it is the toughness of the present mixture of modes (M. L. Benzeggagh and M. Kenane, Composites Science
+!> and Technology 56 (1996) 439-449). N is the same for every mixture if stiffnesses and strengths keep K_s/K_n =
+!> (G_Ic/G_IIc) (tau/sigma)**2 (A. Turon et al., Composite Structures 92 (2010) 1857-1864); the damage is then the only
+!> history variable of a point.
 module cohesive_laws
   use kinds, only: wp
   use short_numbers, only: text_at_least
@@ -12,10 +12,10 @@ module cohesive_laws
   private
   public :: cohesive_law_t, create_cohesive_law, cohesive_objection, stiffness_of, weakened
 
-  !> Stiffness of the law over that of the layer beside it, K_n h/E3. A factor of ten either way moves the radius of a
-  !> grown delamination by 0.3 to 1.4 %; the iterations of a step fall by a third from 50 to 5.
+  !> Stiffness of the law over that of the adjacent layer, K_n h/E3. A factor of ten up or down changes the radius of a
+  !> grown delamination by 0.3 to 1.4 %; 5 instead of 50 saves a third of the iterations of a step.
   real(wp), parameter :: usual_stiffness = 5
-  !> Least jump at failure over jump at onset.
+  !> Smallest ratio of the jump at failure to that at onset.
   real(wp), parameter :: min_ratio = 20
 
   !> The law of one interface.
@@ -28,7 +28,7 @@ module cohesive_laws
     real(wp) :: mixing_exponent = 1.75_wp
     !> Strength sigma of pure opening and tau of pure shear
     real(wp) :: strength_opening = 0, strength_shear = 0
-    !> Growth of the shear strength with pressure, mu; the toughness grows with its square, N stays
+    !> Increase of the shear strength with pressure, mu; the toughness increases with its square, N is constant
     real(wp) :: pressure_strengthening = 0
     !> Jump at failure over jump at onset, N
     real(wp) :: failure_ratio = 0
@@ -47,7 +47,7 @@ contains
     real(wp), intent(in) :: strength(2)
     !> K_n, pressure per jump; 0: derived from the next two
     real(wp), intent(in) :: stiffness
-    !> Modulus across the plies beside the interface, E3
+    !> Through-thickness modulus of the adjacent plies, E3
     real(wp), intent(in) :: modulus
     !> Thickness of the thinner layer
     real(wp), intent(in) :: thickness
@@ -72,7 +72,7 @@ contains
     law%failure_ratio = min_ratio*law%stiffness_opening/min_stiffness(law)
   end function create_cohesive_law
 
-  !> Least stiffness of opening that leaves the fall of the curve gentle, 10 sigma**2/G_Ic.
+  !> Smallest stiffness of opening with a softening branch of the ratio `min_ratio`, 10 sigma**2/G_Ic.
   pure real(wp) function min_stiffness(law)
     !> The law, with toughness and strength of opening
     type(cohesive_law_t), intent(in) :: law
@@ -80,11 +80,11 @@ contains
     min_stiffness = min_ratio*law%strength_opening**2/(2*law%toughness_opening)
   end function min_stiffness
 
-  !> What is wrong with a law, or an empty text.
+  !> Objection to the parameters of a law; empty: none.
   pure function cohesive_objection(law) result(objection)
     !> The law
     type(cohesive_law_t), intent(in) :: law
-    !> One clause for the user; empty: nothing is wrong
+    !> A clause of a message; empty: no objection
     character(len=:), allocatable :: objection
 
     objection = ''
@@ -104,13 +104,13 @@ contains
     end if
   end function cohesive_objection
 
-  !> A law with less strength in every mode, of the same stiffness and toughness: its curve falls the farther.
+  !> A law with strengths reduced by a factor, of the same stiffness and toughness: its jump at failure is larger.
   pure function weakened(law, part) result(weak)
     !> The law
     type(cohesive_law_t), intent(in) :: law
-    !> Part of the strengths that is left, above 0 and up to 1
+    !> Strength factor, above 0 and up to 1
     real(wp), intent(in) :: part
-    !> The same with less strength
+    !> The reduced law
     type(cohesive_law_t) :: weak
 
     weak = law

@@ -1,7 +1,7 @@
 !> One point of a cohesive interface: traction against the jumps between its faces, damage, energies.
 !>
-!> Jumps, tractions and stiffnesses stand in the order: two shears along the interface, opening. Closing faces are
-!> left to contact: a negative opening counts as none. Jumps of any finite size are met without overflow.
+!> Components are ordered as: two shears along the interface, opening. A negative opening counts as zero and is subject
+!> to contact. Finite jumps of any size cause no overflow.
 module cohesive_points
   use benzeggagh_kenane, only: toughness_gain
   use cohesive_laws, only: cohesive_law_t, stiffness_of
@@ -10,14 +10,14 @@ module cohesive_points
   implicit none
   private
   public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, point_class, opened, &
-            undamaged_energy, stored_energy, mode_mixity, dissipated_share, share_growth, damage_at_share
+            undamaged_energy, stored_energy, mode_mixity, dissipated_fraction, fraction_growth, damage_at_fraction
 
-  !> Classes of points: without damage, damaged and not growing, growing in this state, without traction for good.
+  !> Classes of points: undamaged, damaged without growth, with growing damage in this state, failed.
   integer, parameter, public :: point_intact = 0, point_damaged = 1, point_growing = 2, point_failed = 3
 
-  !> What a point of the interface remembers; changes only when a step is accepted.
+  !> History variables of a point of the interface, changed only when a step is accepted.
   type :: cohesive_point_t
-    !> Part of the stiffness that is lost, d: 0 intact, 1 failed
+    !> Damage d, the lost fraction of the stiffness: 0 intact, 1 failed
     real(wp) :: damage = 0
     !> Energy dissipated per area, e
     real(wp) :: dissipated = 0
@@ -25,13 +25,13 @@ module cohesive_points
     type(sliding_t) :: sliding
   end type cohesive_point_t
 
-  !> How far jumps reach along the curve.
+  !> Position of jumps on the curve.
   type :: separation_t
-    !> Largest of the jumps, closing not counted
+    !> Largest jump, without closing
     real(wp) :: size = 0
     !> The jumps over their size
     real(wp) :: unit(3) = 0
-    !> Energy per area of these unit jumps in an undamaged interface, and the share of shear in it, B
+    !> Energy per area of these unit jumps in an undamaged interface, and its fraction of shear B
     real(wp) :: unit_energy = 0, shear_share = 0
     !> Toughness G_c of this mixture of modes under this pressure
     real(wp) :: toughness = 0
@@ -41,7 +41,7 @@ module cohesive_points
 
 contains
 
-  !> Traction of trial jumps, and what the point will remember if they are accepted.
+  !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine cohesive_traction(law, jumps, pressure, old, traction, new)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -51,7 +51,7 @@ contains
     real(wp), intent(in) :: pressure
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
-    !> Force per area that pulls the faces back; no normal one where they close
+    !> Force per area against the jumps; normal component zero in closing
     real(wp), intent(out) :: traction(3)
     !> The point with these jumps
     type(cohesive_point_t), intent(out) :: new
@@ -59,23 +59,23 @@ contains
 
     separation = separation_of(law, jumps, pressure)
     new%damage = grown_damage(law, separation, old)
-    new%dissipated = old%dissipated + separation%toughness*share_growth(law, old%damage, new%damage)
+    new%dissipated = old%dissipated + separation%toughness*fraction_growth(law, old%damage, new%damage)
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
-  !> How far jumps reach along the curve: x = sqrt(N Y/G_c).
+  !> Position of jumps on the curve: x = sqrt(N Y/G_c).
   pure function separation_of(law, jumps, pressure) result(separation)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> Contact pressure; none if negative
+    !> Contact pressure; negative: none
     real(wp), intent(in) :: pressure
-    !> Place on the curve
+    !> Position on the curve
     type(separation_t) :: separation
     real(wp) :: size, s1, s2, n, shear, energy, share, unit_ratio, toughness
 
-    ! Plain numbers: with arrays and components this took five times as long.
+    ! Scalars, since arrays and components take five times as long.
     toughness = law%toughness_opening
     if (pressure > 0) toughness = toughness*(1 + law%pressure_strengthening*pressure/law%strength_shear)**2
     separation%toughness = toughness
@@ -87,7 +87,7 @@ contains
     shear = law%stiffness_shear*(s1**2 + s2**2)/2
     energy = shear + law%stiffness_opening*n**2/2
     share = shear/energy
-    ! A power takes longer than all the rest.
+    ! The power is the most expensive operation.
     if (share > 0 .and. abs(law%toughness_shear - law%toughness_opening) > 0) &
       toughness = toughness*(1 + toughness_gain(1.0_wp, law%toughness_shear/law%toughness_opening, &
                                                 law%mixing_exponent, share))
@@ -97,7 +97,7 @@ contains
     separation%unit_energy = energy
     separation%shear_share = share
     separation%toughness = toughness
-    ! No product beyond failure, where jumps near the largest number would overflow. Jumps that are no numbers go on.
+    ! No product beyond failure, where very large jumps would overflow. NaN is passed on.
     if (size >= law%failure_ratio/unit_ratio) then
       separation%ratio = law%failure_ratio
     else
@@ -105,11 +105,11 @@ contains
     end if
   end function separation_of
 
-  !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, and never less than before.
+  !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, not decreasing.
   pure real(wp) function grown_damage(law, separation, old) result(damage)
     !> The law
     type(cohesive_law_t), intent(in) :: law
-    !> Place of the jumps on the curve
+    !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
@@ -136,17 +136,17 @@ contains
     if (new%damage >= 1) class_of_point = point_failed
   end function point_class
 
-  !> The jumps that the law sees.
+  !> Jumps of the cohesive law.
   pure function opened(jumps) result(opening_jumps)
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> The same, a closing one as none
+    !> The same with a closing jump set to zero
     real(wp) :: opening_jumps(3)
 
     opening_jumps = [jumps(1), jumps(2), max(jumps(3), 0.0_wp)]
   end function opened
 
-  !> Energy per area that these jumps would store in an undamaged interface, Y.
+  !> Energy per area of these jumps in an undamaged interface, Y.
   pure real(wp) function undamaged_energy(law, jumps) result(energy)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -156,7 +156,7 @@ contains
     energy = sum(stiffness_of(law)*opened(jumps)**2)/2
   end function undamaged_energy
 
-  !> Energy per area that unloading gives back, (1 - d) Y.
+  !> Recoverable energy per area, (1 - d) Y.
   pure real(wp) function stored_energy(law, jumps, point) result(energy)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -169,7 +169,7 @@ contains
     if (point%damage < 1) energy = (1 - point%damage)*undamaged_energy(law, jumps)
   end function stored_energy
 
-  !> Share of shear in the energy of the jumps, B; 0 without jumps.
+  !> Fraction of shear in the energy of the jumps, B; 0 without jumps.
   pure real(wp) function mode_mixity(law, jumps) result(share)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -181,28 +181,28 @@ contains
     share = separation%shear_share
   end function mode_mixity
 
-  !> Part of the toughness that a damage has dissipated: phi(d) = d/(N (1 - d) + d), from 0 to 1.
-  pure real(wp) function dissipated_share(law, damage) result(share)
+  !> Dissipated fraction of the toughness at a damage: phi(d) = d/(N (1 - d) + d), from 0 to 1.
+  pure real(wp) function dissipated_fraction(law, damage) result(share)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> d, from 0 to 1
     real(wp), intent(in) :: damage
 
     share = damage/(law%failure_ratio*(1 - damage) + damage)
-  end function dissipated_share
+  end function dissipated_fraction
 
-  !> Damage that has dissipated a part of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi).
-  pure real(wp) function damage_at_share(law, share) result(damage)
+  !> Damage for a dissipated fraction of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi).
+  pure real(wp) function damage_at_fraction(law, share) result(damage)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> phi, from 0 to 1
     real(wp), intent(in) :: share
 
     damage = 1 - (1 - share)/(1 + (law%failure_ratio - 1)*share)
-  end function damage_at_share
+  end function damage_at_fraction
 
-  !> phi(d) - phi(d_old), free of cancellation however little the damage has grown.
-  pure real(wp) function share_growth(law, damage_from, damage_to) result(growth)
+  !> phi(d) - phi(d_old), without cancellation for small increments of damage.
+  pure real(wp) function fraction_growth(law, damage_from, damage_to) result(growth)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Damage before and after, from 0 to 1
@@ -212,5 +212,5 @@ contains
     from = law%failure_ratio*(1 - damage_from) + damage_from
     to = law%failure_ratio*(1 - damage_to) + damage_to
     growth = law%failure_ratio*(damage_to - damage_from)/(from*to)
-  end function share_growth
+  end function fraction_growth
 end module cohesive_points

@@ -1,10 +1,9 @@
-!> Stiffness of a point of a cohesive interface: the derivative of its traction, and the diagonal that a factored
-!> operator holds for it.
+!> Stiffness of a point of a cohesive interface: derivative of its traction, and its diagonal in a factored operator.
 module cohesive_tangents
   use benzeggagh_kenane, only: toughness_gain
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, separation_t, separation_of, grown_damage, point_class, &
-                             share_growth, point_growing, point_failed
+                             fraction_growth, point_growing, point_failed
   use kinds, only: wp
   implicit none
   private
@@ -12,19 +11,19 @@ module cohesive_tangents
 
 contains
 
-  !> Derivative of the traction: (1 - d) diag(K), where damage grows less (K v) (x) dd/dv with
-  !> dd/dx = N/((N - 1) x**2) and dx/dv = (dY/Y - dG_c/G_c) x/2. Closing faces have no normal part. Unsymmetric is only
-  !> growth in a mixed mode with G_Ic /= G_IIc.
+  !> Derivative of the traction: (1 - d) diag(K), where damage grows less (K v) (x) dd/dv with dd/dx = N/((N - 1) x**2)
+  !> and dx/dv = (dY/Y - dG_c/G_c) x/2. Closing faces have no normal part. It is unsymmetric only for growth in a mixed
+  !> mode with G_Ic /= G_IIc.
   pure function traction_slopes(law, jumps, separation, old) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> Their place on the curve
+    !> Their position on the curve
     type(separation_t), intent(in) :: separation
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
-    !> Derivatives of each traction (row) by each jump (column)
+    !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(3, 3)
     type(cohesive_point_t) :: new
     real(wp) :: stiffness(3), growth(3)
@@ -44,11 +43,11 @@ contains
     end do
   end function traction_slopes
 
-  !> Derivative of growing damage by the jumps over their size: with these nothing over- or underflows.
+  !> Derivative of growing damage with respect to the jumps over their size, which avoids overflow and underflow.
   pure function damage_slopes(law, separation) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law
-    !> Place of the jumps on the curve
+    !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
     !> Damage per jump over its size
     real(wp) :: slopes(3)
@@ -58,7 +57,7 @@ contains
     slopes = slopes*law%failure_ratio/(2*(law%failure_ratio - 1)*separation%ratio)
   end function damage_slopes
 
-  !> Derivative of the energy dissipated, G_c (phi(d) - phi(d_old)): nothing unless damage grows.
+  !> Derivative of the dissipated energy G_c (phi(d) - phi(d_old)); zero unless damage grows.
   pure function dissipation_slopes(law, jumps, pressure, old) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -79,17 +78,17 @@ contains
     new%damage = grown_damage(law, separation, old)
     if (point_class(old, new) /= point_growing) return
     remainder = law%failure_ratio*(1 - new%damage) + new%damage
-    slopes = toughness_slopes(law, separation)*share_growth(law, old%damage, new%damage) + &
+    slopes = toughness_slopes(law, separation)*fraction_growth(law, old%damage, new%damage) + &
              separation%toughness*law%failure_ratio/remainder**2*damage_slopes(law, separation)
     slopes = slopes/separation%size
   end function dissipation_slopes
 
-  !> Derivative of the toughness by the jumps over their size: eta (G_II - G_I) B**eta (dS/S - dY/Y) with S the energy
-  !> of shear, 0 where there is none.
+  !> Derivative of the toughness with respect to the jumps over their size: eta (G_II - G_I) B**eta (dS/S - dY/Y) with
+  !> the energy of shear S; 0 without shear.
   pure function toughness_slopes(law, separation) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law
-    !> Place of the jumps on the curve
+    !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
     !> Energy per area
     real(wp) :: slopes(3)
@@ -104,9 +103,9 @@ contains
     slopes = slopes*law%mixing_exponent*mixture*strengthening/separation%unit_energy
   end function toughness_slopes
 
-  !> Diagonal for a factored operator, one value a class of point: K where intact, (1 - d) K where damaged, where it
-  !> grows nothing along the jump and (1 - d) K across it, nothing once failed. Never negative. Whether the faces
-  !> close makes no difference: contact comes on top.
+  !> Diagonal for a factored operator, constant within a class of points: K if undamaged, (1 - d) K if damaged, with
+  !> growing damage 0 along the jump and (1 - d) K across it, 0 after failure. It is not negative and does not depend on
+  !> closing: contact is added separately.
   pure function operator_stiffness(law, jumps, pressure, old) result(diagonal)
     !> The law
     type(cohesive_law_t), intent(in) :: law

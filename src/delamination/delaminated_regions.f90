@@ -1,4 +1,4 @@
-!> The delaminated cells of one interface, and the nodes whose two faces are released there.
+!> Delaminated cells of one interface, and the released nodes.
 module delaminated_regions
   use archives, only: archive_t
   use kinds, only: wp
@@ -8,7 +8,7 @@ module delaminated_regions
   private
   public :: delaminated_region_t, create_region, cells_within, extent_of_cells
 
-  !> The cells of a zone, intact or delaminated, within the grid of the whole model. Only ever grows.
+  !> Cells of a zone, intact or delaminated, within the grid of the model. Delaminated cells do not heal.
   type, extends(nine_node_grid_t) :: delaminated_region_t
     !> First and last column, then row, of the zone's cells
     integer :: columns(2) = 0, rows(2) = 0
@@ -19,7 +19,7 @@ module delaminated_regions
     procedure :: in_zone
     !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
-    !> True for a node whose two faces are released.
+    !> True for a released node.
     procedure :: released
     !> Delaminates a cell.
     procedure :: release
@@ -29,8 +29,8 @@ module delaminated_regions
 
 contains
 
-  !> The region of a zone with the starter as its only delamination. The starter takes the cells whose
-  !> middle lies in its square or circle; a starter smaller than a cell takes those that touch its centre.
+  !> The region of a zone with the starter as its only delamination. The starter consists of the cells with the centre
+  !> in its square or circle; one smaller than a cell consists of the cells that touch its centre.
   pure function create_region(mesh, zone, starter, strip, round, at) result(self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -66,7 +66,7 @@ contains
     if (round) call round_off(self, mesh, centre, starter)
   end function create_region
 
-  !> Leaves of a square starter the cells whose middle lies in its circle, and those that touch its centre.
+  !> Reduces a square starter to the cells with the centre in its circle, and those that touch its centre.
   pure subroutine round_off(self, mesh, centre, diameter)
     !> The region, with the square
     type(delaminated_region_t), intent(inout) :: self
@@ -99,7 +99,7 @@ contains
     end function touches
   end subroutine round_off
 
-  !> Delaminates the cells of a zone whose middle lies in a strip across it.
+  !> Delaminates the cells of a zone with the centre in a strip across it.
   pure subroutine delaminate_strip(self, x_edges, strip)
     !> The region
     type(delaminated_region_t), intent(inout) :: self
@@ -116,8 +116,8 @@ contains
     end do
   end subroutine delaminate_strip
 
-  !> First and last of the cells whose middle lies within an extent centred on the struck point;
-  !> at least those that touch the struck point.
+  !> First and last cell with the centre within an extent centred on the struck point; at least those that touch the
+  !> struck point.
   pure function cells_within(edges, extent) result(range)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)
@@ -131,7 +131,7 @@ contains
 
     cells = size(edges) - 1
     rounding = 1.0e-9_wp*(edges(cells + 1) - edges(1))
-    ! A centre on the border is outside whatever the units round it to.
+    ! A centre on the border is outside, independent of round-off in any units.
     taken = abs(edges(:cells) + edges(2:)) < extent - rounding .or. &
             (edges(:cells) < rounding .and. edges(2:) > -rounding)
     range = [findloc(taken, .true., dim=1), cells]
@@ -140,17 +140,17 @@ contains
     end do
   end function cells_within
 
-  !> What the cells within an extent really extend over on the full plate, as they are taken whole.
+  !> Extent of the entire cells within an extent, on the full plate.
   pure real(wp) function extent_of_cells(edges, extent) result(taken)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)
-    !> Full extent asked for
+    !> Requested full extent
     real(wp), intent(in) :: extent
     integer :: range(2)
 
     range = cells_within(edges, extent)
     taken = edges(range(2) + 1) - edges(range(1))
-    ! A model that begins at the plate's centre, and is struck there, is half of the line.
+    ! A model that begins at the plate's centre and is struck there is half of the line.
     if (edges(1) > -1.0e-9_wp*edges(size(edges))) taken = 2*taken
   end function extent_of_cells
 
@@ -175,8 +175,8 @@ contains
     if (is_delaminated) is_delaminated = self%delaminated(column, row)
   end function is_delaminated
 
-  !> True if all cells around a node are delaminated. Beyond the model's border and its symmetry lines
-  !> there is no cell to ask; nodes on the zone's own border are never released, as both layers share them.
+  !> True if all cells around a node are delaminated, those of the model only. Nodes on the border of the zone are not
+  !> released, as both layers share them.
   pure logical function released(self, i, j)
     !> The region
     class(delaminated_region_t), intent(in) :: self
@@ -195,7 +195,7 @@ contains
     released = .true.
   end function released
 
-  !> Delaminates a cell of the zone. Nothing happens if it is outside the zone.
+  !> Delaminates a cell; no effect outside the zone.
   pure subroutine release(self, cell)
     !> The region
     class(delaminated_region_t), intent(inout) :: self
@@ -205,11 +205,11 @@ contains
     if (self%in_zone(cell(1), cell(2))) self%delaminated(cell(1), cell(2)) = .true.
   end subroutine release
 
-  !> Saves or loads the region with the place of its zone.
+  !> Saves or loads the region with the position of its zone.
   subroutine visit(self, archive, name)
     !> The region
     class(delaminated_region_t), intent(inout) :: self
-    !> Where to or from
+    !> The archive
     class(archive_t), intent(inout) :: archive
     !> Name of the region within the archive
     character(len=*), intent(in) :: name

@@ -87,13 +87,13 @@ contains
 
   !> All interfaces, in the order of the deck.
   subroutine fill_delaminations(settings, length, strengths, between, delaminations)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Lengths of the plate, for the usual starter
+    !> Lengths of the plate, for the default starter
     real(wp), intent(in) :: length(2)
     !> Strengths YT and S12 of each ply, 0 where not given, (2, plies)
     real(wp), intent(in) :: strengths(:, :)
-    !> Plies below which the angle changes; empty if they aren't known
+    !> Plies below which the angle changes; empty: not known
     integer, intent(in) :: between(:)
     !> Receives them
     type(delamination_t), allocatable, intent(out) :: delaminations(:)
@@ -117,13 +117,13 @@ contains
 
   !> One interface.
   subroutine fill_delamination(settings, place, starter, delamination)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
-    !> Side of the starter of a front unless the deck gives it
+    !> Default side of the starter of a front
     real(wp), intent(in) :: starter
-    !> Receives it; its law is known
+    !> Receives it; its law is set
     type(delamination_t), intent(inout) :: delamination
 
     delamination%starter = merge(starter, 0.0_wp, delamination%law == law_front .and. &
@@ -160,9 +160,9 @@ contains
 
   !> The law of one interface, cohesive unless a starter is given, and its strengths.
   subroutine fill_law(settings, place, strengths, delamination)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Strengths YT and S12 of each ply, 0 where not given, (2, plies)
     real(wp), intent(in) :: strengths(:, :)
@@ -183,11 +183,11 @@ contains
     call fill_strength(settings, place, 'strength_shear', weaker(2), delamination%strength_shear)
   end subroutine fill_law
 
-  !> True if the deck means a cohesive law without saying so: it asks for nothing of a front, and strengths are known.
+  !> True if a cohesive law is the default: no key of a front is given, and strengths are known.
   pure logical function suits_cohesive(settings, place, of_plies) result(suits)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Strengths YT and S12 of the weaker ply; 0: not given
     real(wp), intent(in) :: of_plies(2)
@@ -201,7 +201,7 @@ contains
   pure logical function needs_front(settings, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -210,11 +210,11 @@ contains
     needs_front = any([(settings%is_given(group, names(i)%text, place), i=1, size(names))])
   end function needs_front
 
-  !> One strength: the key, or that of the plies.
+  !> One strength: that of the key, or by default that of the plies.
   subroutine fill_strength(settings, place, key, of_plies, strength)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> The key
     character(len=*), intent(in) :: key
@@ -229,7 +229,7 @@ contains
     if (settings%is_given(group, key, place)) strength = settings%real_of(group, key, place)
   end subroutine fill_strength
 
-  !> Each interface by itself, and their order.
+  !> Checks each interface, and their order.
   subroutine check_delaminations(settings, delaminations, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -262,13 +262,13 @@ contains
     end do
   end subroutine check_delaminations
 
-  !> A strip from a smaller x to a larger one, and no square beside it.
+  !> Checks that a strip has ascending ends, and that no square starter is given too.
   subroutine check_strip(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -282,13 +282,13 @@ contains
     end if
   end subroutine check_strip
 
-  !> Toughnesses that go together, and that the energy release rate can be held against.
+  !> Checks that toughnesses are consistent, and suffice for the energy release rate.
   subroutine check_toughness(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -302,13 +302,13 @@ contains
     end if
   end subroutine check_toughness
 
-  !> A cohesive law needs strengths, and interfaces of one kind.
+  !> Checks strengths of a cohesive law, and that all interfaces have the same kind of law.
   subroutine check_strengths(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -320,30 +320,30 @@ contains
       return
     end if
     call check_law(settings, delamination, place, problems)
-    ! Without a place there are no plies whose strengths it might have.
+    ! Without a position there are no adjacent plies with strengths.
     if (delamination%below_ply < 1) return
-    if (.not. delamination%strength_opening > 0) call want('strength_opening', 'or YT of the materials.')
-    if (.not. delamination%strength_shear > 0) call want('strength_shear', 'or S12 of the materials.')
+    if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
+    if (.not. delamination%strength_shear > 0) call require('strength_shear', 'or S12 of the materials.')
 
   contains
 
-    !> Reports a strength that is missing, unless its key has a fault already.
-    subroutine want(key, other)
-      !> The key, and what serves as well
+    !> Reports a missing strength, unless its key already has an error.
+    subroutine require(key, other)
+      !> The key, and its alternative
       character(len=*), intent(in) :: key, other
 
       if (are_clear(settings, problems, group, key, place)) call report(settings, problems, group, key, &
         'is missing; a cohesive law needs it, '//other, place)
-    end subroutine want
+    end subroutine require
   end subroutine check_strengths
 
-  !> A stiffness that leaves the fall of the curve gentle.
+  !> Checks the stiffness of the law.
   subroutine check_law(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -360,13 +360,13 @@ contains
     if (objection /= '') call report(settings, problems, group, 'stiffness', objection//'.', place)
   end subroutine check_law
 
-  !> What an interface asks for but has no effect.
+  !> Remarks on keys of an interface without effect.
   subroutine remark_idle_keys(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
@@ -391,7 +391,7 @@ contains
     subroutine idle(key, reason)
       !> The key
       character(len=*), intent(in) :: key
-      !> Why it changes nothing
+      !> Reason why it has no effect
       character(len=*), intent(in) :: reason
 
       call remark_idle(settings, problems, group, key, 'has no effect '//reason//'.', place)

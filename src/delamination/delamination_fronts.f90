@@ -14,7 +14,7 @@ module delamination_fronts
     integer :: inside(2) = 0, outside(2) = 0
     !> Outward normal: along x (1) or y (2), and its sign
     integer :: direction = 0, sign = 0
-    !> True where the zone ends: the delamination cannot grow here
+    !> True at the border of the zone, where the delamination cannot grow
     logical :: at_border = .false.
     !> Nodes of the edge: first corner, middle and second corner, corners in ascending order of coordinates
     integer :: edge(3) = 0
@@ -24,8 +24,8 @@ module delamination_fronts
 
 contains
 
-  !> All segments of a region's front; those into the same intact cell follow each other. Edges on the
-  !> model's own border and on its symmetry lines are no front.
+  !> All segments of a region's front, sorted by intact cell. Edges on the border of the model and on its symmetry lines
+  !> are not part of the front.
   pure function find_front(region, mesh) result(segments)
     !> The delaminated cells
     type(delaminated_region_t), intent(in) :: region
@@ -78,7 +78,7 @@ contains
     segment%sign = sign
     segment%at_border = .not. region%in_zone(segment%outside(1), segment%outside(2))
     do line = 1, 3
-      ! The edge is one line further than the middle of the cell.
+      ! The edge is one line of nodes beyond the centre of the cell.
       place = middle_line(inside) + step + (line - 2)*along
       segment%edge(line) = region%node_at(place(1), place(2))
     end do
@@ -95,7 +95,7 @@ contains
     integer, intent(in) :: cell(2)
     !> Direction
     integer, intent(in) :: direction
-    ! Bounds of the edges are asked for, as they need not start at 0.
+    ! The lower bound of the edges need not be 0.
     integer :: first
 
     if (direction == 1) then

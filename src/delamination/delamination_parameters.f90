@@ -1,4 +1,4 @@
-!> Delamination of one interface, as the deck gives it.
+!> Parameters of the delamination of one interface in the deck.
 module delamination_parameters
   use kinds, only: wp
   implicit none
@@ -6,20 +6,20 @@ module delamination_parameters
   public :: delamination_t, interface_objection, toughness_objection, default_starter, default_smoothing, toughnesses, &
             law_of
 
-  !> What holds the faces and lets them part: a cohesive law of tractions against jumps, or ties that a front releases
-  !> by its energy release rate.
+  !> Models of delamination: cohesive law of tractions against jumps, or ties released at a front by the energy release
+  !> rate.
   integer, parameter, public :: law_front = 1, law_cohesive = 2
-  !> Ways to the energy release rate: strain states on both sides of the front (Eq. 11 with its sign
-  !> put right), or virtual crack closure.
+  !> Methods for the energy release rate: strain states on both sides of the front (Eq. 11 with corrected sign), or
+  !> virtual crack closure.
   integer, parameter, public :: release_two_state = 1, release_vcct = 2
-  !> Growth: cells are released at a frozen time until no front exceeds its toughness, or one a step
-  !> (section 3.3.3 of the paper).
+  !> Growth: cells are released at frozen time until no front exceeds its toughness, or one cell per step (section 3.3.3
+  !> of the paper).
   integer, parameter, public :: growth_equilibrium = 1, growth_one_per_step = 2
-  !> Intact faces: their jumps are no unknowns, or penalised as in the paper.
+  !> Ties of intact faces: jumps are eliminated, or penalised as in the paper.
   integer, parameter, public :: tie_eliminate = 1, tie_penalty = 2
   !> Contact of delaminated faces.
   integer, parameter, public :: contact_augmented_lagrangian = 1, contact_continuous_penalty = 2, contact_none = 3
-  !> While the impactor rebounds: real contact, or both faces glued together (Eq. 13b).
+  !> Faces while the impactor rebounds: contact, or glued (Eq. 13b).
   integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
 
   !> One interface that may delaminate. It has many components because two laws share
@@ -27,7 +27,7 @@ module delamination_parameters
   type :: delamination_t
     !> The interface lies below this ply
     integer :: below_ply = 0
-    !> Group of the deck that brings it
+    !> Index of its group in the deck
     integer :: group = 1
     !> Critical energy release rate of every mode, G_c; 0: the mixed-mode values below hold
     real(wp) :: toughness = 0
@@ -35,10 +35,10 @@ module delamination_parameters
     real(wp) :: toughness_opening = 0, toughness_shear = 0
     !> Exponent eta of Benzeggagh and Kenane
     real(wp) :: mixing_exponent = 1.75_wp
-    !> Full extents of the layered rectangle along x and y, centred on the struck point: of one that follows the damage
-    !> those of the present
+    !> Full extents of the layered rectangle along x and y, centred on the struck point; of an adaptive one the present
+    !> extents
     real(wp) :: zone(2) = 0
-    !> True: the layered rectangle grows as the damage needs it
+    !> True: the layered rectangle is adaptive
     logical :: follows = .false.
     !> Side of the square starter, or diameter of the round one
     real(wp) :: starter = 0
@@ -46,7 +46,7 @@ module delamination_parameters
     logical :: starter_round = .false.
     !> Its centre, from the struck point
     real(wp) :: starter_at(2) = 0
-    !> First and last x of a starter across the whole width of the zone, if the first is smaller
+    !> First and last x of a starter across the full width of the zone, if the first is smaller
     real(wp) :: starter_strip(2) = 0
     !> law_front or law_cohesive
     integer :: law = law_front
@@ -56,13 +56,13 @@ module delamination_parameters
     real(wp) :: stiffness = 0
     !> Coulomb's coefficient of friction between separated faces
     real(wp) :: friction = 0
-    !> True: damage starts earlier beside cracks of the neighbouring plies
+    !> True: reduced strengths beside cracks of the adjacent plies
     logical :: cracks_as_flaws = .false.
-    !> True: damage starts beside cracks of transverse shear in the neighbouring plies at the shear that opens them
+    !> True: beside cracks by transverse shear in the adjacent plies damage starts at the shear stress that opens these
     logical :: shear_cracks = .false.
-    !> What cracks_as_flaws leaves of the strengths: the part that the cells resolve
+    !> Strength factor of cracks_as_flaws: the fraction of the strengths that the cells resolve
     real(wp) :: flaw_strength = 1
-    !> Growth of the cohesive law's shear strength with pressure, mu
+    !> Increase of the cohesive law's shear strength with pressure, mu
     real(wp) :: pressure_strengthening = 0
     !> release_two_state or release_vcct
     integer :: energy_release = release_vcct
@@ -82,18 +82,18 @@ module delamination_parameters
     real(wp) :: smoothing = 0
   end type delamination_t
 
-  !> Cells at least over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about their mean,
-  !> with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of what it books, with 2.6 cells .84.
+  !> Smallest number of cells over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about
+  !> their mean, with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of the booked energy, with 2.6
+  !> cells .84.
   integer, parameter, public :: min_smoothed_cells = 5
 
-  !> Properties that two runs must have in common for one to start with the damage of the other, by their names in the
-  !> deck.
+  !> Keys with values that must be equal for a run to start with the damage of another one.
   character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
     'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
 
 contains
 
-  !> What the damage of an interface depends on.
+  !> Values of these keys.
   pure function law_of(delamination) result(numbers)
     !> The interface
     type(delamination_t), intent(in) :: delamination
@@ -107,8 +107,8 @@ contains
     end associate
   end function law_of
 
-  !> Distance over which a front is smoothed unless the deck says it: stresses beside a front change within a thickness,
-  !> so nothing is resolved by less.
+  !> Default distance over which a front is smoothed: stresses near a front vary over a thickness, so that a smaller
+  !> distance resolves nothing more.
   pure real(wp) function default_smoothing(thickness, cell) result(distance)
     !> Thickness of the laminate, and length of the mean cell
     real(wp), intent(in) :: thickness, cell
@@ -123,13 +123,13 @@ contains
     side = sqrt(5.0e-4_wp*product(length))
   end function default_starter
 
-  !> What is wrong with the place of an interface, or an empty text.
+  !> Objection to the position of an interface; empty: none.
   pure function interface_objection(delamination, plies) result(objection)
     !> The parameters
     type(delamination_t), intent(in) :: delamination
     !> Number of plies of the laminate
     integer, intent(in) :: plies
-    !> One clause for the user; empty: nothing is wrong
+    !> A clause of a message; empty: no objection
     character(len=:), allocatable :: objection
 
     objection = ''
@@ -137,11 +137,11 @@ contains
       objection = 'below_ply must name a ply that has another one below it'
   end function interface_objection
 
-  !> What is wrong with the toughnesses together, or an empty text.
+  !> Objection to the combination of toughnesses; empty: none.
   pure function toughness_objection(delamination) result(objection)
     !> The parameters
     type(delamination_t), intent(in) :: delamination
-    !> One clause for the user; empty: nothing is wrong
+    !> A clause of a message; empty: no objection
     character(len=:), allocatable :: objection
 
     objection = ''

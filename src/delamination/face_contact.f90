@@ -1,13 +1,13 @@
 !> Contact of two delaminated faces at one node: pressure against gap, frictionless.
 !>
-!> Both methods hold an estimate of the pressure, the multiplier, while the equations of motion are solved
-!> with the pressure's dependence on the gap; the outer loop then takes the pressure found as the next
-!> multiplier until the gap closes exactly where there is pressure. (Eq. 13a of the paper taken as a fixed
-!> point diverges for most stiffnesses.) A converged state is the same for any stiffness and method.
+!> Both methods keep an estimate of the pressure, the multiplier, constant while the equations of motion are solved with
+!> the pressure as a function of the gap. The outer loop sets the multiplier to this pressure until the gap is zero
+!> wherever there is pressure. (Eq. 13a of the paper as a fixed-point iteration diverges for most stiffnesses.) A
+!> converged state is the same for any stiffness and method.
 !>
-!> Eq. 12 as printed has a kink at the closed gap, between whose two sides Newton's method goes to and fro without
-!> end for exponents above 1. Here the pressure's slope at the closed gap is the same on both sides, as the paper
-!> says ("first-order continuous"): the pressure is then convex, and Newton's method comes down to it from one side.
+!> Eq. 12 as printed has a kink at gap 0, about which Newton's method oscillates for exponents above 1. Here the slope
+!> of the pressure at gap 0 is the same on both sides, as the paper states ("first-order continuous"): the pressure is
+!> then convex, and Newton's method converges monotonically.
 module face_contact
   use delamination_parameters, only: contact_augmented_lagrangian, contact_continuous_penalty, contact_none
   use kinds, only: wp
@@ -20,21 +20,22 @@ module face_contact
   !> and 10 factorizations, 1000 to 1e6 2 to 5 updates and 4 to 10 (augmented Lagrangian; the continuous
   !> penalty with q = 1 the same updates and 4 to 14, with q = 1.5 2 to 4 updates and 15 to 30).
   real(wp), parameter :: usual_stiffness = 1.0e3_wp
-  !> The same for the augmented Lagrangian between the steps of a motion, whose pressures change little: it leaves
-  !> gaps so small that the first pressures found mostly stand.
+  !> The same for the augmented Lagrangian in steps in time, where pressures change little: gaps are so small that the
+  !> first pressures mostly meet the tolerance.
   real(wp), parameter :: moving_stiffness = 2.0e6_wp
   !> Decay of the pressure times the mean gap (section 3.4 of the paper).
   real(wp), parameter :: decay_factor = 1.5_wp
-  !> Slope of the steepest tail over the stiffness: rounding of the gap is still less than the pressures' own error.
+  !> Largest slope of the exponential tail over the stiffness: round-off of the gap is then below the error of the
+  !> pressures.
   real(wp), parameter :: steepest = 1.0e5_wp
-  !> A pressure below this part of stiffness times gap is none: the faces are clearly open.
+  !> Pressures below this fraction of stiffness times gap are set to zero: the faces are open.
   real(wp), parameter :: open_fraction = 1.0e-9_wp
 
   !> Pressure against gap.
   type :: contact_law_t
     !> contact_augmented_lagrangian, contact_continuous_penalty or contact_none
     integer :: method = contact_augmented_lagrangian
-    !> Transverse stiffness of the layers, pressure per length: modulus across the plies over the thickness of the
+    !> Transverse stiffness of the layers, pressure per length: through-thickness modulus over the thickness of the
     !> thinner layer
     real(wp) :: layer_stiffness = 0
     !> Pressure per length of penetration
@@ -53,11 +54,11 @@ contains
     integer, intent(in) :: method
     !> Exponent q of Eq. 12
     real(wp), intent(in) :: exponent
-    !> Transverse stiffness of the layers: modulus across the plies over the thickness of the thinner layer
+    !> Transverse stiffness of the layers: through-thickness modulus over the thickness of the thinner layer
     real(wp), intent(in) :: transverse_stiffness
     !> Thickness of the thinner layer
     real(wp), intent(in) :: thickness
-    !> True for the steps of a motion, false for load steps
+    !> True for steps in time, false for load steps
     logical, intent(in) :: moving
     !> The law
     type(contact_law_t) :: law
@@ -70,11 +71,11 @@ contains
     law%length = thickness
   end function create_contact_law
 
-  !> The decay that suits the gaps: 1.5 over the mean gap (section 3.4 of the paper, where it is printed as
-  !> proportional to it), the mean weighted by the pressures. The plain mean is ruled by faces that are wide open,
-  !> and the pressures settle so slowly with it that most had not after 80 updates. The weighted mean shrinks as
-  !> the faces under pressure meet, and 2 to 6 updates do, be the faces held back by stiffness or by inertia.
-  !> A new step starts with a tail as steep as the contact is stiff.
+  !> Decay for given gaps: 1.5 over the mean gap (section 3.4 of the paper, where it is printed as proportional to it),
+  !> weighted by the pressures. The unweighted mean is dominated by widely open faces, with which most pressures have
+  !> not converged after 80 updates. The weighted mean decreases as the faces under pressure close, and 2 to 6 updates
+  !> suffice, in load steps and in steps in time. A new step starts with the slope of the tail equal to the contact
+  !> stiffness.
   elemental real(wp) function updated_decay(law, gaps, pressures, largest_pressure, converged) result(decay)
     !> The law
     type(contact_law_t), intent(in) :: law
@@ -93,8 +94,8 @@ contains
     if (gaps*decay > decay_factor*pressures) decay = decay_factor*pressures/gaps
   end function updated_decay
 
-  !> What is missing from pressure only at closed faces: the lesser of the pressure and of the pressure that
-  !> would close the gap in the layers' own thickness.
+  !> Violation of complementarity: the smaller of the pressure and the pressure that would close the gap by compression
+  !> of the layers.
   elemental real(wp) function contact_residual(law, gap, pressure) result(mismatch)
     !> The law
     type(contact_law_t), intent(in) :: law
@@ -106,7 +107,7 @@ contains
     mismatch = abs(min(pressure, law%layer_stiffness*gap))
   end function contact_residual
 
-  !> Pressure and its derivative by the gap. Pressure never pulls.
+  !> Pressure and its derivative with respect to the gap. The pressure is not negative.
   elemental subroutine contact_pressure(law, decay, gap, multiplier, pressure, slope)
     !> The law
     type(contact_law_t), intent(in) :: law
@@ -118,7 +119,7 @@ contains
     real(wp), intent(in) :: multiplier
     !> Pressure
     real(wp), intent(out) :: pressure
-    !> Derivative of the pressure by the gap, not positive
+    !> Derivative of the pressure with respect to the gap, not positive
     real(wp), intent(out) :: slope
 
     if (law%method == contact_continuous_penalty) then
@@ -145,7 +146,7 @@ contains
     real(wp), intent(in) :: multiplier
     !> Pressure
     real(wp), intent(out) :: pressure
-    !> Derivative of the pressure by the gap, not positive
+    !> Derivative of the pressure with respect to the gap, not positive
     real(wp), intent(out) :: slope
     real(wp) :: closing
 
@@ -166,7 +167,7 @@ contains
     end if
   end subroutine continuous_pressure
 
-  !> The next multiplier: the pressure found, or nothing where the faces are clearly open.
+  !> The next multiplier: the pressure found, or zero where the faces are open.
   elemental real(wp) function updated_multiplier(law, gap, pressure) result(updated)
     !> The law
     type(contact_law_t), intent(in) :: law

@@ -1,36 +1,36 @@
-!> Coulomb friction between faces that press on each other: a traction along them against their sliding.
+!> Coulomb friction between faces under pressure: tangential traction against sliding.
 !>
 !> Faces stick elastically up to a limit, as in G. Alfano and E. Sacco, International Journal for Numerical Methods in
-!> Engineering 68 (2006) 542-582: the traction is K (s - slip), and what of the jumps s it can't hold becomes slip. The
-!> limit holds through a step. So the force has an energy, its derivative is symmetric, and what slipping takes is
-!> never negative, however the pressure changes.
+!> Engineering 68 (2006) 542-582: the traction is K (s - slip), and jumps s beyond the limit become slip. The limit is
+!> constant in a step, so that the traction has a potential, its derivative is symmetric, and the frictional heat is not
+!> negative, however the pressure changes.
 module face_friction
   use kinds, only: wp
   implicit none
   private
   public :: sliding_t, friction_traction, friction_slopes, friction_energy
 
-  !> What faces at a point remember of their sliding.
+  !> History variables of friction at a point.
   type :: sliding_t
-    !> Jumps along the faces at which friction would not act
+    !> Tangential jumps without friction traction
     real(wp) :: slip(2) = 0
     !> Friction limit, force per area
     real(wp) :: limit = 0
-    !> Energy that slipping has turned into heat, per area
+    !> Frictional heat per area
     real(wp) :: heat = 0
   end type sliding_t
 
 contains
 
-  !> Traction against sliding, and what the faces will remember if the jumps are accepted.
+  !> Friction traction, and the history variables of the trial state.
   pure subroutine friction_traction(stiffness, jumps, old, traction, new)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness
-    !> Jumps along the faces
+    !> Tangential jumps
     real(wp), intent(in) :: jumps(2)
     !> The faces in the last accepted state, with the limit of this step
     type(sliding_t), intent(in) :: old
-    !> Force per area that pulls the faces back
+    !> Force per area against the jumps
     real(wp), intent(out) :: traction(2)
     !> The faces with these jumps
     type(sliding_t), intent(out) :: new
@@ -45,15 +45,15 @@ contains
     new%heat = old%heat + old%limit*((size - old%limit)/stiffness)
   end subroutine friction_traction
 
-  !> Derivative of that traction: where faces slip, only the direction of the traction changes.
+  !> Derivative of the friction traction; during slip only its direction changes.
   pure function friction_slopes(stiffness, jumps, old) result(slopes)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness
-    !> Jumps along the faces
+    !> Tangential jumps
     real(wp), intent(in) :: jumps(2)
     !> The faces in the last accepted state, with the limit of this step
     type(sliding_t), intent(in) :: old
-    !> Derivatives of each traction (row) by each jump (column)
+    !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(2, 2)
     real(wp) :: trial(2), size, part
 
@@ -67,11 +67,11 @@ contains
     slopes(:, 2) = part*([0.0_wp, 1.0_wp] - trial*trial(2))
   end function friction_slopes
 
-  !> Energy per area that faces hold as they stick.
+  !> Elastic energy per area of sticking faces.
   pure real(wp) function friction_energy(stiffness, jumps, point) result(energy)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness
-    !> Jumps along the faces
+    !> Tangential jumps
     real(wp), intent(in) :: jumps(2)
     !> The faces with these jumps
     type(sliding_t), intent(in) :: point

@@ -1,9 +1,9 @@
-!> The smooth line that a front of whole cells stands for, and means along it.
+!> Smooth line through a stepped front of cells, and means along it.
 !>
 !> A stepped front concentrates tie forces at its corners: their products with the openings, cell by cell, scatter by
 !> half of their mean on any mesh. Forces and openings are therefore averaged along the smooth front before they are
-!> multiplied. The line goes through the middles of the edges, by a parabola about each edge; the length that an edge
-!> stands for is its projection on the line.
+!> multiplied. The line is a parabola fitted to the midpoints of the edges around each edge; the length of an edge is
+!> its projection on the line.
 module front_smoothing
   use delamination_fronts, only: front_segment_t
   use dense_systems, only: solve_dense
@@ -13,42 +13,42 @@ module front_smoothing
   private
   public :: smooth_front_t, near_front_t, create_smooth_front
 
-  !> Cells within which the edges about one of them make its piece of the line. With 4 in place of 3 the rates of
-  !> stepped discs change by 1.5 % at most.
+  !> Cells within which edges contribute to the parabola of an edge. With 4 in place of 3 the rates of stepped discs
+  !> change by at most 1.5 %.
   integer, parameter :: cells_of_line = 3
-  !> Lines of nodes, to each side of an edge's middle, among which its nodes are looked for: two cells and a half.
+  !> Lines of nodes to each side of an edge's midpoint in the search for its nodes: two and a half cells.
   integer, parameter :: lines_beside = 5
-  !> Relative difference of distances that counts as none.
+  !> Relative tolerance of equal distances.
   real(wp), parameter :: distance_tolerance = 1.0e-6_wp
 
   !> A front with its smooth line.
   type :: smooth_front_t
-    !> Point of the line beside the middle of each edge, and normal there away from the delamination, (2, segments)
+    !> Point of the line next to the midpoint of each edge, and outward normal there, (2, segments)
     real(wp), allocatable :: place(:, :), normal(:, :)
-    !> Length of the line that each edge stands for; none at the border of the zone
+    !> Length of the line for each edge; zero at the border of the zone
     real(wp), allocatable :: length(:)
     !> Length of the cells ahead and behind
     real(wp), allocatable :: ahead(:), behind(:)
-    !> Distance of the middle of the cell ahead from the line
+    !> Distance of the centre of the cell ahead from the line
     real(wp), allocatable :: offset(:)
-    !> Directions in which the front goes on beyond a line of symmetry through the origin
+    !> Directions in which the front continues beyond a line of symmetry through the origin
     logical :: mirrored(2) = .false.
   contains
     !> Means along the line.
     procedure :: means
-    !> Part of a segment's figures that counts for another.
+    !> Weight of a segment in the mean of another.
     procedure :: weight
-    !> Nodes beside the front.
+    !> Nodes near the front.
     procedure :: beside
   end type smooth_front_t
 
-  !> Nodes beside a front, each with the edge nearest to it; one that has several edges comes several times.
+  !> Nodes near a front, each with its closest edge; a node with several closest edges is repeated.
   type :: near_front_t
     !> Node, and segment, (places)
     integer, allocatable :: node(:), segment(:)
     !> Distance of the node ahead of the line, (places)
     real(wp), allocatable :: distance(:)
-    !> Part of the node that belongs to the segment, (places)
+    !> Weight of the node in the segment, (places)
     real(wp), allocatable :: share(:)
   end type near_front_t
 
@@ -83,10 +83,10 @@ contains
                                 self%normal(:, s)), s=1, size(segments))]
   end function create_smooth_front
 
-  !> Point and normal of the line beside an edge: a parabola through the middles of the edges about it, weighted by
-  !> their projections and falling off to zero within a reach.
+  !> Point and normal of the line next to an edge: a parabola fitted to the midpoints of the surrounding edges, with
+  !> weights by their projections that decrease to zero within a distance.
   subroutine fit_line(middles, normals, widths, mirrored, s, reach, place, normal)
-    !> Middles and normals of all edges, (2, segments)
+    !> Midpoints and normals of all edges, (2, segments)
     real(wp), intent(in) :: middles(:, :), normals(:, :)
     !> Their lengths
     real(wp), intent(in) :: widths(:)
@@ -94,12 +94,12 @@ contains
     logical, intent(in) :: mirrored(2)
     !> The edge
     integer, intent(in) :: s
-    !> The reach
+    !> The distance
     real(wp), intent(in) :: reach
     !> Receive point and normal
     real(wp), intent(out) :: place(2), normal(2)
-    !> Stiffness against slope and bend, for a front of one edge or two.
-    real(wp), parameter :: held = 1.0e-6_wp
+    !> Regularisation of slope and curvature, for a front of one or two edges.
+    real(wp), parameter :: regularisation = 1.0e-6_wp
     real(wp) :: matrix(3, 3), fit(3), powers(3), from(2), mean(2), near
     integer :: t, image, pass
     logical :: singular
@@ -124,11 +124,12 @@ contains
           end if
         end do
       end do
-      ! A front that faces itself across one cell has its own normal.
-      if (pass == 1) normal = merge(mean/max(norm2(mean), tiny(near)), normals(:, s), norm2(mean) > held*widths(s))
+      ! A front that faces another part of itself across one cell keeps its own normal.
+      if (pass == 1) normal = merge(mean/max(norm2(mean), tiny(near)), normals(:, s), &
+                                    norm2(mean) > regularisation*widths(s))
     end do
-    matrix(2, 2) = matrix(2, 2) + held*matrix(1, 1)
-    matrix(3, 3) = matrix(3, 3) + held*matrix(1, 1)
+    matrix(2, 2) = matrix(2, 2) + regularisation*matrix(1, 1)
+    matrix(3, 3) = matrix(3, 3) + regularisation*matrix(1, 1)
     call solve_dense(matrix, fit, singular)
     if (singular) fit = 0
     place = middles(:, s) + fit(1)*normal
@@ -136,17 +137,17 @@ contains
     normal = normal/norm2(normal)
   end subroutine fit_line
 
-  !> Sums along the line about a segment, falling off to zero within a reach.
+  !> Weighted sums along the line about a segment, with weights that decrease to zero within a distance.
   pure function means(self, s, reach, figures, odd) result(smooth)
     !> The front
     class(smooth_front_t), intent(in) :: self
     !> The segment
     integer, intent(in) :: s
-    !> Distance at which a segment no longer counts
+    !> Distance of zero weight
     real(wp), intent(in) :: reach
-    !> Figures of each segment, sums over its length, (figures, segments)
+    !> Quantities of each segment, integrated over its length, (quantities, segments)
     real(wp), intent(in) :: figures(:, :)
-    !> True for figures that change their sign in a mirror: those along the line
+    !> True for quantities that change sign under reflection: those along the line
     logical, intent(in) :: odd(:)
     !> Their sums, weighted
     real(wp) :: smooth(size(figures, 1))
@@ -163,16 +164,16 @@ contains
     end do
   end function means
 
-  !> Part of a segment's figures, or of its image's, that counts for another: it falls off with the distance, and with
-  !> the cosine between the normals.
+  !> Weight of a segment, or of its image, in the mean of another: it decreases with the distance and with the cosine
+  !> between the normals.
   pure real(wp) function weight(self, s, t, image, reach)
     !> The front
     class(smooth_front_t), intent(in) :: self
-    !> The segment that means are for, and the other one
+    !> The segment of the mean, and the other one
     integer, intent(in) :: s, t
-    !> Image of the other one, 0 to 3; one that is not there counts nothing
+    !> Image of the other one, 0 to 3; images that do not exist have weight 0
     integer, intent(in) :: image
-    !> Distance at which it no longer counts
+    !> Distance of zero weight
     real(wp), intent(in) :: reach
 
     weight = 0
@@ -225,7 +226,7 @@ contains
     end do
   end function beside
 
-  !> True for the model itself, image 0, and for those of its images that are there: 1 across x, 2 across y, 3 both.
+  !> True for the model, image 0, and for its existing images: 1 across x, 2 across y, 3 both.
   pure logical function is_image(image, mirrored)
     !> The image
     integer, intent(in) :: image
@@ -245,7 +246,7 @@ contains
     signs = 1 - 2*[modulo(image, 2), image/2]
   end function signs
 
-  !> Direction along the line: its normal turned by a right angle.
+  !> Direction along the line: its normal rotated by 90 degrees.
   pure function turned(normal) result(along)
     !> The normal
     real(wp), intent(in) :: normal(2)

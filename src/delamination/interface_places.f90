@@ -1,4 +1,4 @@
-!> Which interfaces a group of the deck brings: those below the plies that it lists, or those that a word stands for.
+!> Interfaces of a group of the deck: those below the listed plies, or those selected by a word.
 module interface_places
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
@@ -15,8 +15,8 @@ module interface_places
 
 contains
 
-  !> Plies below which there are interfaces: those that the next ply continues in another direction or material. Plies
-  !> of one angle and material are one: nothing parts them.
+  !> Plies below which there are interfaces: those followed by a ply of another angle or material. Plies of one angle
+  !> and material do not separate.
   pure function interfaces_between(angles, materials) result(below)
     !> Fibre angle of each ply, degrees
     real(wp), intent(in) :: angles(:)
@@ -33,11 +33,11 @@ contains
     end associate
   end function interfaces_between
 
-  !> Plies above the interfaces of a group. One that has none keeps one without a place, which the checks refuse.
+  !> Plies above the interfaces of a group; without any, one invalid entry, which the checks refuse.
   pure function plies_above(settings, place, between) result(below)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Plies below which the angle changes
     integer, intent(in) :: between(:)
@@ -49,18 +49,18 @@ contains
     if (size(below) == 0) below = [0]
   end function plies_above
 
-  !> True if a word stands for the interfaces.
+  !> True if the interfaces are selected by a word.
   pure logical function names_all(settings, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
 
     names_all = any(lower_case(settings%text_of(group, key_below_ply, place)) == &
                        [character(len=14) :: 'all', 'between_angles'])
   end function names_all
 
-  !> Says which interfaces `all` leaves out, as plies of one angle are one.
+  !> Reports the interfaces that `all` leaves out, between plies of one angle.
   subroutine remark_left_out(settings, plies, between, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

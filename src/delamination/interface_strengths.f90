@@ -11,8 +11,8 @@ module interface_strengths
 
 contains
 
-  !> Strengths of the interface below each ply: those of its cohesive law, else S12 and YT of the weaker neighbour; none
-  !> between plies that are alike.
+  !> Strengths of the interface below each ply: those of its cohesive law, else S12 and YT of the weaker adjacent ply;
+  !> none between equal plies.
   pure function interlaminar_strengths(plies, materials, delaminations) result(strengths)
     !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
@@ -20,14 +20,14 @@ contains
     type(material_t), intent(in) :: materials(:)
     !> Interfaces that may delaminate; not allocated: none
     type(delamination_t), allocatable, intent(in) :: delaminations(:)
-    !> In shear and opening; 0: not known, or plies that are alike, (2, plies - 1)
+    !> In shear and opening; 0: not known, or equal plies, (2, plies - 1)
     real(wp) :: strengths(2, size(plies) - 1)
     integer :: i
 
     strengths = 0
     do i = 1, size(strengths, 2)
       if (are_alike(plies(i), plies(i + 1))) cycle
-      ! 0 stands for a strength that is not known.
+      ! 0: strength not known.
       associate (beside => materials(plies(i:i + 1)%material))
         strengths(:, i) = [minval(beside%s12), minval(beside%yt)]
       end associate
@@ -35,7 +35,7 @@ contains
     if (.not. allocated(delaminations)) return
     do i = 1, size(delaminations)
       associate (interface => delaminations(i))
-        ! A deck whose scales are looked at before it is checked may name a ply that is none.
+        ! A deck that is not yet checked may name a ply that does not exist.
         if (interface%below_ply < 1 .or. interface%below_ply > size(strengths, 2)) cycle
         if (interface%strength_shear > 0) strengths(1, interface%below_ply) = interface%strength_shear
         if (interface%strength_opening > 0) strengths(2, interface%below_ply) = interface%strength_opening

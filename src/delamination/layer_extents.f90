@@ -1,6 +1,5 @@
-!> Extents of a layered rectangle that grows with the damage: full extents along x and y, centred on the struck point,
-!> as
-!> the deck would give them. Centred, so that a quarter and the full plate are layered alike.
+!> Extents of an adaptive layered rectangle: full extents along x and y, centred on the struck point, so that a quarter
+!> and the full plate have the same layers.
 module layer_extents
   use delaminated_regions, only: cells_within
   use kinds, only: wp
@@ -8,26 +7,25 @@ module layer_extents
   private
   public :: largest_extents, widened_extent
 
-  !> Onset index from which a cell is layered: layers have twice the shear strength's room to settle in before it counts
-  !> what they do.
+  !> Onset index from which a cell is layered: layers are inserted at half of the strength, before their effect on the
+  !> onset matters.
   real(wp), parameter, public :: onset_of_layers = 0.5_wp
-  !> Cells of layers kept ahead of damage, and cells by which layers then grow beyond what is needed, so that they grow
-  !> seldom. What other numbers change: doc/manual/delamination.md.
+  !> Layered cells required ahead of damage, and additional cells of each extension, so that extensions are few. The
+  !> effect of other numbers is given in doc/manual/delamination.md.
   integer, parameter, public :: cells_ahead = 3, cells_at_once = 4
-  !> Thicknesses of the laminate that the layers reach at least beyond damage, patch and starter: the shear that they
-  !> take otherwise than the plate does settles within that.
+  !> Smallest extension of the layers beyond damage, patch and starter, in thicknesses of the laminate: the disturbance
+  !> of shear by layers decays within this distance.
   real(wp), parameter, public :: thicknesses_ahead = 2
-  !> Part of a cell that rounding may take away or add.
+  !> Tolerance for round-off, as a fraction of a cell.
   real(wp), parameter :: rounding = 1.0e-6_wp
 
 contains
 
-  !> Extents that layers may come to: they are meant to stay within the core, or else the plate; a run reports if they
-  !> leave the core.
+  !> Largest extents of layers: the core, or without one the plate; a run reports if damage leaves the core.
   pure function largest_extents(extents, core, cell, length) result(largest)
-    !> Those of the present, of the core, and the plate's lengths
+    !> Present extents, those of the core, and the plate's lengths
     real(wp), intent(in) :: extents(2), core(2), length(2)
-    !> Side of the core's cells; 0: there is no core
+    !> Side of the core's cells; 0: no core
     real(wp), intent(in) :: cell
     !> Along x and y
     real(wp) :: largest(2)
@@ -35,8 +33,8 @@ contains
     largest = merge(max(extents, core), length, cell > 0)
   end function largest_extents
 
-  !> Extent that reaches so many cells farther than another, of the size of its outermost ones: where cells grow with
-  !> the distance, a few go the same way. At least one more cell, if there is one.
+  !> Extent widened by a number of cells of the size of its outermost ones on each side: fewer where cells grow with the
+  !> distance, at least one more cell if there is one.
   pure real(wp) function widened_extent(edges, extent, cells, least) result(wider)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)
@@ -44,7 +42,7 @@ contains
     real(wp), intent(in) :: extent
     !> Cells on each side
     integer, intent(in) :: cells
-    !> Length that it reaches farther at least, to whole cells
+    !> Smallest length of the extension, rounded up to cells
     real(wp), intent(in), optional :: least
     real(wp) :: reach
     integer :: range(2), last

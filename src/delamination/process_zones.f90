@@ -1,5 +1,5 @@
-!> Process zone of a cohesive interface: the length over which traction falls from its strength to nothing ahead of a
-!> front, what a mesh resolves of it, and what the check says where it doesn't.
+!> Process zone of a cohesive interface: the length ahead of a front over which traction decreases from the strength to
+!> zero, its resolution by a mesh, and the warning of the check.
 !>
 !> Between plates the length depends on their thickness h and bending modulus E', not on the interface alone:
 !> sqrt(E' G_IIc h)/tau in shear, (E' G_Ic/sigma**2)**(1/4) h**(3/4) in opening. Strips under end moments gave, as
@@ -14,12 +14,12 @@ module process_zones
   public :: process_zone_t, shear_zone_length, opening_zone_length, resolved_shear_strength, &
             resolved_opening_strength, resolved_part, resolving_cell, is_resolved, process_zone_warning
 
-  !> Cells in a process zone that resolve it.
+  !> Number of cells that resolve a process zone.
   real(wp), parameter, public :: resolving_cells = 2.5_wp
-  !> Strengths over those that the cells resolve, above which the check warns: of shear, of opening.
+  !> Ratio of the strengths to those that the cells resolve above which the check warns: shear, opening.
   real(wp), parameter :: tolerated_shear = 1.5_wp, tolerated_opening = 1.2_wp
 
-  !> What the process zone of one interface depends on.
+  !> Data of the process zone of an interface.
   type :: process_zone_t
     !> Bending modulus 12 D/h**3 of the thinner layer in the direction of growth
     real(wp) :: modulus = 0
@@ -31,8 +31,8 @@ module process_zones
     real(wp) :: strength_opening = 0, strength_shear = 0
     !> Longest side of a cell in the layered zone
     real(wp) :: cell = 0
-    !> True: loads pull the layers apart, so that opening may govern. Under an impactor growth is in shear: there, .9
-    !> cells in the zone of opening kept the force within 2 % of the closed form (input/verify/cohesive_threshold.nml).
+    !> True: loads may open the interface, so that opening may govern. Under an impactor growth is in shear: .9 cells in
+    !> the zone of opening keep the force within 2 % of the closed form (input/verify/cohesive_threshold.nml).
     logical :: is_pulled = .true.
   end type process_zone_t
 
@@ -54,7 +54,7 @@ contains
     length = sqrt(sqrt(zone%modulus*zone%toughness_opening*zone%thickness**3)/zone%strength_opening)
   end function opening_zone_length
 
-  !> Strength of shear whose process zone is 2.5 cells long.
+  !> Shear strength with a process zone of 2.5 cells.
   pure real(wp) function resolved_shear_strength(zone) result(strength)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -62,7 +62,7 @@ contains
     strength = sqrt(zone%modulus*zone%toughness_shear*zone%thickness)/(resolving_cells*zone%cell)
   end function resolved_shear_strength
 
-  !> Strength of opening whose process zone is 2.5 cells long.
+  !> Strength of opening with a process zone of 2.5 cells.
   pure real(wp) function resolved_opening_strength(zone) result(strength)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -70,7 +70,7 @@ contains
     strength = sqrt(zone%modulus*zone%toughness_opening*zone%thickness**3)/(resolving_cells*zone%cell)**2
   end function resolved_opening_strength
 
-  !> Part of the strengths that the cells resolve, of those that count, at most 1.
+  !> Fraction of the governing strengths that the cells resolve, at most 1.
   pure real(wp) function resolved_part(zone) result(part)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -79,7 +79,7 @@ contains
     if (zone%is_pulled) part = min(part, resolved_opening_strength(zone)/zone%strength_opening)
   end function resolved_part
 
-  !> Longest side of cells that resolve the strengths, the process zones that count 2.5 cells long or longer.
+  !> Longest side of cells with at least 2.5 cells in the governing process zones.
   pure real(wp) function resolving_cell(zone) result(cell)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -88,7 +88,8 @@ contains
     if (zone%is_pulled) cell = min(cell, opening_zone_length(zone)/resolving_cells)
   end function resolving_cell
 
-  !> False: the cells are so long that the check warns, below 1.7 in the zone of shear or 2.3 in that of opening.
+  !> False: the check warns of cells that are too long, with fewer than 1.7 in the zone of shear or 2.3 in that of
+  !> opening.
   pure logical function is_resolved(zone)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -98,18 +99,18 @@ contains
                                       zone%strength_opening <= tolerated_opening*resolved_opening_strength(zone)
   end function is_resolved
 
-  !> What the check says of an interface, or an empty text if its process zone is resolved. Numbers have the units of
-  !> the deck, lengths the given one.
+  !> Warning of the check for an interface; empty if its process zone is resolved. Numbers have the units of the deck,
+  !> lengths the given one.
   pure function process_zone_warning(zone, below_ply, unit, size_of_unit) result(warning)
     !> The interface
     type(process_zone_t), intent(in) :: zone
-    !> It lies below this ply
+    !> Ply above the interface
     integer, intent(in) :: below_ply
-    !> Unit of lengths with a blank before it, or nothing for that of the deck
+    !> Unit of lengths after a blank; empty: that of the deck
     character(len=*), intent(in) :: unit
-    !> That unit in the deck's own
+    !> That unit in units of the deck
     real(wp), intent(in) :: size_of_unit
-    !> Two sentences, or nothing
+    !> Two sentences, or empty
     character(len=:), allocatable :: warning
     real(wp) :: shear, opening
 

@@ -1,4 +1,4 @@
-!> Numbers of three digits for the reader of a warning.
+!> Numbers of three digits for messages.
 module short_numbers
   use kinds, only: wp
   use text, only: to_text
@@ -6,7 +6,7 @@ module short_numbers
   private
   public :: short_text, text_at_least, text_at_most
 
-  !> Numbers this near to one of three digits are meant to be it.
+  !> Relative tolerance within which a number equals one of three digits.
   real(wp), parameter :: blur = 1.0e-12_wp
 
 contains
@@ -21,7 +21,7 @@ contains
     digits = to_text(rounded(value, 'rn'))
   end function short_text
 
-  !> A least value that may be typed as it is printed: three digits, not smaller than the number.
+  !> A number rounded up to three digits, as a lower bound that can be typed.
   pure function text_at_least(value) result(digits)
     !> The number
     real(wp), intent(in) :: value
@@ -31,7 +31,7 @@ contains
     digits = to_text(rounded(value, 'ru'))
   end function text_at_least
 
-  !> A largest value that may be typed as it is printed: three digits, not larger than the number.
+  !> A number rounded down to three digits, as an upper bound that can be typed.
   pure function text_at_most(value) result(digits)
     !> The number
     real(wp), intent(in) :: value
@@ -51,7 +51,7 @@ contains
 
     write (digits, '(rn,es12.2e3)') value
     read (digits, *) rounded
-    ! The binary form of 0.005 lies above 0.005: rounded up it would read 0.00501.
+    ! The binary form of 0.005 is above 0.005 and would be rounded up to 0.00501.
     if (abs(rounded - value) <= blur*abs(value)) return
     write (digits, '('//mode//',es12.2e3)') value
     read (digits, *) rounded

@@ -1,4 +1,4 @@
-!> Closed forms for the force on a plate at which delaminations grow, to be held against what a run finds.
+!> Delamination threshold force: closed forms for comparison with the result of a run.
 module threshold_forces
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -12,7 +12,7 @@ contains
   !> Bending stiffness of the isotropic plate that deflects as an orthotropic one does under a force at its middle,
   !> D* = sqrt(D11 D22 (A + 1)/2) with A = (D12 + 2 D66)/sqrt(D11 D22) (Olsson, Composites A 32 (2001) 1207).
   pure real(wp) function effective_bending_stiffness(stiffness) result(bending)
-    !> Section stiffness of the whole laminate: A, B and D, each 11, 12, 16, 22, 26, 66, then shear
+    !> Section stiffness of the full laminate: A, B and D, each 11, 12, 16, 22, 26, 66, then shear
     real(wp), intent(in) :: stiffness(21)
     real(wp) :: mean
 
@@ -35,8 +35,8 @@ contains
     force = pi*sqrt(32*bending*toughness/(interfaces + 2))
   end function threshold_force
 
-  !> What that force is to be multiplied with for one delamination of a certain area under a load spread over a square:
-  !> 1/(1 - rp**2/(2 a**2)), rp and a the radii of the circles of equal area.
+  !> Factor of that force for one delamination of a given area under a load distributed over a square: 1/(1 - rp**2/(2
+  !> a**2)), rp and a the radii of the circles of equal area.
   pure real(wp) function patch_factor(patch, area) result(factor)
     !> Side of the square
     real(wp), intent(in) :: patch

@@ -1,13 +1,12 @@
 !> Energy release rates at the front of a delamination.
 !>
-!> Virtual crack closure. A front that moves on by a length b frees the tie forces F over it, and the jumps there become
-!> those that are now behind the front: a force at the distance d ahead acts on the jump at b - d behind. Closing that
-!> again takes the work of forces that grow in proportion to the closing, so G b = 1/2 sum of F.d for each unit of
-!> length along the front. The jump is a parabola through the smooth line of the front, where it vanishes, fitted
-!> to the nodes behind it. Both are moments of forces and jumps at the nodes, which can be averaged along the front
-!> before they are multiplied. On a straight front with equal cells, b one of them, this is the closure of nine-node
-!> elements: the force on the front with the jump one cell behind, and the force half a cell ahead with the jump half a
-!> cell behind.
+!> Virtual crack closure. When a front advances by b, the tie forces F over this length are released, and the jumps
+!> there become those now behind the front: a force at distance d ahead acts on the jump at b - d behind. The work to
+!> close them again gives G b = 1/2 sum of F.d per unit length of the front. The jump is a parabola fitted to the nodes
+!> behind the smooth line of the front, on which it vanishes. Both enter as moments of forces and jumps at the nodes,
+!> which are averaged along the front before they are multiplied. On a straight front with equal cells, b one of them,
+!> this is the closure of nine-node elements: the force on the front with the jump one cell behind, and the force half a
+!> cell ahead with the jump half a cell behind.
 module virtual_crack_closure
   use dense_systems, only: solve_dense
   use kinds, only: wp
@@ -16,24 +15,23 @@ module virtual_crack_closure
   private
   public :: two_state_release, carried_over, segment_mean, closure_moments, closure_rates
 
-  !> Figures of a node that closure is made of: sums of forces times powers 0 to 2 of their distance ahead, of powers 2
-  !> to 4 of the distance behind, and of jumps times its powers 1 and 2. Components are across the front, along it and
+  !> Number of moments of a node for the closure integral: forces times powers 0 to 2 of the distance ahead, powers 2 to
+  !> 4 of the distance behind, and jumps times its powers 1 and 2. Components are normal to the front, along it and
   !> through the thickness.
   integer, parameter, public :: closure_figures = 18
-  !> True for those along the front, which change their sign in a mirror.
+  !> True for those along the front, which change sign under reflection.
   logical, parameter, public :: closure_odd(closure_figures) = &
     [.false., .true., .false., .false., .true., .false., .false., .true., .false., .false., .false., .false., &
      .false., .true., .false., .false., .true., .false.]
-  !> Cells behind the front whose nodes the jump is fitted to, times the cell: on slanting fronts too a whole cell.
+  !> Distance behind the front, in cells, over which the jump is fitted: a full cell on oblique fronts, too.
   real(wp), parameter :: fitted = sqrt(2.0_wp)*(1 + 1.0e-6_wp)
 
 contains
 
-  !> Energy release rate at a node of the front from the strains on both of its sides, Eq. 11 with the
-  !> sign of Eq. 9 put right: with the same stiffness on both sides, sum of N'(E' - E) - (N'E' - NE)/2
-  !> is half the square of the jump of strain. The stiffness is that of the plies as they are, damaged or
-  !> not, and one for both sides: two different ones would count the damage as released. Strains found in cells of
-  !> another stiffness are first `carried_over`.
+  !> Energy release rate at a node of the front from the strains on both of its sides, Eq. 11 with the sign of Eq. 9
+  !> corrected: with the same stiffness on both sides, the sum of N'(E' - E) - (N'E' - NE)/2 is half the square of the
+  !> jump of strain. The stiffness is that of the plies with their damage, the same for both sides: two different ones
+  !> would count damage as released energy. Strains of cells of another stiffness are first converted by `carried_over`.
   pure real(wp) function two_state_release(stiffness, delaminated, intact) result(rate)
     !> Section stiffness of the layers above and below the interface, (21, layers)
     real(wp), intent(in) :: stiffness(:, :)
@@ -51,13 +49,13 @@ contains
     end do
   end function two_state_release
 
-  !> Strains that a layer would have beyond a straight border to plies of another stiffness. Across the border the
-  !> forces and moments that act on it and the strains along it are the same; the strains across it differ. So a
-  !> jump of stiffness alone leaves no jump between states carried to one stiffness.
+  !> Strains of a layer converted across a straight border to plies of another stiffness. Forces and moments on the
+  !> border and strains along it are continuous; the strains across it differ. A jump of stiffness alone then causes no
+  !> difference between converted states.
   function carried_over(strains, from, to, direction) result(carried)
     !> Membrane strains, curvatures, transverse shear strains of the layer
     real(wp), intent(in) :: strains(8)
-    !> Section stiffness where they were found and beyond the border
+    !> Section stiffness of the strains, and beyond the border
     real(wp), intent(in) :: from(21), to(21)
     !> Normal of the border: x (1) or y (2)
     integer, intent(in) :: direction
@@ -73,7 +71,7 @@ contains
     force = matmul(full_stiffness(from) - matrix, strains)
     associate (n => across(:, direction))
       change = force(n)
-      ! Positive definite, as every section stiffness is.
+      ! Positive definite, as are all section stiffnesses.
       call solve_dense(matrix(n, n), change, singular)
       carried(n) = strains(n) + change
     end associate
@@ -112,19 +110,19 @@ contains
     mean = sum(rates)/3
   end function segment_mean
 
-  !> What a node brings to the closure of a front.
+  !> Moments of a node for the closure integral.
   pure function closure_moments(normal, distance, ahead, behind, tied, weight, force, jump) result(figures)
-    !> Normal of the front beside the node, away from the delamination
+    !> Outward normal of the front next to the node
     real(wp), intent(in) :: normal(2)
     !> Distance of the node ahead of the front, negative behind it
     real(wp), intent(in) :: distance
     !> Length of the cells ahead and behind
     real(wp), intent(in) :: ahead, behind
-    !> True: the faces are joined there
+    !> True: the faces are tied there
     logical, intent(in) :: tied
     !> Weight of the node's jump
     real(wp), intent(in) :: weight
-    !> Force x, y, z that holds the jump at zero, positive where it holds back a positive one
+    !> Tie force x, y, z, positive against a positive jump
     real(wp), intent(in) :: force(3)
     !> Jump of the displacements x, y, z
     real(wp), intent(in) :: jump(3)
@@ -139,7 +137,7 @@ contains
       figures(4:6) = distance*figures(1:3)
       figures(7:9) = distance*figures(4:6)
     end if
-    ! What is tied behind the smooth line counts too: the jump there is the mean of those along the front.
+    ! Tied nodes behind the smooth line are included: the jump there is the mean along the front.
     if (distance < 0 .and. -distance < fitted*behind) then
       figures(10:12) = weight*distance**2*[1.0_wp, -distance, distance**2]
       figures(13:15) = -weight*distance*matmul(turn, jump)
@@ -148,15 +146,15 @@ contains
   end function closure_moments
 
   !> Energy release rates G_I (opening), G_II (sliding across the front) and G_III (sliding along it) from sums of the
-  !> figures of nodes. A negative rate of a mode (closed faces pressed together) counts as zero.
+  !> moments of nodes. A negative rate of a mode (faces under pressure) counts as zero.
   pure function closure_rates(figures, length, extension) result(modes)
     !> The sums
     real(wp), intent(in) :: figures(closure_figures)
-    !> Length of the front that they belong to, and length by which it moves on; positive
+    !> Length of the front of these sums, and length of its advance; positive
     real(wp), intent(in) :: length, extension
     !> G_I, G_II, G_III, none negative
     real(wp) :: modes(3)
-    !> Determinant, relative, below which nodes at one distance leave a straight line only.
+    !> Relative determinant below which all nodes have one distance, so that only a straight line can be fitted.
     real(wp), parameter :: one_distance = 1.0e-9_wp
     real(wp) :: slope(3), bend(3), det, work(3)
 

@@ -76,9 +76,9 @@ contains
     self%renewal = renewal
   end function new_dynamic_step
 
-  !> Predictor. With an exact operator any predictor will do; the displacement is kept, which saves element loops.
-  !> Otherwise the velocity is kept: a predictor by the acceleration adds energy where contact is stiff. Closed contacts
-  !> stay closed, and tied jumps keep their values.
+  !> Predictor. With an exact operator the displacement is kept, which saves element loops. Otherwise the velocity is
+  !> kept: a predictor by the acceleration adds energy where contact is stiff. Closed contacts stay closed, and tied
+  !> jumps keep their values.
   subroutine begin(self, at)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
@@ -224,7 +224,7 @@ contains
     end associate
   end function residual_norm
 
-  !> The force depends on the motion only within an iteration, so an impact needs one.
+  !> The impactor's force is updated only within an iteration, so an impact needs at least one.
   pure logical function may_stop(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self

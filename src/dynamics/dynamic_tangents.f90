@@ -12,7 +12,7 @@ module dynamic_tangents
   private
   public :: find_tangent, add_force_slope, is_exact
 
-  !> Relative change of the factor of mass by which an operator counts as exact: the last digits of the step.
+  !> Relative change of the factor of mass up to which the operator counts as exact: round-off of the step length.
   real(wp), parameter :: mass_precision = 1.0e-9_wp
 
 contains

@@ -12,10 +12,10 @@ module energy_balance
   private
   public :: book_step, book_failures
 
-  !> Numbers whose products are summed together: a multiple of what the processor takes at once, as in residual_norms
+  !> Length of blocks of products that are summed together, a multiple of the vector length, as in residual_norms
   integer, parameter :: block_length = 8
 
-  !> Products of the step's fields that the energies are made of, summed over the modelled part.
+  !> Products of fields of the step from which the energies are computed, summed over the modelled part.
   type :: products_t
     !> v.Mv at the end; strain energy at the end
     real(wp) :: kinetic = 0, strain = 0
@@ -28,7 +28,7 @@ module energy_balance
     real(wp) :: cohesive = 0
     !> Work of the forces between faces
     real(wp) :: faces = 0
-    !> Work of the lines, and change of displacement times change of force of those that press
+    !> Work of the lines, and change of displacement times change of force of lines with a given force
     real(wp) :: lines = 0, lines_change = 0
   end type products_t
 
@@ -72,7 +72,7 @@ contains
                                - products%cohesive, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
-      ! Fracture energy was booked, and subtracted here, when the ties were released.
+      ! Subtracts the fracture energy, which is booked when ties are released.
       call new%interfaces%ties%book(model, old%interfaces%ties, &
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
@@ -164,8 +164,8 @@ contains
                           faces=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
   end subroutine find_products
 
-  !> Work of the lines, and change of displacement times change of force of those that press, of this rank's points.
-  !> What moves or holds a line acts with one force over the step.
+  !> Work of the lines, and change of displacement times change of force of lines with a given force, of this rank's
+  !> points. The reaction of a prescribed line is constant over the step.
   pure function line_products(model, old, new) result(sums)
     type(model_t), intent(in) :: model
     !> State at the start
@@ -187,7 +187,7 @@ contains
 
   !> Products of fields over this rank's points: v.Mv at the end; change of displacement times sum and change of
   !> internal force and times change of inertia force; a.Ma at the end and at the start, and change of a times change of
-  !> Ma, where the integrator asks for them.
+  !> Ma, where the integrator requires them.
   pure subroutine multiply_fields(owned, integrator, step, old, new, sums)
     !> Number of points that this rank owns
     integer, intent(in) :: owned
@@ -213,10 +213,10 @@ contains
     sums = [sum(works, 1), sum(jerks, 1)]
   end subroutine multiply_fields
 
-  !> Mass times velocity by Newmark's formula for the velocity, which spares a sum over elements, and the products of
-  !> numbers in turn, added to so many sums each, which the processor takes together.
+  !> Mass times velocity by Newmark's formula for the velocity, which saves a loop over elements, and the four products
+  !> of fields, each added to the partial sums of a block so that the compiler vectorises them.
   pure subroutine add_works(number, weights, u, f, i, p, u_new, v_new, f_new, i_new, p_new, sums)
-    !> How many
+    !> Number of values
     integer, intent(in) :: number
     !> Weights of the inertia forces at the start and at the end in the change of mass times velocity
     real(wp), intent(in) :: weights(2)
@@ -242,9 +242,9 @@ contains
     end do
   end subroutine add_works
 
-  !> Products of accelerations and inertia forces likewise.
+  !> Products of accelerations and inertia forces, added to partial sums in the same way.
   pure subroutine add_jerks(number, a, i, a_new, i_new, sums)
-    !> How many
+    !> Number of values
     integer, intent(in) :: number
     !> Acceleration and inertia force at the start
     real(wp), intent(in) :: a(number), i(number)

@@ -17,8 +17,8 @@ module growth_in_steps
 
 contains
 
-  !> Lets delaminations grow in a step that has converged: with equilibrium growth the step is computed again
-  !> from its start until no front is above its critical value, else what grew acts from the next step on.
+  !> Growth of delaminations in a converged step: with equilibrium growth the step is repeated from its start until no
+  !> front exceeds its critical value, otherwise the growth takes effect in the next step.
   subroutine grow_in_step(problem, model, equilibrium, operator, now, trial, converged, error)
     !> The step
     type(dynamic_step_t), intent(inout) :: problem
@@ -69,7 +69,7 @@ contains
     call model%profile%leave()
   end subroutine grow_in_step
 
-  !> True if delaminations grow with the steps, none of them at a frozen time.
+  !> True if all delaminations grow from step to step, none at frozen time.
   pure logical function grows_by_steps(model)
     type(model_t), intent(in) :: model
 

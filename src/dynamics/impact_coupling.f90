@@ -22,16 +22,16 @@ module impact_coupling
     logical :: mean = .false.
     !> The unknown force, and the force at the end of the step
     real(wp) :: unknown = 0, force_end = 0
-    !> Weight of the unknown in the plate's load, and the rest of the load
+    !> Weight of the unknown in the plate's load, and the part of the load that does not depend on it
     real(wp) :: share = 0, inherited = 0
     !> Force at the start of the step, and alpha_f of the equation of motion
     real(wp) :: start_force = 0, alpha_f = 0
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
-    !> True: one solution finds the load.
+    !> True: the load on the plate is the unknown force, so that one solution is sufficient.
     procedure :: forces_agree
-    !> Solves for the force, and adds the response of the plate.
+    !> Solves for the force, and adds the unit-load solution of the plate times its change.
     procedure :: solve
     !> Finds the force.
     procedure :: find_force
@@ -76,7 +76,8 @@ contains
     load = self%share*self%unknown + self%inherited
   end function load
 
-  !> True: one solution finds the load. The mean force over a step is the plate's load only for alpha_f = 1/2.
+  !> True: the load on the plate is the unknown force, so that one solution is sufficient. The mean force over a step is
+  !> the plate's load only for alpha_f = 1/2.
   pure logical function forces_agree(self)
     !> The coupling
     class(impact_coupling_t), intent(in) :: self
@@ -110,7 +111,7 @@ contains
     end associate
   end subroutine solve
 
-  !> Decrease of the load with the deflection of the plate, with the motion of the impactor under it.
+  !> Decrease of the load with the deflection of the plate, including the motion of the impactor under that load.
   real(wp) function slope(self, law, indentation, patch_mean)
     !> The coupling
     class(impact_coupling_t), intent(in) :: self
@@ -135,7 +136,7 @@ contains
     if (.not. allocated(error)) slope = max(0.0_wp, (here%load() - beyond%load())/step)
   end function slope
 
-  !> Finds the impact force for a mean deflection of the patch, given what a force adds to it.
+  !> Finds the impact force for a mean deflection of the patch and the compliance of the patch.
   subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self
@@ -143,7 +144,7 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> History variables of the indentation at the start of the step
     type(indentation_t), intent(in) :: indentation
-    !> Mean deflection of the patch with the force assumed
+    !> Mean deflection of the patch with the previous force
     real(wp), intent(in) :: patch_mean
     !> Mean deflection of the patch per force on the plate
     real(wp), intent(in) :: patch_compliance

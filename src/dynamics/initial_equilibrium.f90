@@ -1,9 +1,8 @@
-!> The state that a plate takes before anything loads it in time: in equilibrium under its residual stresses, and with
-!> the lines that have moved it before a run in time begins.
+!> Initial state of a run in time: equilibrium under residual stresses and under lines prescribed before the run.
 !>
-!> A plate that no support holds has rigid motions. Residual stresses balance among themselves and don't drive them, so
-!> a little mass in the operator is enough: it holds the rigid motions, and costs the softest mode of the plate a small
-!> part of each correction.
+!> An unsupported plate has rigid-body modes. Residual stresses are self-equilibrated and do not excite them, so a small
+!> mass in the operator removes the singularity; it reduces the correction of the softest elastic mode by a small
+!> fraction.
 module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
@@ -18,16 +17,17 @@ module initial_equilibrium
   private
   public :: has_initial_motion, find_initial_equilibrium, find_acceleration
 
-  !> Mass over that which would double the lowest frequency of a bending plate as long as this one.
+  !> Mass factor relative to that at which inertia equals the stiffness of the lowest bending mode of a plate of this
+  !> length.
   real(wp), parameter :: negligible_mass = 1.0e-3_wp
-  !> Residual over the forces of the suppressed strains: loads to come may be much smaller than these.
+  !> Tolerance of the residual over the forces of the suppressed strains: later loads may be much smaller than these.
   real(wp), parameter :: tolerance = 1.0e-11_wp
   integer, parameter :: max_iterations = 100
 
 contains
 
-  !> Brings a plate at rest into equilibrium with its residual stresses, and then with lines that precede a run in
-  !> time, whose work that takes. Collective.
+  !> Finds the equilibrium of a plate at rest with its residual stresses, and then with lines prescribed before the run,
+  !> whose work is booked. Collective.
   subroutine find_initial_equilibrium(model, operator, state, error)
     type(model_t), intent(in) :: model
     !> The factored operator; not ready for steps afterwards
@@ -52,14 +52,14 @@ contains
     state%ledger%external_work = state%ledger%strain + state%ledger%ply_damage - energy
   end subroutine find_initial_equilibrium
 
-  !> True: something moves the plate before a run in time begins.
+  !> True: residual stresses or lines deform the plate before a run in time.
   pure logical function has_initial_motion(model)
     type(model_t), intent(in) :: model
 
     has_initial_motion = model%setup%has_thermal .or. lines_precede(model)
   end function has_initial_motion
 
-  !> True: lines have moved the plate before a run in time begins.
+  !> True: lines are displaced before a run in time.
   pure logical function lines_precede(model)
     type(model_t), intent(in) :: model
     integer :: i
@@ -67,12 +67,12 @@ contains
     lines_precede = model%setup%has_inertia() .and. any([(model%lines(i)%load%precedes(), i=1, size(model%lines))])
   end function lines_precede
 
-  !> Brings a plate at rest into equilibrium. Collective.
+  !> Finds the equilibrium of a plate at rest. Collective.
   subroutine equilibrate(model, operator, moved, state, error)
     type(model_t), intent(in) :: model
     !> The factored operator; not ready for steps afterwards
     type(tangent_operator_t), intent(inout) :: operator
-    !> True: with lines where they are at time 0; false: with lines held where they are without load
+    !> True: lines have their displacement of time 0; false: zero displacement
     logical, intent(in) :: moved
     !> The state at rest; receives displacement, forces and energies
     type(state_t), intent(inout) :: state
@@ -123,13 +123,13 @@ contains
     operator%ready = .false.
   end subroutine equilibrate
 
-  !> Acceleration of a plate in equilibrium under a pressure or forces that are there from the start, and the velocity
-  !> of lines that move at once. Collective.
+  !> Initial acceleration of the plate under pressure and forces applied at time 0, and initial velocity of prescribed
+  !> lines. Collective.
   subroutine find_acceleration(model, operator, mass_factor, state, error)
     type(model_t), intent(in) :: model
     !> The factored operator; not ready for steps afterwards
     type(tangent_operator_t), intent(inout) :: operator
-    !> Factor of the mass in a step, where it stands beside the springs of lines that are held
+    !> Factor of the mass in a step, in the same operator as the springs of prescribed lines
     real(wp), intent(in) :: mass_factor
     !> The state at the start; receives acceleration and velocity
     type(state_t), intent(inout) :: state
@@ -139,7 +139,7 @@ contains
     real(wp) :: work
 
     allocate (loads, mold=state%motion%displacement)
-    ! Lines that are prescribed are in equilibrium with the plate already; their springs in the operator keep them.
+    ! Prescribed lines are already in equilibrium with the plate; their springs in the operator hold them.
     call model%line_forces(state%motion%displacement, 0.0_wp, loads, prescribed=.false.)
     if (allocated(model%pressure)) loads = loads + model%setup%pressure%amplitude(0.0_wp)*model%pressure
     associate (motion => state%motion)
@@ -158,8 +158,8 @@ contains
     state%ledger%external_work = state%ledger%external_work + work
   end subroutine find_acceleration
 
-  !> Square of the forces on this rank's elements that suppress the strains, were they not balanced by neighbours and
-  !> supports: those left over at the free unknowns may be none.
+  !> Sum over this rank's elements of the squared nodal forces that suppress the stress-free strains, before assembly:
+  !> after assembly those at unconstrained unknowns may vanish.
   pure real(wp) function square_of_forces(model) result(total)
     type(model_t), intent(in) :: model
     integer :: b

@@ -1,8 +1,9 @@
-!> Motion of the lines that the deck prescribes in a run in time.
+!> Prescribed motion of lines in a run in time.
 !>
-!> Their springs hold the displacement at the end of each step by one force over the step, for any integrator, as
-!> contact does. Newmark's formulas would make a velocity and an acceleration of the displacements that alternate about
-!> the right ones from step to step, for a spectral radius of 1 without end; the prescribed ones take their place.
+!> Springs enforce the displacement at the end of each step by a force that is constant over the step, for any
+!> integrator, as contact does. Velocity and acceleration are prescribed, too: Newmark's formulas applied to the
+!> displacements would give values that alternate about the prescribed ones from step to step, undamped for a spectral
+!> radius of 1.
 module line_motions
   use interface_states, only: interface_state_t
   use kinds, only: wp
@@ -25,14 +26,14 @@ contains
     has_moved_lines = any([(model%lines(i)%load%prescribed, i=1, size(model%lines))])
   end function has_moved_lines
 
-  !> Gives the lines their displacement, velocity or acceleration at a time. Jumps and constrained unknowns stay.
+  !> Sets displacement, velocity or acceleration of the lines at a time. Jumps and constrained unknowns are unchanged.
   subroutine prescribe_lines(model, interfaces, time, derivative, field)
     type(model_t), intent(in) :: model
-    !> Knows which jumps are held
+    !> State of the interfaces, with the tied jumps
     type(interface_state_t), intent(in) :: interfaces
     !> The time
     real(wp), intent(in) :: time
-    !> Which of them
+    !> line_displacement, line_velocity or line_acceleration
     integer, intent(in) :: derivative
     !> The field, (5, points), ghosts up to date
     real(wp), contiguous, intent(inout) :: field(:, :)
@@ -55,11 +56,11 @@ contains
     field = field + change
   end subroutine prescribe_lines
 
-  !> Gives the lines their velocity and acceleration at a time, and gives the energy that this brings: the work of the
-  !> forces that move them.
+  !> Sets velocity and acceleration of the lines at a time, and returns the change of kinetic energy, which is work of
+  !> their reactions.
   subroutine move_lines(model, interfaces, time, motion, work)
     type(model_t), intent(in) :: model
-    !> Knows which jumps are held
+    !> State of the interfaces, with the tied jumps
     type(interface_state_t), intent(in) :: interfaces
     !> The time
     real(wp), intent(in) :: time

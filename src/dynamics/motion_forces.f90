@@ -1,5 +1,5 @@
-!> Forces of the equation of motion (Eq. 1, generalised alpha), weighed between the ends of a step; all unknowns in one
-!> row, which the compiler takes several at a time.
+!> Forces of the equation of motion (Eq. 1, generalised alpha), weighted between the start and the end of a step; all
+!> unknowns in one array, so that the compiler vectorises the loops.
 module motion_forces
   use kinds, only: wp
   implicit none
@@ -8,7 +8,7 @@ module motion_forces
 
 contains
 
-  !> Forces against the motion.
+  !> Residual from the weighted forces at the start and the end of a step.
   pure subroutine weight_forces(number, weights, new_inertia, old_inertia, new_internal, old_internal, residual)
     !> Number of unknowns
     integer, intent(in) :: number
@@ -16,7 +16,7 @@ contains
     real(wp), intent(in) :: weights(4)
     !> The forces at the end and at the start of the step
     real(wp), intent(in) :: new_inertia(number), old_inertia(number), new_internal(number), old_internal(number)
-    !> Their sum with the sign turned
+    !> Their negative sum
     real(wp), intent(inout) :: residual(number)
     integer :: i
 
@@ -26,7 +26,7 @@ contains
     end do
   end subroutine weight_forces
 
-  !> Forces against a plate that stays where it is, with Newmark's acceleration for that.
+  !> Residual of the predictor of constant displacement, with Newmark's acceleration for it.
   pure subroutine weight_start_forces(number, weights, momentum, inertia, internal, residual)
     !> Number of unknowns
     integer, intent(in) :: number
@@ -34,7 +34,7 @@ contains
     real(wp), intent(in) :: weights(2)
     !> Mass times velocity and acceleration, and internal forces, at the start of the step
     real(wp), intent(in) :: momentum(number), inertia(number), internal(number)
-    !> Their sum with the sign that a residual has
+    !> Their sum, with the sign of the residual
     real(wp), intent(inout) :: residual(number)
     integer :: i
 
@@ -43,7 +43,7 @@ contains
     end do
   end subroutine weight_start_forces
 
-  !> Internal forces at the end of a step, as the equation of motion leaves them.
+  !> Internal forces at the end of a step from the equation of motion.
   pure subroutine find_internal_forces(number, weights, new_inertia, old_inertia, old_internal, new_internal)
     !> Number of unknowns
     integer, intent(in) :: number

@@ -25,7 +25,7 @@ module newmark_integrators
 
 contains
 
-  !> The integrator that the deck chose.
+  !> The integrator chosen in the deck.
   pure function plate_integrator(time) result(self)
     !> Parameters of the deck
     type(time_t), intent(in) :: time
@@ -62,7 +62,7 @@ contains
                       velocity, acceleration)
   end subroutine complete
 
-  !> The same with all unknowns in one row, which the compiler takes several at a time.
+  !> The same with all unknowns in one array, so that the compiler vectorises the loop.
   pure subroutine complete_all(self, step, number, displacement, velocity, acceleration, new_displacement, &
                                new_velocity, new_acceleration)
     !> Coefficients

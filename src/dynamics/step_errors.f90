@@ -1,7 +1,7 @@
-!> Estimate of the error that a step in time adds to the motion of plate and impactor. A method of second order moves a
-!> harmonic of frequency w by c (w h)**3 too little in a step h, so the error is c h**3 times the third derivative. This
-!> is found from the last four states by divided differences: unlike h**2 (beta - 1/6) times the change of acceleration
-!> (Zienkiewicz and Xie 1991) it stays finite for modes that no step resolves, whose acceleration alternates.
+!> Estimate of the error that a step in time adds to the motion of plate and impactor. The phase error of a second-order
+!> method for a harmonic of frequency w is c (w h)**3 in a step h, so the error is c h**3 times the third derivative,
+!> computed from the last four states by divided differences. Unlike h**2 (beta - 1/6) times the change of acceleration
+!> (Zienkiewicz and Xie 1991) it is finite for modes that the step does not resolve, whose acceleration alternates.
 module step_errors
   use archives, only: archive_t
   use kinds, only: wp
@@ -19,20 +19,20 @@ module step_errors
 
   !> Previous states, and the largest values so far.
   type :: step_error_t
-    !> How many of them there are
+    !> Number of stored states
     integer :: known = 0
     !> Their times, indentations and deflections of the struck point, latest first
     real(wp) :: time(past) = 0, indentation(past) = 0, struck(past) = 0
     !> Their deflections of the plate, (owned points, past)
     real(wp), allocatable :: deflection(:, :)
-    !> Share of the plate's area that belongs to each point, (owned points)
+    !> Fraction of the plate's area at each point, (owned points)
     real(wp), allocatable :: share(:)
     !> Largest force, contact stiffness and deflection of the struck point so far
     real(wp) :: force = 0, stiffness = 0, largest = 0
   contains
-    !> The plate at rest, the impactor in free flight.
+    !> Sets the stored states before first contact.
     procedure :: start
-    !> Error of a step that has been tried.
+    !> Error of a trial step.
     procedure :: estimate
     !> Stores a state before it is replaced.
     procedure :: note
@@ -46,7 +46,7 @@ module step_errors
 
 contains
 
-  !> The plate at rest, the impactor in free flight up to first contact.
+  !> Sets the stored states to the plate at rest and the impactor in free flight before first contact.
   subroutine start(self, model, step)
     !> The estimate
     class(step_error_t), intent(inout) :: self
@@ -100,15 +100,15 @@ contains
     end do
   end function error_weights
 
-  !> Error of a step that has been tried: of the indentation as a part of the largest force, of the deflection as a part
-  !> of the largest deflection, whichever is larger. 0 until there are four states. Collective.
+  !> Error of a trial step: the larger of the error of the contact force relative to the largest force and that of the
+  !> deflection relative to the largest deflection. 0 for fewer than four states. Collective.
   subroutine estimate(self, model, integrator, expected, now, trial, error)
     !> The estimate; updates the largest force and deflection
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
-    !> What the run is expected to show
+    !> Expected response of the run
     type(expected_response_t), intent(in) :: expected
     !> State at the start of the step
     type(state_t), intent(in) :: now
@@ -148,7 +148,7 @@ contains
   pure logical function impact_is_over(self, expected, state) result(over)
     !> The estimate
     class(step_error_t), intent(in) :: self
-    !> What the run is expected to show
+    !> Expected response of the run
     type(expected_response_t), intent(in) :: expected
     !> The state
     type(state_t), intent(in) :: state

@@ -49,22 +49,22 @@ module time_deck
     'time | settle | real | 1 | time | 0 | >= 0 | &
     &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 
-  !> Most steps of a run: more pass the range of default integers.
+  !> Largest number of steps of a run, within the range of default integers.
   real(wp), parameter, public :: max_steps = 1.0e8_wp
 
 contains
 
   !> Time integration of the plate.
   subroutine fill_time(settings, rho_infinity, grows, time, central)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> What is left a step of the highest frequencies unless the deck says so
+    !> Default of the spectral radius at infinite frequency
     real(wp), intent(in) :: rho_infinity
-    !> True: the step may grow beyond the first unless the deck forbids it
+    !> True: by default the step may become larger than the first
     logical, intent(in) :: grows
     !> Receives them
     type(time_t), intent(inout) :: time
-    !> Receives what central differences need
+    !> Receives the parameters of central differences
     type(central_difference_parameters_t), intent(inout) :: central
 
     associate (s => settings)
@@ -91,7 +91,7 @@ contains
     end associate
   end subroutine fill_time
 
-  !> The integrator of the plate.
+  !> The integrator of the plate chosen in the deck.
   pure integer function integrator_of(settings) result(integrator)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -101,7 +101,7 @@ contains
                          [integrator_newmark, integrator_generalized_alpha, integrator_central_difference])
   end function integrator_of
 
-  !> Steps against each other, and the integrator's parameters.
+  !> Checks the lengths of steps against each other, and the parameters of the integrator.
   subroutine check_time(settings, time, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -146,7 +146,7 @@ contains
     end function clear
   end subroutine check_time
 
-  !> Parameters of the integrator, and those of the other one.
+  !> Checks the parameters of the integrator, and that none of another integrator is given.
   subroutine check_parameters(settings, time, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -1,10 +1,9 @@
-!> Energy ledger of central differences, by the method's own algebra.
+!> Energy ledger of central differences, by the exact energy identity of the method.
 !>
-!> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, v the velocity in the middle of
-!> the step: in a linear plate without interfaces T and the strain energy together stay what they are to the last
-!> digit, and T changes by the work of the mean of the forces at both ends. What tractions do beyond what interfaces
-!> store and dissipate is booked as lost. So the ledger's error shows what is left: forces that are not linear within
-!> a step.
+!> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, with the mid-step velocity v. T
+!> changes by the work of the mean force of both ends, so that T plus strain energy of a linear plate without interfaces
+!> is constant to round-off. Work of the tractions beyond the energy that interfaces store and dissipate is booked as
+!> algorithmic dissipation. The remaining error of the ledger is that of forces which are nonlinear within a step.
 module central_difference_energies
   use central_differences, only: central_difference_t
   use exact_sums, only: exact_sum_t
@@ -18,7 +17,7 @@ module central_difference_energies
 
 contains
 
-  !> Finds the ledger of a state. Collective.
+  !> Computes the ledger of a state. Collective.
   subroutine book_energies(method, model, now)
     !> The method
     type(central_difference_t), intent(in) :: method
@@ -87,7 +86,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    !> All, and in the plane and of rotation
+    !> Total kinetic energy, and that of in-plane motion and rotation
     type(exact_sum_t), intent(inout) :: kinetic, scaled
     real(wp), allocatable :: layer(:, :)
     real(wp) :: plane
@@ -111,7 +110,7 @@ contains
     end do
   end subroutine add_kinetic
 
-  !> Adds the energy that this rank's interfaces, springs and pressing clamps store.
+  !> Adds the energy stored in this rank's interfaces, springs and loaded clamps.
   subroutine add_stored(method, model, now, stored)
     !> The method
     type(central_difference_t), intent(in) :: method

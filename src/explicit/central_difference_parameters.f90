@@ -1,19 +1,19 @@
-!> Central differences, as the deck gives them.
+!> Parameters of central differences in the deck.
 module central_difference_parameters
   use kinds, only: wp
   implicit none
   private
   public :: central_difference_parameters_t
 
-  !> How steps are taken.
+  !> Parameters of central differences.
   type :: central_difference_parameters_t
-    !> Part of the stable step that is taken
+    !> Step over the stable step
     real(wp) :: step_factor = 0.9_wp
     !> Factor of in-plane and rotary inertia
     real(wp) :: mass_scaling = 1
-    !> Longest step wanted; 0: the stable one decides
+    !> Largest step requested; 0: the stable step
     real(wp) :: longest = 0
-    !> Time in which damping brings the plate to rest before lines load it; 0: nothing is damped
+    !> Duration of damping that brings the plate to rest before lines load it; 0: none
     real(wp) :: settle = 0
   end type central_difference_parameters_t
 end module central_difference_parameters

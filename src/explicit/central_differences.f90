@@ -1,5 +1,5 @@
-!> Central differences: layers move by the forces on them, with interface tractions that are implicit at each node;
-!> damage of plies and interfaces follows their strains and jumps. No global system is solved.
+!> Central differences: explicit motion of the layers, with interface tractions that are implicit at each node. No
+!> global system is solved.
 !>
 !> Velocities are those at the middle of steps, from the forces F at the start of a step,
 !>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n+1)),   u(n+1) = u(n) + h v(n+1/2),
@@ -29,19 +29,20 @@ module central_differences
   private
   public :: central_difference_t
 
-  !> Steps between two checks of what slopes and tension do to the highest frequency, and what is allowed for beyond it
-  !> until the next: a slope grows by less than the velocity times the time over an element, far below a hundredth.
+  !> Steps between two updates of the highest frequency by slopes and membrane tension, and relative allowance for its
+  !> growth in between: the change of a slope is below velocity times time over the element length, far below a
+  !> hundredth.
   integer, parameter :: between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
-  !> Fraction of that allowance below which steps are lengthened again, so that their length seldom changes.
+  !> Fraction of that allowance below which the step is lengthened again, so that its length seldom changes.
   real(wp), parameter :: relaxed = 0.8_wp
-  !> Fraction of a step by which sums of millions of steps may miss an event by round-off.
+  !> Tolerance in steps for meeting an event: round-off of the sum of millions of steps.
   real(wp), parameter :: rounded_off = 1.0e-3_wp
 
   !> Data of central differences besides the state. It has many components because inertia, stacks, lines, rigs and
   !> patch each have their own part in a step.
   type :: central_difference_t
-    !> How steps are taken
+    !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters
     !> Lumped inertia of the points
     type(nodal_inertia_t) :: inertia
@@ -61,24 +62,24 @@ module central_differences
     type(step_lengths_t) :: steps
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
-    !> Points of nodes with one layer: those that only forces move, and those that a frame or a line guides
+    !> Points of nodes with one layer: unconstrained ones, and those constrained by a frame or a line
     integer, allocatable, private :: plain(:), guided(:)
-    !> Highest frequency of the elements, without motion and that which the step allows for
+    !> Highest frequency of the undeformed elements, and that allowed for by the step
     real(wp) :: frequency = 0, stiffened = 0
-    !> Square of the highest frequency of each element without motion, (lanes, batches)
+    !> Square of the highest frequency of each undeformed element, (lanes, batches)
     real(wp), allocatable, private :: of_elements(:, :)
-    !> Element that has it
+    !> Element with the highest frequency
     integer :: element = 0
     !> Strain energy of this rank's elements, (lanes, batches)
     real(wp), allocatable :: strain(:, :)
     !> Work of loads before the run began
     real(wp) :: initial_work = 0
-    !> Work arrays: motion of the layers, forces with those of the borders between ranks
+    !> Work arrays: motion of the layers, and forces including those at borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
     !> Work arrays of stacks, one for each number of interfaces
     type(stack_t), allocatable, private :: workspaces(:)
   contains
-    !> Sets up for a state.
+    !> Initializes for a state.
     procedure :: start
     !> Longest stable step times step_factor.
     procedure :: longest_step
@@ -89,7 +90,7 @@ module central_differences
     !> Finds the forces on the layers.
     procedure :: find_forces
     procedure :: add_loads
-    !> Computes them again where the plate has changed.
+    !> Computes them again after a change of stiffness or layers.
     procedure :: renew_forces
     !> Books the energy dissipated by failed plies.
     procedure :: book_failures
@@ -101,12 +102,12 @@ module central_differences
 
 contains
 
-  !> Sets up for a state. Collective.
+  !> Initializes for a state. Collective.
   subroutine start(self, model, parameters, now)
     !> The method
     class(central_difference_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    !> How steps are taken
+    !> Parameters of central differences
     type(central_difference_parameters_t), intent(in) :: parameters
     !> The state; receives the forces
     type(state_t), intent(inout) :: now
@@ -134,7 +135,7 @@ contains
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
   end subroutine start
 
-  !> Separates points that a frame or a line constrains from those that only forces move.
+  !> Separates points constrained by a frame or a line from unconstrained ones.
   subroutine sort_points(self)
     !> The method
     type(central_difference_t), intent(inout) :: self
@@ -168,8 +169,8 @@ contains
     if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
   end function longest_step
 
-  !> Takes one step. Its length changes only where the stable step asks for it, as steps whose lengths alternate excite
-  !> the highest modes (R. D. Skeel, BIT 33 (1993) 172-175); so events are met by the first step that reaches them.
+  !> Takes one step. Its length changes only where the stable step requires it, as alternating lengths excite the
+  !> highest modes (R. D. Skeel, BIT 33 (1993) 172-175); so events are met by the first step that reaches them.
   !> Collective.
   subroutine advance(self, model, event, now)
     !> The method
@@ -200,7 +201,7 @@ contains
       call self%circles%hold(model, self%steps, u(3, :), v(3, :))
       call self%inertia%spread(u)
       call self%inertia%spread(v)
-      call self%stacks%copy_to_followers(self%inertia, now%interfaces%cohesive)
+      call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call self%change_length(model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)
@@ -214,8 +215,8 @@ contains
     call add_loads(self, model, now, load_factors)
   end subroutine advance
 
-  !> Books what a change of the step's length does to the work of the forces of its start: the kinetic energy of whole
-  !> steps takes them over half of each step (`step_lengths`).
+  !> Books the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
+  !> force at that time over half of the step (`step_lengths`).
   subroutine change_length(self, model, v, sign)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -230,7 +231,7 @@ contains
                           sum(self%force*model%motion_of(v), 1)
   end subroutine change_length
 
-  !> Inverse inertia and compliances for the length of the step.
+  !> Computes inverse inertia and compliances for the step length.
   subroutine prepare(self, model)
     !> The method
     type(central_difference_t), intent(inout) :: self
@@ -334,7 +335,7 @@ contains
     now%ledger%ply_damage = now%ledger%ply_damage + lost*model%mesh%multiplicity
   end subroutine book_failures
 
-  !> Finds the forces again after plies have failed or layers have appeared; loads do no work then. Collective.
+  !> Computes the forces again after failures of plies or insertion of layers, without work of the loads. Collective.
   subroutine renew_forces(self, model, now)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -349,7 +350,7 @@ contains
     self%lines%work = work
   end subroutine renew_forces
 
-  !> Resumes from a loaded state: onset of damage may differ. Collective.
+  !> Resumes from a loaded state, with the onset energies of its flaws. Collective.
   subroutine resume(self, model, now)
     !> The method
     class(central_difference_t), intent(inout) :: self

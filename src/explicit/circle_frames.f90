@@ -1,6 +1,6 @@
-!> Frames with a circular window in steps by central differences: w is held where the edge of the window crosses the
-!> sides of cells, a mean of three nodes each. The forces that hold all of these points are found together, from a
-!> matrix that stays what it is.
+!> Frames with a circular window in steps by central differences: w is constrained where the edge of the window crosses
+!> the sides of cells, as a weighted mean of three nodes each. The reactions at all of these points are found together,
+!> from a constant matrix.
 module circle_frames
   use dense_systems, only: invert_dense
   use kinds, only: wp
@@ -11,9 +11,9 @@ module circle_frames
   private
   public :: circle_frames_t, create_circle_frames
 
-  !> Points at which frames hold the plate, the same list on every rank.
+  !> Support points of circular frames, the same list on every rank.
   type :: circle_frames_t
-    !> Points of the mesh of the three nodes of each, (3, crossings), and where this rank has them; 0: elsewhere
+    !> Mesh points of the three nodes of each, (3, crossings), and their indices on this rank; 0: on another rank
     integer, allocatable :: points(:, :), local(:, :)
     !> Weights of their w, (3, crossings)
     real(wp), allocatable :: weights(:, :)
@@ -26,15 +26,15 @@ module circle_frames
     !> Forces of the last step
     real(wp), allocatable :: forces(:)
   contains
-    !> Finds the matrix for an inertia.
+    !> Computes the matrix for an inertia.
     procedure :: prepare
-    !> Holds the points at the end of a step.
+    !> Enforces zero deflection of the points at the end of a step.
     procedure :: hold
   end type circle_frames_t
 
 contains
 
-  !> Points at which the frames of a model hold the plate.
+  !> Support points of the circular frames of a model.
   function create_circle_frames(model) result(self)
     type(model_t), intent(in) :: model
     !> The points
@@ -62,7 +62,7 @@ contains
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
 
-  !> Finds the matrix for an inertia. Collective.
+  !> Computes the matrix for an inertia. Collective.
   subroutine prepare(self, model, inverse)
     !> The points
     class(circle_frames_t), intent(inout) :: self
@@ -84,7 +84,7 @@ contains
           end do
         end do
       end do
-      ! A point whose nodes are all held needs no force.
+      ! A point with three constrained nodes needs no force.
       if (.not. matrix(j, j) > 0) matrix(j, j) = 1
     end do
     self%stiffness = invert_dense(matrix)
@@ -113,7 +113,7 @@ contains
     gathered = reshape(list, shape(gathered))
   end function gathered
 
-  !> Holds the points at the end of a step. Collective.
+  !> Enforces zero deflection of the points at the end of a step. Collective.
   subroutine hold(self, model, steps, w, rate)
     !> The points; receive their forces
     class(circle_frames_t), intent(inout) :: self

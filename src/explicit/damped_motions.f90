@@ -1,5 +1,5 @@
-!> Damping that brings the plate to rest: all velocities lose the same share in each step, as by a force in proportion
-!> to mass and velocity. Motions that vibrate lose amplitude by half that share, whatever their frequency.
+!> Mass-proportional damping that brings the plate to rest: all velocities are reduced by the same fraction in each
+!> step. Amplitudes of vibrations are reduced by half of this fraction, independent of their frequency.
 module damped_motions
   use central_difference_energies, only: kinetic_energy
   use central_differences, only: central_difference_t
@@ -10,26 +10,25 @@ module damped_motions
   private
   public :: damp_motion
 
-  !> What is left of an amplitude at the end: of energies a ten-millionth.
-  real(wp), parameter :: left_over = 3.0e-4_wp
+  !> Ratio of amplitudes at the end and at the start of damping: 1e-7 of the energy.
+  real(wp), parameter :: final_ratio = 3.0e-4_wp
 
 contains
 
-  !> Takes a step's share of the velocities at its start. Energies of the step are those of the slower motion: forces
-  !> that act over half of the last change of a coordinate (central_difference_energies) find that change reduced alike.
-  !> Collective.
+  !> Reduces the velocities at the start of a step. Stored changes of coordinates, over half of which forces act in the
+  !> kinetic energy (central_difference_energies), are reduced by the same factor. Collective.
   subroutine damp_motion(method, model, now, duration)
     !> Central differences, after a step
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
     !> The state; its ledger receives the energy
     type(state_t), intent(inout) :: now
-    !> Time in which motions are damped down to what is left over, unless they are slower than that
+    !> Duration of the damping; motions with a longer period are damped less
     real(wp), intent(in) :: duration
     real(wp) :: share, before
 
     if (.not. method%steps%now > 0) return
-    share = exp(2*log(left_over)*method%steps%now/duration)
+    share = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, model, now)
     now%motion%velocity = share*now%motion%velocity
     method%stacks%change = share*method%stacks%change

@@ -1,5 +1,5 @@
-!> The impactor in steps by central differences: it moves by the force at the start of the step, or as its travel is
-!> prescribed, and its force follows from the indentation at the end.
+!> The impactor in steps by central differences: motion by the contact force at the start of the step, or by a
+!> prescribed travel; contact force from the indentation at the end of the step.
 module impactor_steps
   use archives, only: archive_t
   use kinds, only: wp
@@ -13,25 +13,25 @@ module impactor_steps
   private
   public :: impactor_steps_t, create_impactor_steps
 
-  !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only.
+  !> Growth of the contact stiffness allowed for by a new step length, so that the length changes a few times only.
   real(wp), parameter :: slope_reserve = 2
 
   !> The impactor.
   type :: impactor_steps_t
-    !> Where it presses
+    !> Its contact area
     type(struck_patch_t) :: patch
-    !> Its velocity in the middle of the last step
+    !> Its velocity at the middle of the last step
     real(wp) :: velocity = 0
-    !> Stiffness of the contact that the step allows for
+    !> Contact stiffness allowed for by the step
     real(wp) :: contact_stiffness = 0
-    !> Work of a travel that is prescribed
+    !> Work of a prescribed travel
     real(wp) :: work = 0
-    !> What changes of the step's length have taken of its energy
+    !> Energy lost by changes of the step length
     real(wp) :: loss = 0
   contains
-    !> Square of the frequency that the contact adds to those of the plate.
+    !> Square of the frequency of the contact spring.
     procedure :: contact_frequency_square
-    !> Moves it, and finds the force at the end of the step.
+    !> Updates its motion, and finds the force at the end of the step.
     procedure :: move
     !> Kinetic energy and potential.
     procedure :: energy
@@ -53,8 +53,8 @@ contains
     self%velocity = velocity
   end function create_impactor_steps
 
-  !> Square of the frequency that the contact adds to those of the plate: its steepest slope so far, with some reserve,
-  !> on the mass under the patch and that of the impactor.
+  !> Square of the frequency of the contact spring, with its largest stiffness so far times a reserve, between the mass
+  !> under the patch and the impactor.
   real(wp) function contact_frequency_square(self, model, indentation) result(square)
     !> The impactor
     class(impactor_steps_t), intent(inout) :: self
@@ -70,14 +70,14 @@ contains
     square = self%contact_stiffness*compliance
   end function contact_frequency_square
 
-  !> Moves the impactor, and finds the force at the end of the step. Collective.
+  !> Updates the motion of the impactor, and finds the force at the end of the step. Collective.
   subroutine move(self, model, steps, now)
     !> The impactor
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> The state, at the end of the step but for the impactor
+    !> The state at the end of the step; receives the motion of the impactor
     type(state_t), intent(inout) :: now
     real(wp) :: alpha, before, change, w(size(self%patch%local))
 
@@ -109,7 +109,7 @@ contains
     end associate
   end subroutine move
 
-  !> Velocity in the middle of the step, and what a change of its length takes (`step_lengths`).
+  !> Velocity at the middle of the step, and the energy lost by a change of its length (`step_lengths`).
   pure subroutine accelerate(self, model, steps, force)
     !> The impactor
     type(impactor_steps_t), intent(inout) :: self
@@ -127,7 +127,7 @@ contains
     end associate
   end subroutine accelerate
 
-  !> Kinetic energy at the end of a step, as that of the plate is taken there, and potential of gravity.
+  !> Kinetic energy at the end of a step, defined as that of the plate, and potential of gravity.
   pure real(wp) function energy(self, model, step, now)
     !> The impactor
     class(impactor_steps_t), intent(in) :: self

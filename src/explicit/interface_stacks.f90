@@ -1,4 +1,4 @@
-!> Nodes with several layers, and the interfaces between these: coupling of the jumps of one node in a step.
+!> Nodes with several layers and the interfaces between them: coupling of the jumps of a node in a step.
 module interface_stacks
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: cohesive_law_t
@@ -12,19 +12,19 @@ module interface_stacks
 
   !> Stacks of layers. Points of a stack follow each other downwards; each but the first carries the interface above it.
   type :: interface_stacks_t
-    !> First point and number of layers of each stack that moves by itself, (stacks)
+    !> First point and number of layers of each independent stack, (stacks)
     integer, allocatable :: first(:), layers(:)
-    !> Points of nodes with one layer that move by themselves
+    !> Independent points of nodes with one layer
     integer, allocatable :: single(:)
     !> Height z of the interface above a point, (points)
     real(wp), allocatable :: height(:)
-    !> Area of that interface at the node, with that of points that follow, (points)
+    !> Area of that interface at the node, with that of dependent points, (points)
     real(wp), allocatable :: area(:)
     !> Stiffness of the undamaged interface against shear and opening, force per jump, (2, points)
     real(wp), allocatable :: stiffness(:, :)
-    !> Twice the energy of the undamaged interface at a node below which no damage begins or grows, (points)
+    !> Twice the energy of the undamaged interface at a node below which damage neither starts nor grows, (points)
     real(wp), allocatable :: min_onset(:)
-    !> True where some interface of a stack is damaged, (stacks)
+    !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
     !> Square of the step times the compliance of the layers, its diagonal and the off-diagonal entries, along x, y and
     !> z,
@@ -34,17 +34,17 @@ module interface_stacks
     real(wp), allocatable :: factors(:, :, :)
     !> Forces on the jumps in the last step, and change of the jumps in it, (3, points)
     real(wp), allocatable :: forces(:, :), change(:, :)
-    !> Energy dissipated by contact of faces, and by the implicit treatment otherwise, (2, points)
+    !> Energy dissipated by contact of faces, and numerically by the implicit tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
     !> Finds the compliances for a step.
     procedure :: prepare
-    !> Finds which stacks are damaged.
+    !> Marks damaged stacks.
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
     procedure :: find_onsets
-    !> Copies the state of leaders to their followers.
-    procedure :: copy_to_followers
+    !> Copies the state of masters to their dependents.
+    procedure :: copy_to_dependents
   end type interface_stacks_t
 
 contains
@@ -54,20 +54,20 @@ contains
     type(model_t), intent(in) :: model
     !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Lumped inertia, with the points that follow
+    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> The stacks
     type(interface_stacks_t) :: self
-    logical :: follows(model%distribution%owned)
+    logical :: is_dependent(model%distribution%owned)
     integer :: i, points
 
     associate (above => model%map%above, owned => model%distribution%owned)
       points = size(model%distribution%points)
-      follows = .false.
-      follows(inertia%followers) = .true.
-      self%single = pack([(i, i=1, owned)], .not. follows .and. above(:owned) == 0 .and. &
+      is_dependent = .false.
+      is_dependent(inertia%dependents) = .true.
+      self%single = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
                          [(.not. has_layer_below(above, i), i=1, owned)])
-      self%first = pack([(i, i=1, owned)], .not. follows .and. above(:owned) == 0 .and. &
+      self%first = pack([(i, i=1, owned)], .not. is_dependent .and. above(:owned) == 0 .and. &
                         [(has_layer_below(above, i), i=1, owned)])
       allocate (self%layers(size(self%first)), self%damaged(size(self%first)))
       do i = 1, size(self%first)
@@ -79,9 +79,9 @@ contains
     end associate
     self%height = model%map%height
     self%area = model%contact_area
-    do i = 1, size(inertia%followers)
-      self%area(inertia%leaders(i)) = self%area(inertia%leaders(i)) + self%area(inertia%followers(i))
-      self%area(inertia%followers(i)) = 0
+    do i = 1, size(inertia%dependents)
+      self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
+      self%area(inertia%dependents(i)) = 0
     end do
     allocate (self%stiffness(2, points), self%min_onset(points), self%diagonal(3, points), self%off_diagonal(3, &
       points), &
@@ -126,7 +126,7 @@ contains
     end do
   end subroutine find_onsets
 
-  !> Finds which stacks are damaged.
+  !> Marks damaged stacks.
   pure subroutine find_damaged(self, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(inout) :: self
@@ -141,25 +141,25 @@ contains
     end do
   end subroutine find_damaged
 
-  !> Copies the state of the interfaces of leaders to their followers.
-  pure subroutine copy_to_followers(self, inertia, cohesive)
+  !> Copies the state of the interfaces of masters to their dependents.
+  pure subroutine copy_to_dependents(self, inertia, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(in) :: self
-    !> Lumped inertia, with the points that follow
+    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     integer :: i
 
     if (.not. any(self%damaged)) return
-    do i = 1, size(inertia%followers)
-      associate (follower => inertia%followers(i))
-        if (.not. cohesive%cohesive(follower)) cycle
-        cohesive%points(follower) = cohesive%points(inertia%leaders(i))
-        cohesive%points(follower)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(follower)%sliding%slip
+    do i = 1, size(inertia%dependents)
+      associate (dependent => inertia%dependents(i))
+        if (.not. cohesive%cohesive(dependent)) cycle
+        cohesive%points(dependent) = cohesive%points(inertia%masters(i))
+        cohesive%points(dependent)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(dependent)%sliding%slip
       end associate
     end do
-  end subroutine copy_to_followers
+  end subroutine copy_to_dependents
 
   !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
   pure subroutine prepare(self, inertia, step_square)

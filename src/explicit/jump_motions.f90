@@ -1,4 +1,4 @@
-!> Jumps between layers in a step: motion, damage, and work of the forces on them.
+!> Jumps between layers in a step: update, damage, and work of the tractions.
 module jump_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -14,11 +14,11 @@ module jump_motions
 
 contains
 
-  !> Moves the jumps of an undamaged stack, and finds the onset of damage.
+  !> Updates the jumps of an undamaged stack, and finds the onset of damage.
   subroutine advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
-    !> Which of them
+    !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
     !> The step and the one before
@@ -37,7 +37,7 @@ contains
       change = steps%now*v(1:3, p)
       jump = u(1:3, p) + change
       k = stacks%stiffness([1, 1, 2], p)
-      ! The work of a linear spring beyond what it stores, as in `advance_points`.
+      ! Work of a linear spring beyond its stored energy, as in `advance_points`.
       stacks%lost(2, p) = stacks%lost(2, p) + (k(1)*change(1)*(change(1) + stacks%change(1, p)) &
                                                + k(2)*change(2)*(change(2) + stacks%change(2, p)) &
                                                + k(3)*change(3)*(change(3) + stacks%change(3, p)))/2
@@ -82,14 +82,15 @@ contains
     call faces%traction(jumps, old, traction, cohesive%points(p))
     if (faces%friction > 0) call add_release_heat(faces%law%stiffness_shear, before, old%sliding, &
                                                   cohesive%points(p)%sliding)
-    ! What damage and slip leave stored, and what they dissipate, is no longer lost otherwise.
+    ! Energy dissipated by damage and slip, and their change of the stored energy, are subtracted from the numerical
+    ! dissipation.
     stacks%lost(2, p) = stacks%lost(2, p) - stacks%area(p)*(faces%stored(jumps, cohesive%points(p)) - &
       faces%stored(jumps, old) + cohesive%points(p)%dissipated - old%dissipated + &
       cohesive%points(p)%sliding%heat - old%sliding%heat)
   end subroutine damage_point
 
-  !> Adds to the heat of slipping that of a limit which falls within the step: friction follows it down and slips at
-  !> what it is then, so that all that sticking has stored becomes heat.
+  !> Adds the heat of slip under a friction limit that decreases within the step: the traction follows the decreasing
+  !> limit, so that the elastic energy of sticking becomes heat.
   pure subroutine add_release_heat(stiffness, before, old, new)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness
@@ -106,13 +107,13 @@ contains
     new%heat = new%heat + (highest - old%limit)*slipped/2
   end subroutine add_release_heat
 
-  !> Moves the jumps of a damaged stack and its damage, and books what the forces on them did beyond what is stored. The
-  !> kinetic energy of the layers, taken at whole steps with the forces F of interfaces and elements there, changes by
-  !> minus F dJ - (F - F_old) dJ_old/2 (doc/theory): what of that is not stored or dissipated is lost.
+  !> Updates jumps and damage of a damaged stack, and books the work of the tractions beyond the stored energy. The
+  !> kinetic energy of the layers at whole steps changes by -(F dJ + (F - F_old) dJ_old/2) with the forces F on the
+  !> jumps J (doc/theory/energy.md); the part that is neither stored nor dissipated is numerical dissipation.
   subroutine advance_points(stacks, i, model, steps, limit, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
-    !> Which of them
+    !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
     !> The step and the one before
@@ -148,7 +149,7 @@ contains
     end do
   end subroutine advance_points
 
-  !> The point without sliding, so that it stores nothing but its opening.
+  !> The point without slip, which stores the energy of its opening only.
   pure function without_slip(point) result(plain)
     !> The point
     type(cohesive_point_t), intent(in) :: point

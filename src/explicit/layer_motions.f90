@@ -1,4 +1,5 @@
-!> Motion of the layers of one node: between rates of the unknowns and velocities of the layers, and what forces change.
+!> Motion of the layers of a node: conversion between rates of the unknowns and velocities of the layers, and
+!> accelerations by forces.
 module layer_motions
   use kinds, only: wp
   implicit none
@@ -29,7 +30,7 @@ contains
     end do
   end subroutine to_layers
 
-  !> Adds to the velocity of a layer what a force on it gives in a time.
+  !> Adds the change of velocity of a layer by a force during a time.
   pure subroutine accelerate(inverse, time, force, velocity)
     !> Inverse inertia, as in nodal_inertia_t
     real(wp), intent(in) :: inverse(7)
@@ -66,7 +67,7 @@ contains
     end do
   end subroutine accelerate_layers
 
-  !> Moves points that have one layer and that nothing but forces on it moves.
+  !> Updates unconstrained points with one layer.
   pure subroutine move_points(points, inverse, mean, step, force, u, v)
     !> The points
     integer, intent(in) :: points(:)
@@ -106,7 +107,7 @@ contains
     end do
   end subroutine find_rates
 
-  !> Adds to the velocities of the layers what the tractions between them give in a time.
+  !> Adds the change of velocity of the layers by the tractions between them during a time.
   pure subroutine push_layers(n, height, inverse, time, forces, layer)
     !> Interfaces
     integer, intent(in) :: n
@@ -116,7 +117,7 @@ contains
     real(wp), intent(in) :: inverse(7, n + 1)
     !> The time
     real(wp), intent(in) :: time
-    !> Forces that pull the jumps back, (3, n)
+    !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(3, n)
     !> Velocities of the layers, (5, n + 1)
     real(wp), intent(inout) :: layer(5, n + 1)
@@ -142,7 +143,7 @@ contains
     integer, intent(in) :: n
     !> Height of the interface above each layer, (n + 1)
     real(wp), intent(in) :: height(n + 1)
-    !> Forces that pull the jumps back, (3, n)
+    !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(3, n)
     !> The layer
     integer, intent(in) :: l

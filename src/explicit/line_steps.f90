@@ -1,10 +1,10 @@
-!> Lines in steps by central differences: those that press add forces to their layers, those that hold or move the
-!> plate prescribe the velocity of a layer at each node.
+!> Lines in steps by central differences: lines with a force add it to their layers, lines with a displacement prescribe
+!> the velocity of a layer at each node.
 !>
-!> What a line prescribes is one component of a layer's motion, u + z theta_x at the layer's middle, v + z theta_y, w
-!> or a rotation: c v = q. The inverse inertia of the layer loses that direction, M^-1 - M^-1 c c^T M^-1/(c^T M^-1
-!> c), so that no other force moves it, and the velocity is corrected along M^-1 c. The reaction is what the layer's
-!> momentum then lacks.
+!> A line prescribes one component of a layer's motion, u + z theta_x at the middle of the layer, v + z theta_y, w or a
+!> rotation: c v = q. The inverse inertia of the layer is projected, M^-1 - M^-1 c c^T M^-1/(c^T M^-1 c), so that forces
+!> do not change the component, and the velocity is corrected along M^-1 c. The reaction follows from the momentum
+!> balance of the layer.
 module line_steps
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
@@ -17,7 +17,7 @@ module line_steps
   private
   public :: line_steps_t, create_line_steps
 
-  !> A component of a layer's motion that a line prescribes.
+  !> A prescribed component of a layer's motion.
   type :: pin_t
     !> Point of the layer, and the line
     integer :: point = 0, line = 0
@@ -25,11 +25,11 @@ module line_steps
     integer :: component = 0
     !> Height at which it is prescribed
     real(wp) :: height = 0
-    !> Velocity that a unit of the component's velocity takes: of the displacement and of the rotation, or of w alone
+    !> Velocities of displacement and rotation, or of w, per unit velocity of the component
     real(wp) :: gain(2) = 0
     !> Rate in the step
     real(wp) :: rate = 0
-    !> What the component had at the start of the run beyond what is prescribed
+    !> Difference between the component and its prescribed value at the start of the run
     real(wp) :: offset = 0
     !> Reaction in the last step, and change of the component in it
     real(wp) :: reaction = 0, change = 0
@@ -37,26 +37,26 @@ module line_steps
 
   !> The lines of a model.
   type :: line_steps_t
-    !> What they prescribe, those of one point after each other
+    !> Prescribed components, sorted by point
     type(pin_t), allocatable :: pins(:)
     !> First of the pins of each point, (points + 1)
     integer, allocatable, private :: first(:)
     !> Work of the lines so far, (points)
     real(wp), allocatable :: work(:)
   contains
-    !> True: a line prescribes some motion of a point.
+    !> True: a component of a point is prescribed.
     procedure :: is_pinned
-    !> Takes the pinned directions out of the inverse inertia.
+    !> Projects the prescribed components out of the inverse inertia.
     procedure :: project
-    !> Takes a motion for that from which the prescribed one starts.
+    !> Sets the motion from which the prescribed one starts.
     procedure :: start_from
     !> Finds the rates of a step.
     procedure :: find_rates
-    !> Gives the layer of a point the velocity that is prescribed.
+    !> Sets the prescribed velocity of the layer of a point.
     procedure :: prescribe
     !> Books the reactions on a point.
     procedure :: react
-    !> Adds the forces of lines that press.
+    !> Adds the forces of lines with a force.
     procedure :: press
     !> Force of each line on the full plate.
     procedure :: totals
@@ -69,24 +69,24 @@ contains
   !> The lines of a model.
   function create_line_steps(model, inertia) result(self)
     type(model_t), intent(in) :: model
-    !> Lumped inertia, with what is held and which points follow
+    !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> The lines
     type(line_steps_t) :: self
     type(pin_t), allocatable :: pins(:)
-    logical :: follows(size(model%distribution%points))
+    logical :: is_dependent(size(model%distribution%points))
     integer :: line, node, p
 
-    follows = .false.
-    follows(inertia%followers) = .true.
-    allocate (pins(0), self%work(size(follows)), self%first(size(follows) + 1))
+    is_dependent = .false.
+    is_dependent(inertia%dependents) = .true.
+    allocate (pins(0), self%work(size(is_dependent)), self%first(size(is_dependent) + 1))
     self%work = 0
     do line = 1, size(model%lines)
       associate (its => model%lines(line))
         if (.not. its%load%prescribed) cycle
         do node = 1, size(its%weight)
           p = its%point(its%first(node))
-          if (follows(p) .or. inertia%held(its%load%component, p)) cycle
+          if (is_dependent(p) .or. inertia%held(its%load%component, p)) cycle
           pins = [pins, pin_t(point=p, line=line, component=its%load%component, &
                               height=merge(its%height(node), 0.0_wp, its%load%component <= 2))]
         end do
@@ -95,7 +95,7 @@ contains
     call sort_pins(self, pins)
   end function create_line_steps
 
-  !> True: a line prescribes some motion of a point.
+  !> True: a component of a point is prescribed.
   pure logical function is_pinned(self, p)
     !> The lines
     class(line_steps_t), intent(in) :: self
@@ -105,7 +105,7 @@ contains
     is_pinned = self%first(p + 1) > self%first(p)
   end function is_pinned
 
-  !> Takes the pinned directions out of the inverse inertia.
+  !> Projects the prescribed components out of the inverse inertia.
   pure subroutine project(self, inverse)
     !> The lines
     class(line_steps_t), intent(inout) :: self
@@ -127,7 +127,7 @@ contains
                     m(from + 1)*direction(1) + m(from + 2)*direction(2)]
         compliance = dot_product(pin%gain, direction)
         if (.not. compliance > 0) then
-          ! What a support holds moves only as it is prescribed.
+          ! Supported components move only as prescribed.
           pin%gain = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], pin%component <= 2)
           cycle
         end if
@@ -137,26 +137,26 @@ contains
     end do
   end subroutine project
 
-  !> Takes a motion for that from which the prescribed one starts: lines and supports come to their places from there.
-  !> So what supports hold is prescribed too where it is not zero.
+  !> Sets the motion from which the prescribed one starts: lines and supports move from there to their prescribed
+  !> positions. Supported components with a non-zero value are prescribed, too.
   subroutine start_from(self, model, inertia, motion)
     !> The lines
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Lumped inertia, with what is held and which points follow
+    !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
     type(pin_t), allocatable :: pins(:)
-    logical :: follows(size(motion, 2))
+    logical :: is_dependent(size(motion, 2))
     integer :: i, p, component
 
-    follows = .false.
-    follows(inertia%followers) = .true.
+    is_dependent = .false.
+    is_dependent(inertia%dependents) = .true.
     pins = self%pins
     do p = 1, model%distribution%owned
       do component = 1, 5
-        if (inertia%held(component, p) .and. .not. follows(p) .and. abs(motion(component, p)) > 0) &
+        if (inertia%held(component, p) .and. .not. is_dependent(p) .and. abs(motion(component, p)) > 0) &
           pins = [pins, pin_t(point=p, component=component)]
       end do
     end do
@@ -169,11 +169,11 @@ contains
     end do
   end subroutine start_from
 
-  !> Puts those of one point after each other.
+  !> Sorts prescribed components by point.
   pure subroutine sort_pins(self, pins)
     !> The lines
     class(line_steps_t), intent(inout) :: self
-    !> What is prescribed, in any order
+    !> Prescribed components, in any order
     type(pin_t), intent(in) :: pins(:)
     integer :: order(size(pins)), i, p
 
@@ -192,7 +192,7 @@ contains
     self%pins = pins(order)
   end subroutine sort_pins
 
-  !> Finds the rates that bring each pinned component to its value at the end of the step.
+  !> Computes the rates by which each component has its prescribed value at the end of the step.
   pure subroutine find_rates(self, model, steps, load_factor, left, motion)
     !> The lines
     class(line_steps_t), intent(inout) :: self
@@ -201,7 +201,7 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Ramps over their full values at the end of the step
     real(wp), intent(in) :: load_factor
-    !> Part of the offsets at the start that is left at the end of the step
+    !> Fraction of the initial offsets that remains at the end of the step
     real(wp), intent(in) :: left
     !> Motion of the layers at the start of the step, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -228,7 +228,7 @@ contains
     if (pin%component <= 2) value = value + pin%height*motion(pin%component + 3)
   end function component_of
 
-  !> Gives the layer of a point the velocity that is prescribed.
+  !> Sets the prescribed velocity of the layer of a point.
   pure subroutine prescribe(self, p, velocity)
     !> The lines
     class(line_steps_t), intent(in) :: self
@@ -253,7 +253,7 @@ contains
     end do
   end subroutine prescribe
 
-  !> Books the reactions on a point: what its layer's momentum has gained beyond the other forces.
+  !> Books the reactions on a point: change of the momentum of its layer minus the impulse of the other forces.
   pure subroutine react(self, p, steps, mass, before, after, force)
     !> The lines
     class(line_steps_t), intent(inout) :: self
@@ -284,7 +284,7 @@ contains
     end do
   end subroutine react
 
-  !> Adds the forces of lines that press, and their work in a step under the mean of the forces at its ends.
+  !> Adds the forces of lines with a force, and their work in a step by the mean of the forces at its ends.
   pure subroutine press(self, model, load_factors, change, forces)
     !> The lines
     class(line_steps_t), intent(inout) :: self
@@ -367,7 +367,7 @@ contains
     end do
   end subroutine visit
 
-  !> Adds what supports move to its place, known by its offsets.
+  !> Adds the supported components with an offset to the prescribed components.
   pure subroutine add_offset(self, offsets)
     !> The lines
     type(line_steps_t), intent(inout) :: self

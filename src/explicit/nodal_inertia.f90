@@ -1,10 +1,10 @@
-!> Lumped inertia of the layers at each node, and the inverse that turns forces on a layer into its accelerations.
+!> Lumped inertia of the layers at each node, and its inverse.
 !>
 !> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
 !> where the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which
 !> lengthens the stable step (L. Olovsson, K. Simonsson, M. Unosson, International Journal for Numerical Methods in
-!> Engineering 63 (2005) 1436-1445); the mass of w is never scaled. Points that take their motion from others add
-!> their inertia to these.
+!> Engineering 63 (2005) 1436-1445); the mass of w is never scaled. The inertia of dependent points is added to that of
+!> the points that determine their motion.
 module nodal_inertia
   use kinds, only: wp
   use leading_points, only: find_leading_points
@@ -18,22 +18,22 @@ module nodal_inertia
 
   !> Inertia of this rank's points.
   type :: nodal_inertia_t
-    !> I0, I1, I2 of motion in the plane and of rotation, scaled, and I0 of w, (4, points); zero where a point follows
+    !> Scaled I0, I1, I2 of in-plane motion and rotation, and I0 of w, (4, points); zero at dependent points
     real(wp), allocatable :: mass(:, :)
-    !> Unknowns held at zero, (5, points)
+    !> True for unknowns constrained to zero, (5, points)
     logical, allocatable :: held(:, :)
-    !> Springs that hold the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
+    !> Stiffness of springs on the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
     real(wp), allocatable :: springs(:, :)
-    !> Inverse of inertia and implicit springs, zero for what is held, (7, points)
+    !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
     real(wp), allocatable :: inverse(:, :)
-    !> Points that follow others, and their leaders, (followers)
-    integer, allocatable :: followers(:), leaders(:)
-    !> Signs of their motion, (5, followers)
+    !> Dependent points and their masters, (dependents)
+    integer, allocatable :: dependents(:), masters(:)
+    !> Signs of their motion, (5, dependents)
     real(wp), allocatable :: signs(:, :)
   contains
-    !> Finds the inverse for a step.
+    !> Computes the inverse for a step.
     procedure :: invert
-    !> Adds forces on points that follow to those on their leaders; gives them their leaders' motion.
+    !> Adds forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: spread
   end type nodal_inertia_t
@@ -53,13 +53,13 @@ contains
     allocate (self%mass(4, points), self%inverse(7, points))
     self%mass(1:3, :) = scaling*model%lumped
     self%mass(4, :) = model%lumped(1, :)
-    call find_followers(model, self)
+    call find_dependents(model, self)
     call fold_mass(self, self%mass)
     call find_springs(model, self)
   end function create_nodal_inertia
 
-  !> Points of this rank that follow others, and what supports and symmetry hold.
-  subroutine find_followers(model, self)
+  !> Dependent points of this rank, and unknowns constrained by supports and symmetry.
+  subroutine find_dependents(model, self)
     type(model_t), intent(in) :: model
     !> Receives them
     type(nodal_inertia_t), intent(inout) :: self
@@ -69,29 +69,29 @@ contains
 
     held = model%held
     call find_leading_points(model%mesh, leader, signs, held, model%images)
-    associate (share => model%distribution)
-      self%held = held(:, share%points)
-      self%followers = pack([(i, i=1, share%owned)], leader(share%points(:share%owned)) > 0)
-      self%leaders = share%local(leader(share%points(self%followers)))
-      self%signs = signs(:, share%points(self%followers))
+    associate (partition => model%distribution)
+      self%held = held(:, partition%points)
+      self%dependents = pack([(i, i=1, partition%owned)], leader(partition%points(:partition%owned)) > 0)
+      self%masters = partition%local(leader(partition%points(self%dependents)))
+      self%signs = signs(:, partition%points(self%dependents))
     end associate
-  end subroutine find_followers
+  end subroutine find_dependents
 
-  !> Adds the inertia of followers to that of their leaders, whose motion has the same energy.
+  !> Adds the inertia of dependent points to that of their masters, which have the same kinetic energy.
   pure subroutine fold_mass(self, mass)
     !> The inertia
     type(nodal_inertia_t), intent(in) :: self
-    !> A nodal quantity that has no sign, (:, points)
+    !> A nodal quantity without sign, (:, points)
     real(wp), intent(inout) :: mass(:, :)
     integer :: i
 
-    do i = 1, size(self%followers)
-      mass(:, self%leaders(i)) = mass(:, self%leaders(i)) + mass(:, self%followers(i))
-      mass(:, self%followers(i)) = 0
+    do i = 1, size(self%dependents)
+      mass(:, self%masters(i)) = mass(:, self%masters(i)) + mass(:, self%dependents(i))
+      mass(:, self%dependents(i)) = 0
     end do
   end subroutine fold_mass
 
-  !> Springs of clamps and of elastic edges at the points of the first layer. Those of edges are lumped as the mass is.
+  !> Stiffness of clamps and elastic edges at the points of the first layer, edges lumped like the mass.
   subroutine find_springs(model, self)
     type(model_t), intent(in) :: model
     !> Receives them
@@ -119,7 +119,7 @@ contains
     call fold_mass(self, self%springs)
   end subroutine find_springs
 
-  !> Finds the inverse for steps of a length: what springs add to the inertia goes with its square.
+  !> Computes the inverse for a step length, with the stiffness of springs times its square.
   pure subroutine invert(self, step_square)
     !> The inertia
     class(nodal_inertia_t), intent(inout) :: self
@@ -140,13 +140,13 @@ contains
     end do
   end subroutine invert
 
-  !> Inverse of the inertia of displacement and rotation, with what is held out of it.
+  !> Inverse of the inertia of displacement and rotation, without constrained unknowns.
   pure function inverse_block(mass, held) result(inverse)
     !> I0, I1, I2
     real(wp), intent(in) :: mass(3)
-    !> True for what is held: displacement, rotation
+    !> True for constrained unknowns: displacement, rotation
     logical, intent(in) :: held(2)
-    !> Of displacement, of both, of rotation
+    !> Entries of displacement, coupling, rotation
     real(wp) :: inverse(3)
     real(wp) :: determinant
 
@@ -162,23 +162,23 @@ contains
     end if
   end function inverse_block
 
-  !> Adds forces on points that follow to those on their leaders.
+  !> Adds forces on dependent points to those on their masters.
   pure subroutine fold(self, forces)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self
-    !> Forces, (5, points); those on followers become zero
+    !> Forces, (5, points); those on dependents become zero
     real(wp), intent(inout) :: forces(:, :)
     integer :: i
 
-    do i = 1, size(self%followers)
-      associate (follower => self%followers(i), leader => self%leaders(i))
-        forces(:, leader) = forces(:, leader) + self%signs(:, i)*forces(:, follower)
-        forces(:, follower) = 0
+    do i = 1, size(self%dependents)
+      associate (dependent => self%dependents(i), leader => self%masters(i))
+        forces(:, leader) = forces(:, leader) + self%signs(:, i)*forces(:, dependent)
+        forces(:, dependent) = 0
       end associate
     end do
   end subroutine fold
 
-  !> Gives points that follow their leaders' motion.
+  !> Sets the motion of dependent points to that of their masters.
   pure subroutine spread(self, motion)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self
@@ -186,8 +186,8 @@ contains
     real(wp), intent(inout) :: motion(:, :)
     integer :: i
 
-    do i = 1, size(self%followers)
-      motion(:, self%followers(i)) = self%signs(:, i)*motion(:, self%leaders(i))
+    do i = 1, size(self%dependents)
+      motion(:, self%dependents(i)) = self%signs(:, i)*motion(:, self%masters(i))
     end do
   end subroutine spread
 end module nodal_inertia

@@ -13,8 +13,8 @@ module rig_reactions
 
 contains
 
-  !> Force of each rig on the full plate, positive against the impact: what a held w takes of the forces on its
-  !> layer, the reactions of frames, springs and clamps. Collective.
+  !> Reaction of each rig on the full plate, positive against the impact: forces at constrained deflections, reactions
+  !> of frames, springs and clamps. Collective.
   function reactions_of(method, model, now) result(reactions)
     !> The method
     type(central_difference_t), intent(in) :: method

@@ -1,7 +1,7 @@
-!> Frames that the plate may lift off, clamps and elastic edges in a step, node by node.
+!> Unilateral frames, clamps and elastic edges in a step, node by node.
 !>
-!> A frame bears the first layer of its nodes by a bound, w <= 0: what would pass it comes to rest on it. Springs follow
-!> the motion at the end of the step, so that their stiffness sets no limit to it.
+!> A frame constrains the first layer of its nodes by w <= 0. Springs are implicit, so that their stiffness does not
+!> limit the step.
 module rig_steps
   use archives, only: archive_t
   use kinds, only: wp
@@ -13,16 +13,16 @@ module rig_steps
 
   !> State of frames and springs at this rank's points, (points) each.
   type :: rig_steps_t
-    !> True where a frame bears the plate
+    !> True at points on a frame
     logical, allocatable :: on_frame(:)
     !> Reaction of the frame in the last step, force, and change of w in it
     real(wp), allocatable :: reaction(:), approach(:)
-    !> Energy lost so far on frames, and to the implicit treatment of springs and to changes of the step's length
+    !> Energy dissipated so far on frames, and numerically by implicit springs and by changes of the step length
     real(wp), allocatable :: frame_loss(:), step_loss(:)
   contains
-    !> Brings a node to rest on its frame.
+    !> Stops a node at its frame.
     procedure :: stop_at_frame
-    !> Adds the forces of springs, and books what they take.
+    !> Adds the forces of springs.
     procedure :: pull
     procedure :: book_springs
     !> Saves or loads.
@@ -45,7 +45,7 @@ contains
               source=0.0_wp)
   end function create_rig_steps
 
-  !> Brings a node that would pass its frame to rest on it, and books what it loses there.
+  !> Stops a node that would pass its frame, and books the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
     !> The frames
     class(rig_steps_t), intent(inout) :: self
@@ -73,9 +73,7 @@ contains
     self%approach(p) = steps%now*rate
   end subroutine stop_at_frame
 
-  !> Adds the forces of springs at the end of the step, as far as they are known at its start; the rest is in the
-  !> inverse
-  !> inertia.
+  !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
   pure subroutine pull(self, springs, steps, u, v, force)
     !> The springs' state
     class(rig_steps_t), intent(in) :: self
@@ -91,8 +89,9 @@ contains
     force = force - springs*(u + steps%now*v)
   end subroutine pull
 
-  !> Books what springs did in a step beyond what they store: half their stiffness times the change in the step, times
-  !> that and the change in the step before, for which this one is taken. The difference is of third order.
+  !> Books the work of springs in a step beyond their stored energy: half the stiffness times the change in the step,
+  !> times the sum of the changes in this and the previous step. The change of the previous step is approximated by that
+  !> of this step, with an error of third order.
   pure subroutine book_springs(self, springs, steps, u, v)
     !> The springs' state
     class(rig_steps_t), intent(inout) :: self

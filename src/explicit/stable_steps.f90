@@ -1,4 +1,4 @@
-!> Stable step of central differences: 2/omega of the highest frequency that elements have on lumped inertia.
+!> Stable step of central differences: 2/omega with the highest frequency of the elements with lumped inertia.
 !>
 !> No frequency of the assembled plate lies above the highest of a single element with its own part of the inertia
 !> (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of an element is found by
@@ -18,11 +18,12 @@ module stable_steps
   private
   public :: highest_element_frequency, stiffened_frequency
 
-  !> Products of an iteration. The estimate rises from below; images of an element differ by less than 1e-6 after these.
+  !> Number of Lanczos steps. The estimate converges from below; after these steps congruent elements differ by less
+  !> than 1e-6.
   integer, parameter :: products = 24
-  !> Halvings by which the largest root of the tridiagonal matrix is found, to rounding.
+  !> Number of bisections for the largest root of the tridiagonal matrix, to round-off.
   integer, parameter :: halvings = digits(1.0_wp)
-  !> Least divisor, for elements without mass that fill up a batch.
+  !> Smallest divisor, for padding elements of a batch, which have no mass.
   real(wp), parameter :: least = tiny(1.0_wp)**0.25_wp
   !> Largest integral of the squared gradient of nine-node shapes over that of their square, lumped by Simpson's rule,
   !> in an element of sides 2: 6 of the waves along one side, 1.2 of those along the other.
@@ -30,10 +31,10 @@ module stable_steps
 
 contains
 
-  !> A number between -1 and 1 that goes with another one, the same everywhere (G. Marsaglia, Journal of Statistical
+  !> Pseudo-random number between -1 and 1 for a seed, the same on every machine (G. Marsaglia, Journal of Statistical
   !> Software 8 (2003) 14, xorshift).
   pure real(wp) function scattered(number)
-    !> The other number
+    !> The seed
     integer, intent(in) :: number
     integer(long) :: bits
 
@@ -44,7 +45,7 @@ contains
     scattered = real(iand(bits, 2_long**31 - 1), wp)/2.0_wp**30 - 1
   end function scattered
 
-  !> Highest angular frequency of any element of all ranks, and the element of the mesh that has it. Collective.
+  !> Highest angular frequency of all elements, and the number of the element. Collective.
   subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_elements)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -79,17 +80,17 @@ contains
     omega = sqrt(omega)
   end subroutine highest_element_frequency
 
-  !> Highest frequency with the slopes and the tension of a motion. Where the plate is sloped its membrane stiffness
-  !> acts on w too, whose mass is not scaled, and so does tension: with S the derivatives of the membrane strains by
-  !> grad w, grad w stores grad w^T G grad w / 2 per area, G = S^T A S + N with what damage has left of A. In the
-  !> element's own coordinates, of length 2, no w stores more than `gradient` times the larger eigenvalue of G there
-  !> times the integral of w**2 (`geometric_stiffness`). The energies of strains u and of slopes are at most
-  !> (omega_u |u| + omega_w |w|)**2, so the squares of both frequencies add up. Collective.
+  !> Upper bound of the highest frequency with slopes and membrane tension. On a sloped plate membrane stiffness and
+  !> tension act on w, whose mass is not scaled: with the derivatives S of the membrane strains by grad w, the energy
+  !> per area is grad w^T G grad w / 2, G = S^T A S + N, with the damaged membrane stiffness A. In element coordinates
+  !> of length 2 it is at most `gradient` times the larger eigenvalue of G times the integral of w**2
+  !> (`geometric_stiffness`). The energies of strains u and of slopes are at most (omega_u |u| + omega_w |w|)**2, so the
+  !> squares of both frequencies are added. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, motion) result(omega)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
-    !> Square of the highest frequency of each element without motion, (lanes, batches)
+    !> Square of the highest frequency of each undeformed element, (lanes, batches)
     real(wp), contiguous, intent(in) :: of_elements(:, :)
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
@@ -111,8 +112,8 @@ contains
     omega = sqrt(omega)
   end function stiffened_frequency
 
-  !> Largest stiffness against slopes that membrane stiffness and membrane forces give the points of a batch, per area:
-  !> the larger eigenvalue of S^T A S + N in the coordinates of the element.
+  !> Largest geometric stiffness per area in each element of a batch: the larger eigenvalue of S^T A S + N in element
+  !> coordinates.
   pure function geometric_stiffness(c, inverse, slopes, forces) result(largest)
     !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
@@ -141,8 +142,7 @@ contains
     end do
   end function geometric_stiffness
 
-  !> Squares of the highest frequencies of the elements of a batch: largest root of K M^-1 on the forces of `products`
-  !> motions.
+  !> Squares of the highest frequencies of the elements of a batch: largest eigenvalue of K M^-1 by Lanczos iteration.
   function batch_frequencies(model, b, stiffness, scaling) result(squares)
     type(model_t), intent(in) :: model
     !> Number of the batch
@@ -220,7 +220,7 @@ contains
     end associate
   end function inverse_inertia
 
-  !> A motion that has parts of all modes.
+  !> Start vector with components of all modes.
   pure function scattered_motion(inverse) result(r)
     !> Inverse inertia of the nodes
     real(wp), intent(in) :: inverse(lanes, 9, 4)
@@ -236,12 +236,12 @@ contains
     end do
   end function scattered_motion
 
-  !> Largest roots of symmetric tridiagonal matrices, by Sturm's sequence: a positive pivot of the matrix less x says
-  !> that there is a root above x.
+  !> Largest eigenvalues of symmetric tridiagonal matrices by Sturm sequences: a positive pivot of the matrix minus x
+  !> times identity means an eigenvalue above x.
   pure function largest_roots(diagonal, beside) result(roots)
     !> Diagonals, (lane, row)
     real(wp), intent(in) :: diagonal(lanes, products)
-    !> What stands beside them, (lane, row)
+    !> Off-diagonal entries, (lane, row)
     real(wp), intent(in) :: beside(lanes, products - 1)
     !> (lane)
     real(wp) :: roots(lanes)
@@ -264,7 +264,7 @@ contains
     end do
   end function largest_roots
 
-  !> Turns forces into accelerations.
+  !> Multiplies forces by the inverse inertia.
   pure subroutine divide(inverse, r)
     !> Inverse inertia of the nodes
     real(wp), intent(in) :: inverse(lanes, 9, 4)

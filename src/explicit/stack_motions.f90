@@ -1,4 +1,4 @@
-!> Moves the layers of a node by one step: velocities from the forces on each layer, tractions between them, jumps.
+!> Motion of the layers of a node in a step: velocities from the forces on each layer, tractions between them, jumps.
 module stack_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -39,7 +39,7 @@ contains
     end do
   end function new_workspaces
 
-  !> Moves all stacks.
+  !> Updates all stacks.
   subroutine move_stacks(stacks, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
     !> The stacks; receive forces, changes of the jumps and losses
     type(interface_stacks_t), intent(inout) :: stacks
@@ -56,7 +56,7 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Forces on the layers, without tractions, (5, points)
     real(wp), intent(in) :: force(:, :)
-    !> The interfaces; damage grows
+    !> The interfaces; receive the growth of damage
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
@@ -67,11 +67,11 @@ contains
     end do
   end subroutine move_stacks
 
-  !> Moves one stack.
+  !> Updates one stack.
   subroutine move_stack(stacks, i, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
-    !> Which of them
+    !> Index of the stack
     integer, intent(in) :: i
     !> Work array
     type(stack_t), intent(inout) :: work
@@ -134,11 +134,11 @@ contains
     u(:, p) = u(:, p) + steps%now*v(:, p)
   end subroutine move_stack
 
-  !> Rests the first layer on a frame that it would penetrate: then it does not move with the layers below.
+  !> Stops the first layer at a frame that it would penetrate, independently of the layers below.
   pure subroutine rest_on_frame(stacks, i, rigs, inertia, steps, w, jump, free, layer, forces)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
-    !> Which of them
+    !> Index of the stack
     integer, intent(in) :: i
     !> Frames
     type(rig_steps_t), intent(inout) :: rigs
@@ -177,7 +177,7 @@ contains
   pure subroutine book_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
-    !> Which of them
+    !> Index of the stack
     integer, intent(in) :: i
     !> The lines
     type(line_steps_t), intent(inout) :: lines
@@ -203,11 +203,10 @@ contains
   end subroutine book_reactions
 
   !> Forces of a damaged stack. If damage grows, they are computed again with the mean of old and new damage. With the
-  !> old
-  !> damage the tractions would do more work than the law stores and dissipates, with the new damage less: by plus and
-  !> minus half of the reduction of the traction times the change of the jump.
+  !> old damage the work of the tractions exceeds the energy stored and dissipated by the law, with the new damage it is
+  !> less: by half of the reduction of the traction times the change of the jump.
   pure subroutine solve_damaged(work, model, cohesive, p)
-    !> The stack; receives its forces
+    !> The stack; receives the forces
     type(stack_t), intent(inout) :: work
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -239,7 +238,7 @@ contains
     call solve_shears(work)
   end subroutine solve_damaged
 
-  !> Sets up a damaged stack from the state.
+  !> Copies a damaged stack from the state.
   pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks

@@ -30,7 +30,7 @@ module stack_solutions
     logical, allocatable :: closing(:)
     !> Coefficient of friction
     real(wp), allocatable :: friction(:)
-    !> Forces on the jumps found, (3, n)
+    !> Forces on the jumps, (3, n)
     real(wp), allocatable :: forces(:, :)
     !> Friction limit of this step, force
     real(wp), allocatable :: limit(:)
@@ -81,7 +81,7 @@ contains
     end do
   end function jumps_of
 
-  !> Reduction of the jumps by the forces.
+  !> Change of the jumps by the forces.
   pure function jump_reduction(stack, k) result(change)
     !> The stack with its forces
     type(stack_t), intent(in) :: stack

@@ -1,4 +1,4 @@
-!> Lengths of the steps between which velocities are found.
+!> Lengths of the present and the previous step.
 module step_lengths
   use kinds, only: wp
   implicit none
@@ -10,15 +10,15 @@ module step_lengths
     !> Length of the step, and of the one before; 0: there was none
     real(wp) :: now = 0, last = 0
   contains
-    !> Time between the velocities in the middles of both steps.
+    !> Time between the mid-step velocities of both steps.
     procedure :: mean
-    !> Way that a force at the end of the step works over beyond those of steps of one length.
+    !> Additional displacement over which the force at the end of a step does work when the step length changes.
     procedure :: shift
   end type step_lengths_t
 
 contains
 
-  !> Time between the velocities in the middles of both steps.
+  !> Time between the mid-step velocities of both steps.
   pure real(wp) function mean(self)
     !> The steps
     class(step_lengths_t), intent(in) :: self
@@ -26,9 +26,9 @@ contains
     mean = (self%now + self%last)/2
   end function mean
 
-  !> Way that a force R at the end of the step works over beyond those of steps of one length. Kinetic energy taken at
-  !> whole steps, v M v/2 + h R v/2, changes by R (h_mean (v_old + v)/2 + h v/2) - h_old R_old v_old/2; in steps of one
-  !> length that is R dq + (R - R_old) dq_old/2.
+  !> Additional displacement over which the force R at the end of a step does work when the step length changes. The
+  !> kinetic energy at whole steps, v M v/2 + h R v/2, changes by R (h_mean (v_old + v)/2 + h v/2) - h_old R_old
+  !> v_old/2; for equal steps this is R dq + (R - R_old) dq_old/2.
   elemental real(wp) function shift(self, before, after)
     !> The steps
     class(step_lengths_t), intent(in) :: self
@@ -42,7 +42,7 @@ contains
     shift = (self%now - self%last)/4*shift
   end function shift
 
-  !> Length of steps of which a whole number makes up a time.
+  !> Largest step length not above a bound of which an integer number equals a time.
   pure real(wp) function whole_step(time, longest) result(step)
     !> The time, and the longest step
     real(wp), intent(in) :: time, longest

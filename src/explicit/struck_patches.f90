@@ -1,4 +1,4 @@
-!> Contact area of the impactor in central differences: the deck's patch, or the area that a nose touches.
+!> Contact area of the impactor in central differences: the patch of the deck, or the contact area of a nose.
 !>
 !> The points are listed in the order of the mesh on every rank, so that mean deflection and force distribution are
 !> identical on any number of ranks. The force of a nose is distributed by the deflection at the end of each step
@@ -14,26 +14,26 @@ module struck_patches
 
   !> The points within reach.
   type :: struck_patch_t
-    !> Position of each point among those that this rank owns; 0: another rank has it, (reached)
+    !> Index of each point among those of this rank; 0: on another rank, (reached)
     integer, allocatable :: local(:)
     !> Weights of the deck's patch, area beside it, and height of the nose's surface above its tip, (reached)
     real(wp), allocatable, private :: under(:), beside(:), rise(:)
-    !> Weights by which the force is spread, and inverse inertia of w, (reached)
+    !> Weights of the force distribution, and inverse inertia of w, (reached)
     real(wp), allocatable :: weights(:), inverse(:)
     !> Offset of the mean deflection by earlier changes of the weights
     real(wp) :: offset = 0
-    !> True: the force follows the nose
+    !> True: the distribution follows the shape of the nose
     logical, private :: follows = .false.
     !> Area of the modelled part of the deck's patch
     real(wp), private :: area = 0
   contains
     !> Deflections of the points.
     procedure :: find_deflections
-    !> Takes the inverse inertia of the points.
+    !> Gathers the inverse inertia of the points.
     procedure :: gather
     !> Deflection under the impactor.
     procedure :: mean
-    !> Distributes the force again.
+    !> Updates the force distribution.
     procedure :: spread
     !> Adds the nodal forces of a force.
     procedure :: push
@@ -55,16 +55,16 @@ contains
     integer :: i
 
     fields = 0
-    associate (share => model%distribution)
-      do i = 1, share%owned
+    associate (partition => model%distribution)
+      do i = 1, partition%owned
         if (allocated(model%contact%nose)) then
           associate (nose => model%contact%nose)
-            fields(1:3, share%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
+            fields(1:3, partition%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
           end associate
         else
-          fields(1, share%points(i)) = model%contact%weights(i)
+          fields(1, partition%points(i)) = model%contact%weights(i)
         end if
-        fields(4, share%points(i)) = i
+        fields(4, partition%points(i)) = i
       end do
       list = reshape(fields, [size(list)])
       where (.not. abs(list) > 0) list = 0
@@ -74,8 +74,8 @@ contains
       end if
       fields = reshape(list, shape(fields))
       reached = pack([(i, i=1, size(fields, 2))], abs(fields(1, :)) + abs(fields(2, :)) > 0)
-      self%local = share%local(reached)
-      where (self%local > share%owned) self%local = 0
+      self%local = partition%local(reached)
+      where (self%local > partition%owned) self%local = 0
     end associate
     self%under = fields(1, reached)
     self%beside = fields(2, reached)
@@ -109,7 +109,7 @@ contains
     struck = list(size(list))
   end subroutine find_deflections
 
-  !> Takes the inverse inertia of the points from the ranks that have them. Collective.
+  !> Gathers the inverse inertia of the points from their ranks. Collective.
   subroutine gather(self, model, inverse)
     !> The points
     class(struck_patch_t), intent(inout) :: self
@@ -136,13 +136,14 @@ contains
     mean = dot_product(self%weights, w) + self%offset
   end function mean
 
-  !> Distributes the force by the contact of the nose with the deflected plate. The indentation remains continuous.
+  !> Updates the force distribution by the contact of the nose with the deflected plate. The indentation remains
+  !> continuous.
   pure subroutine spread(self, w, indentation)
     !> The points
     class(struck_patch_t), intent(inout) :: self
     !> Their deflections, (reached)
     real(wp), intent(in) :: w(:)
-    !> The indentation; the patch alone is pressed without it
+    !> The indentation; without it the patch is loaded
     real(wp), intent(in) :: indentation
     real(wp) :: pressure(size(w)), weights(size(w)), sums(2)
 

@@ -31,7 +31,7 @@ contains
     end do
   end subroutine factorize
 
-  !> Solves with these factors along x, y and z.
+  !> Solves with the factors along x, y and z.
   pure subroutine solve_factored(n, factors, jumps, forces)
     !> Interfaces
     integer, intent(in) :: n
@@ -53,7 +53,7 @@ contains
     end do
   end subroutine solve_factored
 
-  !> Solves for any stiffnesses, zero too, and given parts of the forces.
+  !> Solves for any stiffnesses, including zero, and given parts of the forces.
   pure subroutine solve_tractions(n, stiffness, given, diagonal, beside, jumps, forces)
     !> Interfaces
     integer, intent(in) :: n

@@ -10,13 +10,13 @@ module unstable_motions
   private
   public :: refuse_instability
 
-  !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
-  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it.
+  !> Error of the energy ledger, relative to initial energy plus external work, above which a run ends. An unstable mode
+  !> grows exponentially and passes it within a few steps; the check of the ledger warns from a tenth of it.
   real(wp), parameter :: max_created = 0.1_wp
 
 contains
 
-  !> Ends a run whose energy grows without a cause. Collective.
+  !> Sets an error if the energy error shows unstable growth. Collective.
   subroutine refuse_instability(model, now, error)
     type(model_t), intent(in) :: model
     !> The state, with its ledger
@@ -30,14 +30,14 @@ contains
     energy = max(now%ledger%initial, now%ledger%external_work, now%ledger%initial + now%ledger%external_work)
     if (created <= max_created*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
     amount = 'the energy has become infinite'
-    if (abs(created) <= huge(created)) amount = rounded_text(created)//' of energy have appeared beside '// &
-                                                rounded_text(energy)
+    if (abs(created) <= huge(created)) &
+      amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
     call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
               ': '//amount//'; the fastest point is '//fastest_point(model, now%motion%velocity)// &
               '. Take a smaller &time step_factor.')
   end subroutine refuse_instability
 
-  !> Where the plate moves fastest across itself. Collective.
+  !> Point of the largest transverse velocity. Collective.
   function fastest_point(model, velocity) result(place)
     type(model_t), intent(in) :: model
     !> Rates of the unknowns, (5, points)
@@ -48,14 +48,14 @@ contains
     real(wp) :: largest
     integer :: i, point
 
-    associate (share => model%distribution)
-      rates = abs(velocity(3, :share%owned))
+    associate (partition => model%distribution)
+      rates = abs(velocity(3, :partition%owned))
       where (.not. rates <= huge(rates)) rates = huge(rates)
       largest = maxval(rates)
       call model%communicator%maximum(largest)
       point = huge(point)
-      do i = 1, share%owned
-        if (rates(i) >= largest) point = min(point, share%points(i))
+      do i = 1, partition%owned
+        if (rates(i) >= largest) point = min(point, partition%points(i))
       end do
     end associate
     call model%communicator%minimum(point)

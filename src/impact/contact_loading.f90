@@ -1,6 +1,6 @@
-!> Contact force while the indentation grows for the first time: Hertz, or Hertz up to the yield of the struck face and
-!> from there a straight line, as the pressure in the middle grows no more (C. Thornton, Journal of Applied Mechanics 64
-!> (1997) 383-386; for laminates A. S. Yigit, A. P. Christoforou, Composites Engineering 4 (1994) 1143-1152).
+!> Contact force in first loading: Hertz, or Hertz up to yield of the struck face and linear beyond, where the pressure
+!> at the centre is constant (C. Thornton, Journal of Applied Mechanics 64 (1997) 383-386; for laminates A. S. Yigit, A.
+!> P. Christoforou, Composites Engineering 4 (1994) 1143-1152).
 module contact_loading
   use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
   use impact_parameters, only: indentation_law_t, law_thornton
@@ -47,7 +47,7 @@ contains
       alpha = yield(law) + (force - hertz_force(law%k, yield(law)))/hertz_stiffness(law%k, yield(law))
   end function loading_indentation
 
-  !> Mean of the contact force over the indentations from one to another, free of cancellation.
+  !> Mean of the contact force between two indentations, without cancellation.
   pure real(wp) function mean_loading_force(law, lower, upper) result(mean)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -62,7 +62,7 @@ contains
       mean = mean + (loading_force(law, middle) + loading_force(law, upper))/2*(upper - middle)/(upper - lower)
   end function mean_loading_force
 
-  !> Indentation at which the straight line begins.
+  !> Indentation at the start of the linear branch.
   pure real(wp) function yield(law)
     !> The law
     type(indentation_law_t), intent(in) :: law

@@ -10,9 +10,9 @@ module gear_integrator
   !> Largest ratio of a step to the one before: with steps that keep growing, variable-step BDF4 is
   !> zero-stable up to 1.28; at 1.2 its largest parasitic root is 0.86.
   real(wp), parameter, public :: largest_growth_ratio = 1.19_wp
-  !> Largest omega*step of this method. For undamped oscillation its principal root grows as
-  !> (omega*step)**6: 2.1e-5 a step at 0.2, 1.3e-3 at 0.4, 11 % at 1, worst 19 % at 1.86. At 0.2 the
-  !> amplitude of a whole contact (omega*time = 4, some 20 steps) is off by 4e-4 at most.
+  !> Largest omega*step of this method. For undamped oscillation its principal root grows as (omega*step)**6: 2.1e-5 a
+  !> step at 0.2, 1.3e-3 at 0.4, 11 % at 1, worst 19 % at 1.86. At 0.2 the amplitude over a contact (omega*time = 4,
+  !> some 20 steps) has an error of at most 4e-4.
   real(wp), parameter, public :: gear4_limit = 0.2_wp
 
 contains
@@ -20,7 +20,7 @@ contains
   !> Weights of the fourth-order backward differentiation formula for unequal steps,
   !> y_end = sum(weights*past values) + slope*dt*y'_end.
   pure subroutine gear4_weights(dt, past_step, weights, slope)
-    !> The coming step
+    !> Next step
     real(wp), intent(in) :: dt
     !> The three steps before it, latest first
     real(wp), intent(in) :: past_step(past)
@@ -44,7 +44,7 @@ contains
     end do
   end subroutine gear4_weights
 
-  !> Weight of the derivative in the coming gear4 step.
+  !> Weight of the derivative in the next gear4 step.
   pure function gear4_slope(impactor, dt) result(slope)
     !> State at the start of the step
     type(impactor_t), intent(in) :: impactor
@@ -67,7 +67,7 @@ contains
     real(wp), intent(in) :: dt
     !> Acceleration at the end of the step
     real(wp), intent(in) :: acceleration
-    !> State to be moved on
+    !> State, advanced by the step
     type(impactor_t), intent(inout) :: impactor
     real(wp) :: weights(past + 1), slope, w(past + 1), v(past + 1)
 
@@ -82,13 +82,13 @@ contains
     impactor%past_step = [dt, impactor%past_step(:past - 1)]
   end subroutine advance_gear4
 
-  !> Gives the impactor the history of an exact free flight, at the spacing of the first step.
+  !> Sets the stored states to an exact free flight, at the spacing of the first step.
   pure subroutine assume_free_flight(gravity, dt, impactor)
     !> Acceleration of gravity
     real(wp), intent(in) :: gravity
     !> First step
     real(wp), intent(in) :: dt
-    !> State to be given a history
+    !> State; receives stored states
     type(impactor_t), intent(inout) :: impactor
     real(wp) :: age
     integer :: i

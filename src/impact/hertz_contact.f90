@@ -34,7 +34,7 @@ contains
   pure function sun_stiffness(radius, struck_compliance, impactor_e, impactor_nu) result(k)
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> What the struck ply gives way, c: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
+    !> Compliance c of the struck ply: 1/E2 of its transverse modulus; on an isotropic plate Hertz' (1 - nu**2)/E
     real(wp), intent(in) :: struck_compliance
     !> Young's modulus of the impactor; absent: rigid
     real(wp), intent(in), optional :: impactor_e

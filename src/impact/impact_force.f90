@@ -10,7 +10,7 @@ module impact_force
   private
   public :: solve_impact_force
 
-  !> Never reached: the worst found is 154, at a compliance of 1e100 (usual steps need 3 to 6).
+  !> Largest number of iterations; the worst case found takes 154, at a compliance of 1e100, usual steps 3 to 6.
   integer, parameter :: max_iterations = 500
 
 contains
@@ -63,8 +63,8 @@ contains
     end if
   end subroutine solve_impact_force
 
-  !> The step ends out of contact, where the work is that of the whole way down to zero force: a
-  !> quadratic equation for the way.
+  !> The step ends without contact: the work is that of unloading to zero force, which gives a quadratic equation for
+  !> the displacement.
   pure subroutine release(law, state, alpha_start, zero_force, compliance, x, alpha_end)
     !> Indentation law
     type(indentation_law_t), intent(in) :: law
@@ -96,7 +96,7 @@ contains
     alpha_end = alpha_end - compliance*x
   end subroutine release
 
-  !> Newton's iteration on the indentation, kept inside an interval that holds the solution.
+  !> Newton's iteration on the indentation, safeguarded by a bracket of the solution.
   pure subroutine solve_in_contact(law, state, alpha_start, alpha_free, compliance, mean_force, zero_force, &
                                    x, alpha_end, iterations)
     !> Indentation law
@@ -164,8 +164,8 @@ contains
     end if
   end function force_of_step
 
-  !> Derivative of `force_of_step` by the indentation at the end. That of the mean loses digits
-  !> for short ways, where half the stiffness is as good for Newton's iteration.
+  !> Derivative of `force_of_step` with respect to the indentation at the end. For small increments the derivative of
+  !> the mean suffers from cancellation and is replaced by half the stiffness.
   pure function slope_of_step(law, state, alpha_start, alpha_end, mean_force, x) result(slope)
     !> Indentation law
     type(indentation_law_t), intent(in) :: law

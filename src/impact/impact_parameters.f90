@@ -1,4 +1,4 @@
-!> Impactor and indentation law, as the deck gives them.
+!> Parameters of impactor and indentation law in the deck.
 module impact_parameters
   use kinds, only: wp
   implicit none
@@ -8,7 +8,7 @@ module impact_parameters
   !> Time integrators of the impactor.
   integer, parameter, public :: integrator_gear4 = 1, integrator_trapezoidal = 2, &
                                 integrator_central = 3, integrator_conserving = 4
-  !> Indentation laws: Tan and Sun's (Eq. 3), elastic Hertz both ways, or Thornton's elastic-plastic one.
+  !> Indentation laws: Tan and Sun's (Eq. 3), elastic Hertz, or Thornton's elastic-plastic one.
   integer, parameter, public :: law_tan_sun = 1, law_hertz = 2, law_thornton = 3
   !> Permanent dent: Tan and Sun's linear one, or Yang and Sun's.
   integer, parameter, public :: dent_tan_sun = 1, dent_yang_sun = 2
@@ -19,15 +19,15 @@ module impact_parameters
     real(wp) :: mass = 0
     !> Velocity at first contact, positive towards the plate
     real(wp) :: velocity = 0
-    !> Travel from first contact, in load steps or, prescribed in time, by central differences; 0: it moves freely
+    !> Prescribed travel from first contact, in load steps or in time by central differences; 0: free motion
     real(wp) :: travel = 0
-    !> Time in which the velocity of a travel in time rises
+    !> Rise time of the velocity of a travel in time
     real(wp) :: rise = 0
     !> Radius of the nose, for Sun's formula for k and the area of contact
     real(wp) :: radius = 0
     !> Acceleration of gravity along the impact direction; 0: none
     real(wp) :: gravity = 0
-    !> True: its force is spread over where the nose touches; false: over the patch
+    !> True: its force is distributed over the contact area of the nose; false: over the patch
     logical :: spreads = .false.
     !> The struck point, from the plate's centre
     real(wp) :: at(2) = 0
@@ -35,7 +35,7 @@ module impact_parameters
     integer :: integrator = integrator_gear4
   end type impactor_parameters_t
 
-  !> Force against indentation (Eq. 3 of the paper with the reloading branch it lacks).
+  !> Force against indentation (Eq. 3 of the paper with a reloading branch).
   type :: indentation_law_t
     !> law_tan_sun, law_hertz or law_thornton
     integer :: law = law_tan_sun

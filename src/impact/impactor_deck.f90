@@ -49,7 +49,7 @@ contains
 
   !> The impactor.
   subroutine fill_impactor(settings, impactor, problems)
-    !> Keys in effect; get the velocity that the energy stands for
+    !> Keys in effect; receive the velocity for the energy
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(impactor_parameters_t), intent(inout) :: impactor
@@ -74,7 +74,7 @@ contains
                                   [integrator_gear4, integrator_trapezoidal, integrator_central, integrator_conserving])
   end subroutine fill_impactor
 
-  !> Turns the energy into the velocity, and reports if neither is given or both are.
+  !> Computes the velocity from the energy, and reports if neither or both are given.
   subroutine set_velocity_from_energy(settings, problems)
     !> Keys in effect
     type(settings_t), intent(inout) :: settings
@@ -97,7 +97,7 @@ contains
     end if
   end subroutine set_velocity_from_energy
 
-  !> Reports if the mass is missing; an impactor that travels slowly needs none.
+  !> Reports if the mass is missing; an impactor with prescribed travel needs none.
   subroutine require_mass(settings, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -110,7 +110,7 @@ contains
       call report(settings, problems, impactor_group, key_mass, 'is missing; allowed: 1 real value > 0.')
   end subroutine require_mass
 
-  !> Names of the keys that say how fast the impactor is, separated by blanks.
+  !> Names of the keys of the impactor's velocity, separated by blanks.
   pure function keys_of_motion(settings) result(keys)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

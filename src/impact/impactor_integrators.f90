@@ -15,8 +15,8 @@ module impactor_integrators
   private
   public :: takes_mean_force, predict, advance, largest_safe_step
 
-  !> Largest omega*step of the integrators other than Gear's, which are stable far beyond, so that a contact is seen at
-  !> all: some six steps a contact at least, where the rebound is still right to a per cent.
+  !> Largest omega*step of the integrators other than Gear's, for resolution, not stability: at least some six steps per
+  !> contact, with an error of the rebound of one per cent.
   real(wp), parameter, public :: resolution_limit = 0.5_wp
 
 contains
@@ -40,7 +40,7 @@ contains
     real(wp), intent(in) :: dt
     !> Displacement at the end of the step for a zero force
     real(wp), intent(out) :: w_free
-    !> Fall of that displacement per unit of force
+    !> Decrease of that displacement per unit of force
     real(wp), intent(out) :: compliance
     type(impactor_t) :: free
 
@@ -58,7 +58,7 @@ contains
     end select
   end subroutine predict
 
-  !> The impactor at the end of a step; the state at its start is left alone.
+  !> The impactor at the end of a step.
   pure function advance(parameters, impactor, dt, step_force, force_end) result(next)
     !> Mass, gravity, integrator
     type(impactor_parameters_t), intent(in) :: parameters
@@ -93,8 +93,8 @@ contains
     next%force = force_end
   end function advance
 
-  !> Largest step with which the impactor's integrator follows the contact: omega*step stays below its limit at
-  !> every indentation the step may reach.
+  !> Largest step for which omega*step is below the limit of the impactor's integrator at every indentation that the
+  !> step may reach.
   pure function largest_safe_step(parameters, law, state, alpha, approach) result(step)
     !> Mass, integrator
     type(impactor_parameters_t), intent(in) :: parameters

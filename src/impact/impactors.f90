@@ -1,5 +1,5 @@
-!> The rigid impactor, m w'' = m g - F with w positive towards the plate (Eq. 2 of the paper with
-!> the sign of this program): what evolves of it, and its energy.
+!> The rigid impactor, m w'' = m g - F with w positive towards the plate (Eq. 2 of the paper with the sign of this
+!> program): state and energy.
 module impactors
   use archives, only: archive_t
   use impact_parameters, only: impactor_parameters_t
@@ -11,7 +11,7 @@ module impactors
   !> Past points that Gear's method needs before the current one
   integer, parameter, public :: past_points = 3
 
-  !> What evolves of the impactor; changes only when a step is accepted.
+  !> State of the impactor, changed only when a step is accepted.
   type :: impactor_t
     !> Displacement, positive towards the plate, 0 at first contact
     real(wp) :: displacement = 0

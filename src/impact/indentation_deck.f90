@@ -43,11 +43,11 @@ contains
 
   !> Indentation law and contact stiffness; without the group elastic Hertz.
   subroutine fill_indentation(settings, radius, struck_compliance, law)
-    !> Keys in effect; gets the contact stiffness that the deck doesn't give
+    !> Keys in effect; receives a default of the contact stiffness
     type(settings_t), intent(inout) :: settings
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> What the struck ply gives way, as `sun_stiffness` takes it; 0: not known
+    !> Compliance of the struck ply for `sun_stiffness`; 0: not known
     real(wp), intent(in) :: struck_compliance
     !> Receives the law
     type(indentation_law_t), intent(inout) :: law
@@ -73,7 +73,7 @@ contains
     call settings%derive(indentation_group, key_k, to_text(law%k), .false.)
   end subroutine fill_indentation
 
-  !> What holds of the law without the group, as the echo lists it.
+  !> Default law without the group, for the list of keys in effect.
   subroutine echo_without_group(law, lines)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -84,7 +84,7 @@ contains
     call append(lines, '&indentation k = '//to_text(law%k)//' [default]')
   end subroutine echo_without_group
 
-  !> Keys that the law needs, and keys that it leaves without effect.
+  !> Checks keys required by the law, and keys without effect.
   subroutine check_indentation(settings, law, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -119,15 +119,14 @@ contains
     subroutine idle(keys, message)
       !> Names of keys, separated by blanks
       character(len=*), intent(in) :: keys
-      !> Why they change nothing
+      !> Reason why they have no effect
       character(len=*), intent(in) :: message
 
       call remark_idle(settings, problems, indentation_group, keys, message)
     end subroutine idle
   end subroutine check_indentation
 
-  !> Exponents of a law that makes no energy: 1.5 <= reload <= q, of which the rows have the lower bound. Unloading then
-  !> gives back no more than loading took, and reloading takes no less than unloading gave.
+  !> Checks the exponents of a law that creates no energy: 1.5 <= reload <= q; the rows have the lower bound.
   subroutine check_exponents(settings, law, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

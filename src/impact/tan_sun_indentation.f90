@@ -1,13 +1,12 @@
 !> Contact force between impactor and struck face as a function of the indentation: Tan and Sun's law (Eq. 3 of the
-!> paper) with the reloading branch that Eq. 3 lacks, Hertz's and Thornton's, with all energies in closed form.
+!> paper) with a reloading branch, Hertz's and Thornton's, with all energies in closed form.
 !>
-!> For a given committed state the force is one continuous, non-decreasing function of the
-!> indentation: zero up to the dent, a power law from the dent to the largest indentation so far,
-!> and that of `contact_loading` beyond it. After Tan and Sun the power is `q` as long as the bodies have not separated,
-!> so a reversal during contact runs back up the unloading curve, and `reload` after a separation. The
-!> reloading curve is run back the way it came: a second contact that doesn't reach the largest
-!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck.
-!> After Thornton it is 1.5 both ways.
+!> For a given committed state the force is one continuous, non-decreasing function of the indentation: zero up to the
+!> dent, a power law from the dent to the largest indentation so far, and that of `contact_loading` beyond it. After Tan
+!> and Sun the exponent is `q` until the bodies separate, so that a reversal during contact follows the unloading curve,
+!> and `reload` after a separation. The reloading curve is reversible: a second contact that does not reach the largest
+!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck. After
+!> Thornton it is 1.5 in unloading and reloading.
 module tan_sun_indentation
   use archives, only: archive_t
   use contact_loading, only: loading_force, loading_stiffness, loading_indentation, mean_loading_force
@@ -32,7 +31,7 @@ module tan_sun_indentation
     real(wp) :: dent = 0
     !> True once the bodies have separated after the largest indentation: reloading applies
     logical :: separated = .false.
-    !> Work the contact force has done on the indentation so far (stored and dissipated)
+    !> Work of the contact force on the indentation so far, stored and dissipated
     real(wp) :: work = 0
   contains
     !> Saves or loads the state
@@ -43,7 +42,7 @@ module tan_sun_indentation
   type :: branch_t
     !> Indentation at which the force vanishes
     real(wp) :: start = 0
-    !> Indentation at which loading takes over
+    !> Indentation from which the loading curve applies
     real(wp) :: finish = 0
     !> Force at `finish`
     real(wp) :: force = 0
@@ -73,7 +72,7 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
-    !> Indentation, reached in one direction from the committed one
+    !> Indentation, reached monotonically from the committed one
     real(wp), intent(in) :: alpha
     !> Force, zero or positive
     real(wp) :: force
@@ -95,7 +94,7 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
-    !> The force; the touch for none
+    !> The force; for 0 the indentation of first contact
     real(wp), intent(in) :: force
     type(branch_t) :: branch
 
@@ -132,8 +131,7 @@ contains
     end if
   end function indentation_stiffness
 
-  !> Mean of the contact force over the indentations from one to another, free of cancellation
-  !> however close they are; the force itself if they are equal.
+  !> Mean of the contact force between two indentations, without cancellation; the force if they are equal.
   pure function mean_indentation_force(law, state, alpha_from, alpha_to) result(mean)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -164,7 +162,7 @@ contains
     if (most > lower) mean = mean + mean_loading_force(law, lower, most)*(most - lower)/(most - least)
   end function mean_indentation_force
 
-  !> Work of the contact force along a path that doesn't turn.
+  !> Work of the contact force along a monotonic path.
   pure function indentation_work(law, state, alpha_from, alpha_to) result(work)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -180,7 +178,7 @@ contains
     work = mean_indentation_force(law, state, alpha_from, alpha_to)*(alpha_to - alpha_from)
   end function indentation_work
 
-  !> Bound on the ratio of the present contact stiffness to that of Hertz at the same indentation.
+  !> Upper bound of the ratio of the present contact stiffness to that of Hertz at the same indentation.
   pure function stiffening(law, state) result(ratio)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -197,11 +195,11 @@ contains
                   *branch%force/hertz_force(law%k, branch%finish))
   end function stiffening
 
-  !> Accepts a new indentation, reached in one direction from the committed one.
+  !> Accepts a new indentation, reached monotonically from the committed one.
   pure subroutine commit_indentation(law, state, alpha)
     !> The law
     type(indentation_law_t), intent(in) :: law
-    !> State to be moved on
+    !> State, advanced by the step
     type(indentation_t), intent(inout) :: state
     !> New indentation
     real(wp), intent(in) :: alpha
@@ -249,7 +247,7 @@ contains
     if (law%law /= law_thornton) branch%exponent = merge(law%reload, law%q, state%separated)
   end function current_branch
 
-  !> Place on a curve, 0 at its start and 1 at its end.
+  !> Position on a curve, 0 at its start and 1 at its end.
   pure function position(branch, alpha) result(s)
     !> The curve
     type(branch_t), intent(in) :: branch
@@ -261,8 +259,8 @@ contains
     s = (alpha - branch%start)/(branch%finish - branch%start)
   end function position
 
-  !> Dent that unloading from an indentation leaves (Tan and Sun 1985; Yang and Sun 1982; Thornton 1997, whose sphere
-  !> comes back from a face that its radius and the dent have made to fit).
+  !> Permanent dent after unloading from an indentation (Tan and Sun 1985; Yang and Sun 1982; Thornton 1997, with the
+  !> larger radius of the deformed face in unloading).
   pure function permanent_dent(law, alpha_max) result(dent)
     !> The law
     type(indentation_law_t), intent(in) :: law

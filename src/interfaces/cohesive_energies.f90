@@ -1,4 +1,4 @@
-!> Energy error of cohesive points in a step, whose path is known at its ends only.
+!> Energy error of cohesive points in a step by the implicit steps' quadrature of the work of tractions.
 module cohesive_energies
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -11,7 +11,7 @@ module cohesive_energies
 
 contains
 
-  !> Energy that the points store in a step beyond the work of the mean tractions, of this rank; less than nothing where
+  !> Change of the energy stored by this rank's points in a step minus the work of the mean tractions; negative where
   !> they dissipate.
   pure real(wp) function stored_beyond_work(self, model, old, before, after) result(energy)
     !> The interfaces at the end of the step

@@ -1,15 +1,15 @@
-!> Cohesive interfaces: tractions that hold the faces of layers together, and what they dissipate as they fail.
+!> Cohesive interfaces: tractions between layers, damage and dissipated energy.
 !>
-!> Tractions act at nodal points as internal forces on the jumps. Faces that close are held apart by the stiffness of
-!> the undamaged interface, whatever the damage: nothing is lost where they meet, and the factored operator stays what
-!> it is where intact faces change between pressure and tension.
+!> Tractions act at nodal points as internal forces on the jumps. Closing faces are in contact by the penalty stiffness
+!> of the undamaged interface, independent of the damage: contact is conservative, and the factored operator is
+!> unchanged where undamaged faces change between pressure and tension.
 module cohesive_interfaces
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive, contact_none
   use cohesive_laws, only: cohesive_law_t, stiffness_of, weakened
   use cohesive_faces, only: cohesive_faces_t
-  use cohesive_points, only: cohesive_point_t, dissipated_share, mode_mixity
+  use cohesive_points, only: cohesive_point_t, dissipated_fraction, mode_mixity
   use cohesive_tangents, only: dissipation_slopes
   use exact_sums, only: exact_sum_t
   use models, only: model_t
@@ -20,15 +20,15 @@ module cohesive_interfaces
 
   !> Points of all cohesive interfaces.
   type :: cohesive_interfaces_t
-    !> True for this rank's points whose faces a cohesive law holds, (local points); unallocated: there are none
+    !> True for this rank's points with a cohesive law, (local points); unallocated: there are none
     logical, allocatable :: cohesive(:)
     !> Damage and dissipated energy per area of each point, (local points)
     type(cohesive_point_t), allocatable :: points(:)
-    !> Part of the strengths that flaws leave at each point, (local points)
+    !> Strength factor of flaws at each point, (local points)
     real(wp), allocatable :: strength(:)
     !> Stiffness of the jumps for the factored operator, (3, local points)
     real(wp), allocatable :: stiffness(:, :)
-    !> Consistent tangents, which a static analysis takes instead, unsymmetric, (3, 3, local points)
+    !> Consistent tangents, used in load steps instead, unsymmetric, (3, 3, local points)
     real(wp), allocatable :: tangents(:, :, :)
   contains
     !> Adds the forces of the tractions on the jumps.
@@ -42,12 +42,12 @@ module cohesive_interfaces
     !> Area and energy dissipated.
     procedure :: area
     procedure :: energy => dissipated_energy
-    !> Damage, dissipated part of the toughness, share of shear and pressure at the points.
+    !> Damage, dissipated fraction of the toughness, fraction of shear, and pressure at the points.
     procedure :: damage
-    procedure :: shares
+    procedure :: dissipated_fractions
     procedure :: shear_share
     procedure :: pressure
-    !> True for zones whose border damage has reached.
+    !> True for zones in which damage has reached the border.
     procedure :: border_reached
     !> Faces of an interface, and law of a point.
     procedure :: faces_of
@@ -61,7 +61,7 @@ contains
   !> All cohesive interfaces, failed within their starters.
   pure function new_cohesive_interfaces(model, free) result(self)
     type(model_t), intent(in) :: model
-    !> True where starters leave jumps free, (local points)
+    !> True for jumps released by starters, (local points)
     logical, intent(in) :: free(:)
     !> The interfaces
     type(cohesive_interfaces_t) :: self
@@ -84,8 +84,7 @@ contains
     end do
   end function new_cohesive_interfaces
 
-  !> Adds the forces of the tractions on the jumps, and finds the history variables of the points if the jumps are
-  !> accepted.
+  !> Adds the forces of the tractions on the jumps, and updates the history variables of the trial state.
   pure subroutine add_forces(self, model, old, displacement, force, energy)
     !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
@@ -96,7 +95,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Internal forces at the owned points, (5, points)
     real(wp), intent(inout) :: force(:, :)
-    !> Energy of this rank; what the points store is added
+    !> Strain energy of this rank; that stored by the points is added
     real(wp), intent(inout) :: energy
     type(cohesive_faces_t) :: faces
     type(cohesive_point_t) :: start
@@ -145,7 +144,7 @@ contains
     end do
   end function tangents_at
 
-  !> Takes a consistent tangent for the operator.
+  !> Stores a consistent tangent and its diagonal for the operator.
   pure subroutine take_tangent(self, i, tangent)
     !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
@@ -159,7 +158,7 @@ contains
     self%stiffness(:, i) = [(tangent(k, k), k=1, 3)]
   end subroutine take_tangent
 
-  !> Adds the derivative of the energy that this rank's points dissipate, by the unknowns.
+  !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
   pure subroutine add_dissipation_slopes(self, model, old, displacement, slopes)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -168,7 +167,7 @@ contains
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Energy by unknowns of the owned points, (5, points)
+    !> Derivative with respect to the unknowns of the owned points, (5, points)
     real(wp), intent(inout) :: slopes(:, :)
     integer :: i
 
@@ -195,8 +194,8 @@ contains
     end associate
   end function dissipation
 
-  !> Area dissipated in each zone of the full plate: the sum of the points' areas times the part of their toughness
-  !> that is gone. The same on every rank.
+  !> Area dissipated in each zone of the full plate: sum of the points' areas times the dissipated fraction of their
+  !> toughness. The same on every rank.
   function area(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -204,7 +203,7 @@ contains
     !> The area, (zones); zero for zones without a cohesive law
     real(wp) :: area(size(model%mesh%zones))
 
-    area = total_in_zones(self, model, self%shares(model))
+    area = total_in_zones(self, model, self%dissipated_fractions(model))
   end function area
 
   !> Energy dissipated in each zone of the full plate, the same on every rank.
@@ -251,23 +250,23 @@ contains
     if (allocated(self%cohesive)) damage = merge(self%points%damage, 0.0_wp, self%cohesive)
   end function damage
 
-  !> Part of their toughness that this rank's points have dissipated.
-  pure function shares(self, model)
+  !> Dissipated fraction of the toughness at this rank's points.
+  pure function dissipated_fractions(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
-    real(wp) :: shares(size(model%zone))
+    real(wp) :: dissipated_fractions(size(model%zone))
     integer :: i
 
-    shares = 0
+    dissipated_fractions = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) shares(i) = dissipated_share(self%law_at(model, i), self%points(i)%damage)
+      if (self%cohesive(i)) dissipated_fractions(i) = dissipated_fraction(self%law_at(model, i), self%points(i)%damage)
     end do
-  end function shares
+  end function dissipated_fractions
 
-  !> Share of shear in the energy of the jumps of this rank's points.
+  !> Fraction of shear in the energy of the jumps at this rank's points.
   pure function shear_share(self, model, displacement)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -305,7 +304,7 @@ contains
     end do
   end function pressure
 
-  !> True if the faces of a zone don't pass through each other.
+  !> True if contact prevents penetration of the faces of a zone.
   pure logical function holds_closed(model, zone)
     type(model_t), intent(in) :: model
     !> Index of the zone
@@ -314,7 +313,7 @@ contains
     holds_closed = model%setup%delaminations(zone)%contact /= contact_none
   end function holds_closed
 
-  !> True for zones where a point beside the border has been damaged: growth ends there. The same on every rank.
+  !> True for zones with a damaged point next to the border, where growth ends. The same on every rank.
   function border_reached(self, model)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -353,7 +352,7 @@ contains
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Part of the strengths that flaws leave
+    !> Strength factor of flaws
     real(wp), intent(in) :: strength
 
     faces%law = weakened(model%cohesive_laws(zone), strength)
@@ -375,8 +374,8 @@ contains
     fields(1, :) = self%points%damage
     fields(2, :) = self%points%dissipated
     fields(3:, :) = self%stiffness
-    associate (share => model%distribution)
-      call archive%field('cohesive/points', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('cohesive/points', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%points%damage = fields(1, :)

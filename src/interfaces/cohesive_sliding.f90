@@ -1,4 +1,4 @@
-!> Friction between the faces of cohesive interfaces: the most that it bears at their points, and its heat.
+!> Friction between the faces of cohesive interfaces: friction limits at their points, and frictional heat.
 module cohesive_sliding
   use kinds, only: wp
   use archives, only: archive_t
@@ -49,7 +49,7 @@ contains
     updates = updates + merge(1, 0, largest(2) > 0)
   end subroutine update_friction_limits
 
-  !> True if faces rub on each other somewhere.
+  !> True if any interface has friction.
   pure logical function present_in(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: interfaces
@@ -59,7 +59,7 @@ contains
     if (present_in) present_in = any(model%setup%delaminations%friction > 0)
   end function present_in
 
-  !> Energy that friction has turned into heat between two states, of the full plate, the same on every rank.
+  !> Frictional heat between two states, of the full plate, the same on every rank.
   real(wp) function heat_since(model, old, new) result(heat)
     type(model_t), intent(in) :: model
     !> The interfaces in both states
@@ -90,8 +90,8 @@ contains
         fields(:, i) = [sliding%slip, sliding%limit, sliding%heat]
       end associate
     end do
-    associate (share => model%distribution)
-      call archive%field('cohesive/sliding', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('cohesive/sliding', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     interfaces%points%sliding%limit = fields(3, :)

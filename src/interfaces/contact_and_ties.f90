@@ -1,4 +1,4 @@
-!> Tied, separated and touching faces: forces of ties and contact on the jumps.
+!> Tied, open and closed faces: forces of ties and contact on the jumps.
 !>
 !> The pressure is constant over a step, and complementarity is required at its end. The work of contact is then minus
 !> the pressure times the gap that closed: contact never creates energy, with any integrator of the plate.
@@ -14,7 +14,7 @@ module contact_and_ties
   private
   public :: contact_and_ties_t, new_contact_and_ties
 
-  !> State of all interfaces: their connections, and the pressure where faces touch.
+  !> State of all interfaces: their connections, and the contact pressure.
   type, extends(interface_ties_t) :: contact_and_ties_t
     !> Multiplier of the augmented Lagrangian and contact pressure, (local points)
     real(wp), allocatable :: multiplier(:), pressure(:)
@@ -41,8 +41,8 @@ module contact_and_ties
     procedure :: visit
   end type contact_and_ties_t
 
-  !> Penalty of a tied jump relative to the diagonal of the operator: stiff enough for five digits in a preconditioner,
-  !> soft enough to be removed again without a factorization.
+  !> Penalty of a tied jump relative to the diagonal of the operator: it gives five digits in a preconditioner, and can
+  !> be removed again without a factorization.
   real(wp), parameter, public :: held_stiffness = 1.0e5_wp
 
 contains
@@ -248,8 +248,8 @@ contains
 
   contains
 
-    !> Stiffness of a held opening: that of contact where this is as hard, so that the release of faces that press on
-    !> each other leaves the operator as it is.
+    !> Penalty of a tied opening: the contact stiffness if that is at least as large, so that the release of faces under
+    !> pressure does not change the operator.
     pure real(wp) function tie_like_contact(i) result(stiffness)
       !> Point of this rank
       integer, intent(in) :: i
@@ -280,8 +280,8 @@ contains
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (share => model%distribution)
-      call archive%field('faces/pressures', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('faces/pressures', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)

@@ -14,13 +14,13 @@ module front_energy_release
   private
   public :: front_energy_release_t, release_along_front, front_reach
 
-  !> The front of one zone and what it would release, the same on every rank.
+  !> Front of a zone with its energy release rates, the same on every rank.
   type :: front_energy_release_t
     !> The segments
     type(front_segment_t), allocatable :: segments(:)
-    !> The smooth line that they stand for
+    !> The smooth line through them
     type(smooth_front_t) :: line
-    !> G_I, G_II, G_III of each segment; Eq. 11 gives no modes and stands in the second row, (3, segments)
+    !> G_I, G_II, G_III of each segment, (3, segments); Eq. 11 gives no modes, its rate is in the second row
     real(wp), allocatable :: modes(:, :)
     !> G over its critical value, of each segment
     real(wp), allocatable :: ratio(:)
@@ -89,7 +89,7 @@ contains
     end do
   end function vcct_rates
 
-  !> What the nodes beside each segment bring to its closure, of all ranks.
+  !> Contributions of the nodes next to each segment to its crack closure integral. Collective.
   function moments_of(model, faces, motion, zone, segments, line) result(figures)
     type(model_t), intent(in) :: model
     !> Delaminated cells
@@ -102,7 +102,7 @@ contains
     type(front_segment_t), intent(in) :: segments(:)
     !> Its smooth line
     type(smooth_front_t), intent(in) :: line
-    !> Sums of the figures of nodes, (figures, segments)
+    !> Sums over nodes, (quantities, segments)
     real(wp), allocatable :: figures(:, :)
     type(near_front_t) :: nodes
     real(wp), allocatable :: sums(:)
@@ -114,7 +114,7 @@ contains
     do k = 1, size(nodes%node)
       i = owned_lower_point(model, zone, nodes%node(k))
       if (i == 0) cycle
-      ! A node on a line of symmetry has half of its forces, but its whole jump.
+      ! A node on a line of symmetry has half of its force, but the full jump.
       weight = product(merge(0.5_wp, 1.0_wp, model%mesh%lines_of(nodes%node(k)) == 0 .and. model%mesh%mirrored))
       associate (s => nodes%segment(k))
         figures(:, s) = figures(:, s) + nodes%share(k)*closure_moments(line%normal(:, s), nodes%distance(k), &
@@ -134,7 +134,7 @@ contains
     type(motion_t), intent(in) :: motion
     !> Point below the interface, on the rank that owns it
     integer, intent(in) :: i
-    !> Force, x, y, z; what a line of symmetry or an edge of the plate holds is none of the ties'
+    !> Force, x, y, z; without reactions of a line of symmetry or an edge of the plate
     real(wp) :: force(3)
 
     force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
@@ -151,7 +151,7 @@ contains
     if (.not. reach > 0) reach = default_smoothing(model%thickness, model%mesh%mean_cell(zone))
   end function front_reach
 
-  !> Position of a node's point below an interface on the rank that owns it; 0: elsewhere or none.
+  !> Index of a node's point below an interface on the rank that owns it; 0: on another rank or none.
   pure integer function owned_lower_point(model, zone, node) result(i)
     type(model_t), intent(in) :: model
     !> Index of the zone

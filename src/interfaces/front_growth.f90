@@ -1,4 +1,4 @@
-!> Growth of delaminations: which cells delaminate in a state, and the energy of it.
+!> Growth of delaminations: cells that delaminate in a state, and their fracture energy.
 module front_growth
   use kinds, only: wp
   use delamination_parameters, only: growth_one_per_step, growth_equilibrium, law_cohesive, unloading_glued
@@ -11,7 +11,8 @@ module front_growth
   private
   public :: grow_fronts, find_release_ratio
 
-  !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so.
+  !> Fraction of the largest ratio above which segments delaminate together, so that a symmetric front remains
+  !> symmetric.
   real(wp), parameter :: together = 0.95_wp
 
 contains
@@ -135,7 +136,7 @@ contains
     real(wp), intent(in) :: reach
     !> True for the closest ones
     logical :: first(size(open))
-    !> Distance, relative to a cell, that counts as none.
+    !> Tolerance of equal distances, relative to a cell
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 

@@ -1,5 +1,5 @@
-!> What the history reports of the interfaces. A new column goes to the end of the border's rows, with its value in the
-!> function beside them: all columns before it stay where they are. One that each interface has goes to the last rows.
+!> Columns of the history for the interfaces. A new column is added to the end of the border's rows, with its value in
+!> the function next to them: the columns before it keep their positions. Columns per interface are in the last rows.
 module interface_columns
   use kinds, only: wp
   use interface_figures, only: figures_of, interface_figures_t
@@ -11,12 +11,12 @@ module interface_columns
   private
   public :: area_values, release_values, border_values, rig_values, interface_values
 
-  !> How much has delaminated: a column of the public interface.
+  !> Delaminated area: a column of the public interface.
   character(len=result_row_length), parameter, public :: area_rows(*) = [character(len=result_row_length) :: &
     'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; &
       &with a cohesive law the area dissipated.']
 
-  !> How near the fronts are to growth, what growth has released, and how well faces meet.
+  !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of faces.
   character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &
     'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; in a static &
       &analysis they do not grow whatever it is.', &
@@ -33,7 +33,7 @@ module interface_columns
     'projected_area | real | area | Area that a C-scan sees: where several interfaces have delaminated above each &
       &other, the largest of them counts once.']
 
-  !> One interface. These rows come again for each, N its ply.
+  !> Columns per interface: N is its ply.
   character(len=result_row_length), parameter, public :: interface_rows(*) = [character(len=result_row_length) :: &
     'stage_below_N | integer | - | The interface below ply N, starter left out: 0 intact, 1 a cohesive law has begun &
       &to soften, 2 grown. These columns come for each interface.', &
@@ -53,7 +53,7 @@ module interface_columns
 
 contains
 
-  !> How much has delaminated. Collective.
+  !> Delaminated area. Collective.
   function area_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -64,7 +64,8 @@ contains
     values = [sum(interfaces%faces%area(model)) + sum(interfaces%cohesive%area(model))]
   end function area_values
 
-  !> How near the fronts are to growth, what growth has released, and how well faces meet. Collective.
+  !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of faces.
+  !> Collective.
   function release_values(model, interfaces, displacement) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -79,7 +80,7 @@ contains
               interfaces%faces%complementarity(model, displacement)]
   end function release_values
 
-  !> Fronts at the border of their zone, and the area projected. Collective.
+  !> Zones whose border is reached, and projected area. Collective.
   function border_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -105,7 +106,7 @@ contains
     values = interfaces%rig%reactions(model, motion%displacement, motion%internal, motion%inertia, loads)
   end function rig_values
 
-  !> Figures of each interface, one interface after the other. Collective.
+  !> Quantities of each interface, one interface after the other. Collective.
   function interface_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces

@@ -1,4 +1,4 @@
-!> What the field file holds of the interfaces. What belongs to an interface stands in the layer below it.
+!> Fields of the interfaces. Values of an interface are stored in the layer below it.
 module interface_fields
   use contact_and_ties, only: contact_and_ties_t
   use delaminated_regions, only: create_region, delaminated_region_t
@@ -20,7 +20,7 @@ module interface_fields
   private
   public :: delaminated_above, starters_above, write_interface_fields
 
-  !> The fields. A new one comes with its writing below, and touches no other folder but the choices of &output.
+  !> The fields. A new one needs a row here, its output below, and a choice of &output.
   character(len=result_row_length), parameter, public :: interface_field_rows(*) = &
     [character(len=result_row_length) :: &
     'jump | points | length | '//field_gap//' | &delamination | Displacement below less that above the interface on &
@@ -44,7 +44,7 @@ module interface_fields
 
 contains
 
-  !> Writes the fields that are wanted.
+  !> Writes the requested fields.
   subroutine write_interface_fields(model, stiffness, interfaces, motion, output, fields, error)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -53,7 +53,7 @@ contains
     type(interface_state_t), intent(in) :: interfaces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
-    !> Which fields
+    !> Requested fields
     type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields
@@ -70,7 +70,7 @@ contains
         call fields%write_cell_field('delaminated_above', delaminated_above(model, interfaces), error)
         call fields%write_point_field('damage_above', reshape(interfaces%cohesive%damage(model), &
                                                               [1, size(model%zone)]), error)
-        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%shares(model), &
+        call fields%write_point_field('dissipated_above', reshape(interfaces%cohesive%dissipated_fractions(model), &
                                                                   [1, size(model%zone)]), error)
         call fields%write_point_field('shear_share_above', reshape(interfaces%cohesive%shear_share( &
           model, motion%displacement), [1, size(model%zone)]), error)
@@ -81,7 +81,7 @@ contains
     end associate
   end subroutine write_interface_fields
 
-  !> Writes the figures of the interfaces that history and summary have, so that pictures of a time need no others.
+  !> Writes the quantities of interfaces in history and summary, for pictures at the times of the fields.
   subroutine write_figures(model, interfaces, fields, error)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -107,7 +107,7 @@ contains
     call fields%write_figures('projected_area', reshape([interfaces%projected_area(model)], [1, 1]), error)
   end subroutine write_figures
 
-  !> Writes where delaminations would begin.
+  !> Writes the onset index of delamination.
   subroutine write_onset(model, stiffness, interfaces, motion, fields, error)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -129,7 +129,7 @@ contains
     call fields%write_cell_field('onset_ply', onset(2:2, :), error)
   end subroutine write_onset
 
-  !> Jumps of the faces above each point's layer.
+  !> Jumps at the interface above each point's layer.
   pure function jumps(model, displacement)
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -147,22 +147,22 @@ contains
     type(interface_state_t), intent(in) :: interfaces
     !> 1 or 0, with a cohesive law between them, (1, elements)
     real(wp), allocatable :: delaminated(:, :)
-    !> Parts of an element's area that belong to its nodes
+    !> Fractions of an element's area at its nodes
     real(wp), parameter :: simpson(3) = [1, 4, 1]/6.0_wp, weights(9) = [simpson*simpson(1), simpson*simpson(2), &
                                                                         simpson*simpson(3)]
-    real(wp), allocatable :: shares(:, :)
+    real(wp), allocatable :: dissipated_fractions(:, :)
     integer :: zone, i, place(2)
 
     allocate (delaminated(1, model%elements%elements), source=0.0_wp)
-    shares = reshape(interfaces%cohesive%shares(model), [1, size(model%zone)])
-    call model%halo%update(shares)
+    dissipated_fractions = reshape(interfaces%cohesive%dissipated_fractions(model), [1, size(model%zone)])
+    call model%halo%update(dissipated_fractions)
     do i = 1, model%elements%elements
       associate (mesh => model%mesh, element => model%distribution%elements(i))
         place = mesh%place_of(mesh%element_cell(element))
         do zone = 1, size(mesh%zones)
           if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
           if (model%setup%delaminations(zone)%law == law_cohesive) then
-            delaminated(1, i) = dot_product(weights, shares(1, model%distribution%connectivity(:, i)))
+            delaminated(1, i) = dot_product(weights, dissipated_fractions(1, model%distribution%connectivity(:, i)))
           else if (interfaces%faces%regions(zone)%is_delaminated(place(1), place(2))) then
             delaminated(1, i) = 1
           end if
@@ -197,7 +197,7 @@ contains
     end associate
   end function starters_above
 
-  !> Pressure on the faces above each point's layer.
+  !> Contact pressure at the interface above each point's layer.
   pure function pressures(model, interfaces, displacement)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -211,13 +211,13 @@ contains
                         [1, size(model%zone)])
   end function pressures
 
-  !> Energy release rate over its critical value in the intact cells ahead of the fronts, zero elsewhere. Where a
-  !> front has reached the border of its zone there is no such cell, and the last delaminated one shows it.
+  !> Ratio of energy release rate to its critical value in the intact cells ahead of the fronts, zero elsewhere. At the
+  !> border of a zone it is given for the last delaminated cell.
   function release_ahead(model, stiffness, faces, motion) result(ratio)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> What has delaminated
+    !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: faces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion

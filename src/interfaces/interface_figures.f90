@@ -1,4 +1,4 @@
-!> What a user asks of an interface: whether it has been damaged or has grown, how far, and at what energy.
+!> Results of an interface: stage of failure, delaminated area and extents, dissipated energy.
 module interface_figures
   use cohesive_points, only: cohesive_point_t
   use delamination_parameters, only: law_cohesive
@@ -10,28 +10,28 @@ module interface_figures
   private
   public :: interface_figures_t, figures_of, stages_of
 
-  !> How far the failure of an interface has gone beyond its starter: not at all; a point of a cohesive law has begun to
-  !> soften; a point has failed or a cell delaminated.
+  !> Stage of failure of an interface beyond its starter: intact; a cohesive point softens; a point has failed or a cell
+  !> has delaminated.
   integer, parameter, public :: stage_intact = 0, stage_damaged = 1, stage_grown = 2
 
-  !> Bounds of nothing: largest of no numbers.
+  !> Bounds without delamination.
   real(wp), parameter :: empty_bound = -huge(empty_bound)
 
-  !> Figures of one interface of the full plate, the same on every rank.
+  !> Results of one interface of the full plate, the same on every rank.
   type :: interface_figures_t
     !> stage_intact, stage_damaged or stage_grown
     integer :: stage = stage_intact
     !> Delaminated area with the starter; with a cohesive law the area dissipated
     real(wp) :: area = 0
-    !> Energy that fracture has taken
+    !> Fracture energy
     real(wp) :: energy = 0
-    !> Least and greatest x, then y, of what has delaminated, from the struck point; all 0 if nothing has
+    !> Smallest and largest x, then y, of the delamination, from the struck point; all 0 without delamination
     real(wp) :: bounds(2, 2) = 0
   end type interface_figures_t
 
 contains
 
-  !> Figures of all interfaces, in the order of the zones. Collective.
+  !> Results of all interfaces, in the order of the zones. Collective.
   function figures_of(model, interfaces) result(figures)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -57,7 +57,7 @@ contains
     end do
   end function figures_of
 
-  !> How far the failure of each interface has gone. Collective.
+  !> Stage of failure of each interface. Collective.
   function stages_of(model, interfaces) result(stages)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -70,7 +70,7 @@ contains
     furthest = merge(stage_grown, stage_intact, interfaces%faces%fracture > 0)
     if (allocated(interfaces%cohesive%cohesive)) then
       do i = 1, model%distribution%owned
-        ! Starters have delaminated before the run.
+        ! Starters are delaminated before the run.
         if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%faces%free(i)) cycle
         furthest(model%zone(i)) = max(furthest(model%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
       end do
@@ -79,7 +79,7 @@ contains
     stages = nint(furthest)
   end function stages_of
 
-  !> How far the failure of a cohesive point has gone.
+  !> Stage of failure of a cohesive point.
   pure integer function stage_of(point) result(stage)
     !> The point
     type(cohesive_point_t), intent(in) :: point
@@ -89,13 +89,13 @@ contains
     if (point%damage >= 1) stage = stage_grown
   end function stage_of
 
-  !> Greatest -x, x, -y and y of what has delaminated in the modelled part: nodes where a cohesive law has failed, whole
-  !> cells where fronts release ties. Collective.
+  !> Largest -x, x, -y and y of the delamination in the modelled part: failed nodes of a cohesive law, entire cells
+  !> where fronts release ties. Collective.
   function bounds_of(model, interfaces) result(bounds)
     type(model_t), intent(in) :: model
     !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> (4, zones); `empty_bound` if nothing has delaminated
+    !> (4, zones); `empty_bound` without delamination
     real(wp) :: bounds(4, size(model%mesh%zones))
     real(wp) :: all_bounds(size(bounds))
     integer :: i, zone
@@ -118,7 +118,7 @@ contains
     bounds = reshape(all_bounds, shape(bounds))
   end function bounds_of
 
-  !> Greatest -x, x, -y and y of the delaminated cells of a zone.
+  !> Largest -x, x, -y and y of the delaminated cells of a zone.
   pure function cell_bounds(model, interfaces, zone) result(bounds)
     type(model_t), intent(in) :: model
     !> The interfaces

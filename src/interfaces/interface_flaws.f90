@@ -1,7 +1,7 @@
-!> Matrix cracks of neighbouring plies as flaws of a cohesive interface: within a distance of a crack damage starts at
-!> less than the strengths of the material, and takes the same toughness.
+!> Matrix cracks of adjacent plies as flaws of a cohesive interface: within a distance of a crack the strengths are
+!> reduced, at the same toughness.
 !>
-!> A point whose damage has begun keeps its law, so that what it has dissipated keeps its meaning.
+!> The law of a damaged point is not changed, so that its dissipated energy remains consistent.
 module interface_flaws
   use archives, only: archive_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -12,24 +12,25 @@ module interface_flaws
   private
   public :: reachable_cells, weaken_beside, visit_flaws
 
-  !> So that cells as far away as the reach count on every machine.
+  !> Factor that includes cells at exactly the distance on every machine.
   real(wp), parameter :: rounding_factor = 1 + 1.0e-9_wp
 
 contains
 
-  !> Weakens the undamaged points of an interface beside cracks of a ply. Mirrored cells lie farther away than the cells
-  !> themselves; beyond the line at which a turned plate is cut lies the plate itself, turned.
+  !> Reduces the strengths of the undamaged points of an interface near cracks of a ply. With mirror symmetry image
+  !> cells are farther away than the cells; with point symmetry cells beyond the cut are images of cells of the modelled
+  !> part.
   pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
-    !> True for cells of the mesh in which the ply has cracked, those of all ranks
+    !> True for cells of the mesh in which the ply has cracked, on all ranks
     logical, intent(in) :: cracked(:)
-    !> Distance from a crack that is weakened, length
+    !> Distance from a crack within which strengths are reduced
     real(wp), intent(in) :: reach
-    !> Part of the strengths that cracks leave
+    !> Strength factor beside cracks
     real(wp), intent(in) :: part
     integer :: cell
 
@@ -47,7 +48,7 @@ contains
     end associate
   end subroutine weaken_beside
 
-  !> Weakens the undamaged points of an interface within a distance of a rectangle.
+  !> Reduces the strengths of the undamaged points of an interface within a distance of a rectangle.
   pure subroutine weaken_around(interfaces, model, zone, x, y, reach, part)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
@@ -58,7 +59,7 @@ contains
     real(wp), intent(in) :: x(2), y(2)
     !> The distance
     real(wp), intent(in) :: reach
-    !> Part of the strengths that cracks leave
+    !> Strength factor beside cracks
     real(wp), intent(in) :: part
     integer :: i, j, columns(2), rows(2), node, local
 
@@ -97,13 +98,13 @@ contains
     lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + rounding_factor*reach))
   end function lines_within
 
-  !> Cells of the mesh that lie so near to a zone that a crack in them weakens its interface.
+  !> Cells of the mesh within the distance of a zone in which a crack affects its interface.
   pure function reachable_cells(mesh, zone, reach) result(reachable)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Index of the zone
     integer, intent(in) :: zone
-    !> Distance from a crack that is weakened, length
+    !> Distance from a crack within which strengths are reduced
     real(wp), intent(in) :: reach
     !> (cells)
     logical :: reachable(product(mesh%cells))
@@ -114,7 +115,7 @@ contains
     distance = rounding_factor*reach
     associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
       near = x(2:) + distance >= x(columns(1)) .and. x(:size(near)) - distance <= x(columns(2) + 1)
-      ! The image of a cell in a turned plate lies beside the cut only.
+      ! With point symmetry only cells near the cut have an image in reach.
       beside_cut = mesh%halved(1) .and. .not. mesh%mirrored(1) .and. x(:size(near)) <= distance
       do row = 1, mesh%cells(2)
         first = (row - 1)*size(near)
@@ -145,8 +146,8 @@ contains
     if (.not. allocated(interfaces%strength)) return
     if (.not. any(model%setup%delaminations%cracks_as_flaws .or. model%setup%delaminations%shear_cracks)) return
     fields = reshape(interfaces%strength, [1, size(interfaces%strength)])
-    associate (share => model%distribution)
-      call archive%field('cohesive/strength', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('cohesive/strength', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (archive%loading) interfaces%strength = fields(1, :)
   end subroutine visit_flaws

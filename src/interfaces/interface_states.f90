@@ -1,5 +1,5 @@
-!> What evolves of all interfaces, those with frames of rigs among them: ties, contact, the release of ties and how near
-!> the fronts are to growth.
+!> State of all interfaces and of the contact with rigs: ties, contact, release of ties, ratio of energy release rate to
+!> its critical value.
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
@@ -22,34 +22,34 @@ module interface_states
   type :: interface_state_t
     !> Ties and contacts of the faces
     type(contact_and_ties_t) :: faces
-    !> Points held by cohesive laws
+    !> Points with cohesive laws
     type(cohesive_interfaces_t) :: cohesive
-    !> Released ties whose forces fade, and the energy they released
+    !> Released ties with forces that are ramped down, and the energy released
     type(tie_release_t) :: ties
-    !> The plate on its rigs
+    !> Contact with rigs
     type(rig_contact_t) :: rig
     !> Largest energy release rate on the fronts over its critical value
     real(wp) :: release_ratio = 0
-    !> The same of those fronts that can grow, not at the border of their zone
+    !> The same for fronts that can grow, not at the border of their zone
     real(wp) :: growth_ratio = 0
-    !> True once a front or damage has reached the border of its zone, where it cannot grow on, (zones)
+    !> True after a front or damage has reached the border of its zone, where growth ends, (zones)
     logical, allocatable :: border_reached(:)
   contains
     !> Adds the forces of ties and contact to a residual.
     procedure :: act
-    !> Area that a C-scan sees.
+    !> Projected delaminated area, as in a C-scan.
     procedure :: projected_area
-    !> Takes the contact pressures found as the next estimates.
+    !> Sets the multipliers to the contact pressures found.
     procedure :: update_contact
-    !> Keeps what touches together in the predictor.
+    !> Keeps closed contacts closed in the predictor.
     procedure :: keep_contact_closed
     !> Work of contact and penalty ties in a step.
     procedure :: contact_work
-    !> Energy booked as fracture that fronts have not released.
+    !> Energy booked as fracture energy but not released by fronts.
     procedure :: unreleased
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
-    !> Energy that friction has turned into heat since an earlier state.
+    !> Frictional heat since an earlier state.
     procedure :: friction_heat
     !> Saves or loads the state.
     procedure :: visit
@@ -70,7 +70,7 @@ contains
     if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%faces%free)
   end function new_interface_state
 
-  !> Adds the forces of ties and contact to a residual and takes the residual of tied jumps out of it.
+  !> Adds the forces of ties and contact to a residual and sets that of tied jumps to zero.
   subroutine act(self, model, displacement, residual)
     !> The state
     class(interface_state_t), intent(inout) :: self
@@ -85,7 +85,7 @@ contains
     call self%rig%act(model, displacement, residual)
   end subroutine act
 
-  !> Takes the contact pressures found, of faces and frames, as the next estimates.
+  !> Sets the multipliers of faces and frames to the contact pressures found.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(interface_state_t), intent(inout) :: self
@@ -109,7 +109,7 @@ contains
     if (converged) call update_friction_limits(self%cohesive, model, displacement, updates, converged)
   end subroutine update_contact
 
-  !> Keeps touching faces together and what rests on a frame there, in the predictor.
+  !> Keeps closed contacts of faces and frames closed in the predictor.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(interface_state_t), intent(in) :: self
@@ -133,7 +133,7 @@ contains
     if (model%map%layered) work = work + self%faces%work(model, displacement, change)
   end function contact_work
 
-  !> Energy that friction has turned into heat since an earlier state, of the full plate, the same on every rank.
+  !> Frictional heat since an earlier state, of the full plate, the same on every rank.
   real(wp) function friction_heat(self, model, old) result(heat)
     !> The state
     class(interface_state_t), intent(in) :: self
@@ -144,9 +144,9 @@ contains
     heat = heat_since(model, old%cohesive, self%cohesive)
   end function friction_heat
 
-  !> Area in which at least one interface has delaminated, of the full plate: nodal areas times the largest part
-  !> delaminated above each other. A node where ties are released has delaminated as a whole, a cohesive one by the part
-  !> dissipated. All points of a node belong to one rank, so that only the sum is collective.
+  !> Area in which at least one interface has delaminated, of the full plate: sum of nodal areas times the largest
+  !> delaminated fraction of all interfaces at the node: 1 where ties are released, the dissipated fraction of the
+  !> toughness with a cohesive law. All points of a node belong to one rank, so that only the sum is collective.
   function projected_area(self, model) result(area)
     !> The state
     class(interface_state_t), intent(in) :: self
@@ -182,15 +182,16 @@ contains
     end function node_of
   end function projected_area
 
-  !> Delaminated part of each zone's area at each point: what a cohesive law has dissipated, or the point's parts of
-  !> delaminated cells where fronts release ties. Their sums are the areas of the interfaces. Collective.
+  !> Delaminated area of each zone at each point: area times dissipated fraction of the toughness with a cohesive law,
+  !> or the point's part of delaminated cells where fronts release ties. Their sums are the areas of the interfaces.
+  !> Collective.
   function delaminated_areas(self, model) result(areas)
     !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> (zones, local points); at the border of a zone a point of the joined layers has its part
     real(wp), allocatable :: areas(:, :)
-    real(wp) :: shares(size(model%zone)), field(1, model%borders%columns)
+    real(wp) :: dissipated_fractions(size(model%zone)), field(1, model%borders%columns)
     integer :: zone, i
 
     allocate (areas(size(model%mesh%zones), size(model%zone)), source=0.0_wp)
@@ -203,15 +204,15 @@ contains
       call model%borders%add(field)
       areas(zone, :) = field(1, :size(areas, 2))
     end do
-    shares = self%cohesive%shares(model)
+    dissipated_fractions = self%cohesive%dissipated_fractions(model)
     do i = 1, model%distribution%owned
       zone = model%zone(i)
-      if (zone > 0) areas(zone, i) = areas(zone, i) + shares(i)*model%contact_area(i)
+      if (zone > 0) areas(zone, i) = areas(zone, i) + dissipated_fractions(i)*model%contact_area(i)
     end do
 
   contains
 
-    !> True: an element lies below a cell of the zone whose ties a front has released.
+    !> True: an element lies below a delaminated cell of the zone.
     logical function in_delaminated_cell(i)
       !> Number of the element on this rank
       integer, intent(in) :: i
@@ -226,7 +227,8 @@ contains
     end function in_delaminated_cell
   end function delaminated_areas
 
-  !> Energy booked as fracture that fronts in equilibrium have not released: no integrator made it.
+  !> Energy booked as fracture energy but not released by fronts in equilibrium, which is not an error of the
+  !> integrator.
   pure real(wp) function unreleased(self, model)
     !> The state
     class(interface_state_t), intent(in) :: self

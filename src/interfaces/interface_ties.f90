@@ -1,4 +1,4 @@
-!> What holds the faces of all interfaces together: which cells have delaminated, and which jumps are free by that.
+!> Ties of all interfaces: delaminated cells, and free jumps.
 module interface_ties
   use kinds, only: wp
   use archives, only: archive_t
@@ -13,7 +13,7 @@ module interface_ties
   integer, parameter, public :: connection_none = 0, connection_exact = 1, connection_penalty = 2, &
                                 connection_contact = 3, connection_cohesive = 4
 
-  !> Bonds of all interfaces.
+  !> Ties of all interfaces.
   type :: interface_ties_t
     !> Delaminated cells of each zone, the same on every rank
     type(delaminated_region_t), allocatable :: regions(:)
@@ -24,13 +24,13 @@ module interface_ties
     !> Fracture energy of the cells that fronts have released, of the full plate, (zones), the same on every rank
     real(wp), allocatable :: fracture(:)
   contains
-    !> Finds which jumps are free, after a growth.
+    !> Updates the free jumps after growth.
     procedure :: free_jumps
-    !> What acts on the jumps of a point.
+    !> Kind of connection at a point.
     procedure :: connection
-    !> Owned points whose faces press on each other where they meet.
+    !> Owned points with contact of faces.
     procedure :: in_contact
-    !> Keeps tied jumps as they are.
+    !> Sets the correction of tied jumps to zero.
     procedure :: hold
     !> Largest penetration.
     procedure :: penetration
@@ -42,7 +42,7 @@ module interface_ties
 
 contains
 
-  !> Bonds of all interfaces with their starters.
+  !> Ties of all interfaces with their starters.
   pure subroutine create_interface_ties(model, self)
     type(model_t), intent(in) :: model
     !> The connections
@@ -62,7 +62,7 @@ contains
     call self%free_jumps(model)
   end subroutine create_interface_ties
 
-  !> Finds which jumps are free: those at nodes around which all cells have delaminated.
+  !> Updates the free jumps: those at nodes around which all cells have delaminated.
   pure subroutine free_jumps(self, model)
     !> The connections
     class(interface_ties_t), intent(inout) :: self
@@ -76,7 +76,7 @@ contains
     end do
   end subroutine free_jumps
 
-  !> What acts on the jumps of a point.
+  !> Kind of connection at a point.
   pure integer function connection(self, model, i)
     !> The connections
     class(interface_ties_t), intent(in) :: self
@@ -110,7 +110,7 @@ contains
     stiffness = stiffness*model%contact_area(i)
   end function tie_stiffness
 
-  !> Owned points whose faces press on each other where they meet.
+  !> Owned points with contact of faces.
   pure function in_contact(self, model) result(points)
     !> The connections
     class(interface_ties_t), intent(in) :: self
@@ -124,7 +124,7 @@ contains
     end associate
   end function in_contact
 
-  !> Keeps tied jumps as they are.
+  !> Sets the correction of tied jumps to zero.
   pure subroutine hold(self, model, correction)
     !> The connections
     class(interface_ties_t), intent(in) :: self
@@ -189,7 +189,7 @@ contains
     integer :: zone
 
     do zone = 1, size(self%regions)
-      ! That of a cohesive interface is its starter for ever.
+      ! The region of a cohesive interface remains its starter.
       if (model%setup%delaminations(zone)%law == law_cohesive) cycle
       call self%regions(zone)%visit(archive, 'zone'//achar(iachar('0') + zone))
     end do

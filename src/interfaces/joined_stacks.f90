@@ -1,4 +1,4 @@
-!> Shear forces of the stacks that layers make where they are joined.
+!> Transverse shear forces of the stacks of tied layers.
 module joined_stacks
   use element_batches, only: first_element, lanes
   use kinds, only: wp
@@ -8,11 +8,11 @@ module joined_stacks
   private
   public :: joined_stacks_t, joined_stacks_of
 
-  !> The stack that each element of the mesh is in.
+  !> Stack of tied layers of each element of the mesh.
   type :: joined_stacks_t
     !> First and last ply, (2, elements of the mesh)
     integer, allocatable :: plies(:, :)
-    !> Qx and Qy, the sums of the layers', (2, elements of the mesh)
+    !> Qx and Qy, summed over the layers, (2, elements of the mesh)
     real(wp), allocatable :: force(:, :)
     !> Their derivatives along x and y (rows), (2, 2, elements of the mesh)
     real(wp), allocatable :: gradient(:, :, :)
@@ -20,13 +20,13 @@ module joined_stacks
 
 contains
 
-  !> The stacks. Layers are joined in a cell where less than half of their area has delaminated. All ranks must call
-  !> together and find the same.
+  !> Stacks of a state. Layers count as tied in a cell if less than half of their area has delaminated. Collective; the
+  !> same on every rank.
   function joined_stacks_of(model, stiffness, delaminated, displacement) result(self)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Part of each element's area that has delaminated above it, (1, elements)
+    !> Delaminated fraction of the area above each element, (1, elements)
     real(wp), intent(in) :: delaminated(:, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -57,16 +57,16 @@ contains
     end associate
   end function joined_stacks_of
 
-  !> Shear forces, their derivatives and delaminated parts of all elements of the mesh. All ranks must call together.
+  !> Shear forces, their derivatives and delaminated fractions of all elements of the mesh. Collective.
   function gathered(model, stiffness, delaminated, displacement) result(everywhere)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Part of each element's area that has delaminated above it, (1, elements)
+    !> Delaminated fraction of the area above each element, (1, elements)
     real(wp), intent(in) :: delaminated(:, :)
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Qx, Qy; Qx,x Qx,y Qy,x Qy,y; delaminated part, (7, elements of the mesh)
+    !> Qx, Qy; Qx,x Qx,y Qy,x Qy,y; delaminated fraction, (7, elements of the mesh)
     real(wp), allocatable :: everywhere(:, :)
     real(wp), allocatable :: motion(:, :), list(:)
     real(wp) :: strains(lanes, 9, 8)

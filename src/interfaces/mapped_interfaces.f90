@@ -1,29 +1,29 @@
-!> Cohesive interfaces on the way to another mesh, where a point has a share of each old point beside it: shares of the
-!> toughness dissipated have a mean with a meaning, the area that they stand for, and damage has none.
+!> Cohesive interfaces in the transfer to another mesh, by weighted means of old points: the dissipated fraction of the
+!> toughness is transferred instead of the damage variable, since its mean conserves dissipated area and energy.
 module mapped_interfaces
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: stiffness_of
-  use cohesive_points, only: damage_at_share
+  use cohesive_points, only: damage_at_fraction
   use face_friction, only: friction_traction, sliding_t
   use kinds, only: wp
   use models, only: model_t
   implicit none
   private
-  public :: put_shares, take_shares, take_slips
+  public :: put_fractions, take_fractions, take_slips
 
 contains
 
-  !> Puts the share of the toughness dissipated in the place of the damage.
-  pure subroutine put_shares(interfaces, model)
+  !> Replaces the damage by the dissipated fraction of the toughness.
+  pure subroutine put_fractions(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
 
-    if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%shares(model)
-  end subroutine put_shares
+    if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%dissipated_fractions(model)
+  end subroutine put_fractions
 
-  !> Takes the damage that has dissipated these shares.
-  pure subroutine take_shares(interfaces, model)
+  !> Replaces the dissipated fraction of the toughness by the damage.
+  pure subroutine take_fractions(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
@@ -33,15 +33,15 @@ contains
     do i = 1, size(interfaces%points)
       if (.not. interfaces%cohesive(i)) cycle
       associate (point => interfaces%points(i))
-        point%damage = damage_at_share(interfaces%law_at(model, i), point%damage)
+        point%damage = damage_at_fraction(interfaces%law_at(model, i), point%damage)
         interfaces%stiffness(:, i) = (1 - point%damage)*model%contact_area(i)* &
                                      stiffness_of(model%cohesive_laws(model%zone(i)))
       end associate
     end do
-  end subroutine take_shares
+  end subroutine take_fractions
 
-  !> Moves slips to jumps that friction bears: means of slips do not go with jumps between nodes, and what friction
-  !> would have stored beyond its limit was never work.
+  !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
+  !> and elastic energy beyond the limit would be spurious.
   pure subroutine take_slips(interfaces, model, displacement)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces

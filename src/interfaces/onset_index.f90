@@ -1,4 +1,4 @@
-!> Where delaminations would begin: stresses between plies by equilibrium through the thickness, over the strengths.
+!> Onset index of delamination: interlaminar stresses from equilibrium through the thickness over the strengths.
 module onset_index
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
@@ -9,13 +9,13 @@ module onset_index
   private
   public :: onset_of_elements, onset_of_joined_cells
 
-  !> What the index of a stack is made from.
+  !> Data for the index of a stack.
   type :: onset_t
     !> The stacks
     type(joined_stacks_t) :: stacks
     !> Strengths in shear and opening of the interface below each ply, (2, plies - 1)
     real(wp), allocatable :: strengths(:, :)
-    !> Stresses in the whole laminate
+    !> Stresses of the full laminate
     type(unit_stresses_t) :: whole
   contains
     procedure :: indices
@@ -23,12 +23,12 @@ module onset_index
 
 contains
 
-  !> Largest index in the interfaces within each element and on top of it, and the ply above that interface.
+  !> Largest index of the interfaces within each element and on top of it, and the ply above that interface.
   pure function onset_of_elements(model, stacks) result(onset)
     type(model_t), intent(in) :: model
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
-    !> Index and ply; both 0 where no strength is known, (2, elements)
+    !> Index and ply; both 0 without strengths, (2, elements)
     real(wp), allocatable :: onset(:, :)
     type(onset_t) :: self
     integer :: i, range(2), place
@@ -49,7 +49,7 @@ contains
     end do
   end function onset_of_elements
 
-  !> The index of each interface in the cells of the mesh whose layers it does not part, 0 in the others.
+  !> Index of each interface in the cells of the mesh where it lies within one layer, 0 in the others.
   pure function onset_of_joined_cells(model, stacks) result(onset)
     type(model_t), intent(in) :: model
     !> The stacks of joined layers
@@ -77,12 +77,12 @@ contains
     end associate
   end function onset_of_joined_cells
 
-  !> Gathers what indices are made from.
+  !> Gathers the data for indices.
   pure function new_onset(model, stacks) result(self)
     type(model_t), intent(in) :: model
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
-    !> What was gathered
+    !> The data
     type(onset_t) :: self
 
     self%stacks = stacks
@@ -90,14 +90,14 @@ contains
     self%whole = unit_stresses_of(model%plies)
   end function new_onset
 
-  !> Indices of the interfaces below some plies of the stack that an element is in.
+  !> Indices of the interfaces below a range of plies of an element's stack.
   pure function indices(self, model, element, range)
-    !> What they are made from
+    !> The data
     class(onset_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Element of the mesh
     integer, intent(in) :: element
-    !> First and last of the plies
+    !> First and last ply
     integer, intent(in) :: range(2)
     !> Index below each
     real(wp) :: indices(range(2) - range(1) + 1)

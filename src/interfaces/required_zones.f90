@@ -1,5 +1,5 @@
-!> How far adaptive layers have to reach: some cells ahead of it, over the cells next to them where half
-!> of the interface's strength is reached by equilibrium through the thickness, and to any cell where all of it is.
+!> Required extents of adaptive layers: some cells ahead of damage, further adjacent cells with an onset index of at
+!> least a half, and any cell with an index of 1.
 module required_zones
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t
@@ -12,14 +12,14 @@ module required_zones
   private
   public :: required_extents
 
-  !> Part by which rounding may carry a length beyond another.
+  !> Relative tolerance of lengths for round-off.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
-  !> Extents that the zones have to have from now on: what any that follows needs all have, as intact layers beside a
-  !> damaged interface yield otherwise than plies that are joined. What has to grow gets cells in store. Collective; the
-  !> same on every rank.
+  !> Required extents of the zones. All adaptive zones have the same extents, since intact layers beside a damaged
+  !> interface are more compliant than one layer. Extents that grow get additional cells. Collective; the same on every
+  !> rank.
   function required_extents(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -48,7 +48,7 @@ contains
     end associate
   end function required_extents
 
-  !> Extents over the joined cells that the onset index asks for.
+  !> Extents over the cells without layers that the onset index requires.
   function around_onset(model, stiffness, interfaces, displacement) result(extents)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -70,11 +70,11 @@ contains
     end do
   end function around_onset
 
-  !> Extends a rectangle over cells beside it as long as there are any that ask for it. Far away layers without damage
-  !> would only cost: at a clamped edge half of the strength may be reached and no more.
+  !> Extends a rectangle by adjacent cells whose index requires it. Distant cells with an index between a half and 1, as
+  !> at a clamped edge, are not included.
   pure subroutine extend(model, onset, extents)
     type(model_t), intent(in) :: model
-    !> Onset index of the joined cells, (cells)
+    !> Onset index of the cells without layers, (cells)
     real(wp), intent(in) :: onset(:)
     !> Full extents along x and y
     real(wp), intent(inout) :: extents(2)
@@ -95,7 +95,7 @@ contains
     end do
   end subroutine extend
 
-  !> Full extents that reach over a cell.
+  !> Full extents that include a cell.
   pure function extents_to(model, cell) result(extents)
     type(model_t), intent(in) :: model
     !> The cell
@@ -132,14 +132,14 @@ contains
     extents = reshape(list, shape(extents))
   end function around_damage
 
-  !> Extents with some more cells on each side; none stays none.
+  !> Extents with additional cells on each side; zero remains zero.
   pure function with_margin(model, extents, cells, least) result(wider)
     type(model_t), intent(in) :: model
     !> Full extents along x and y, (2, zones)
     real(wp), intent(in) :: extents(:, :)
     !> Cells
     integer, intent(in) :: cells
-    !> Length that they have at least
+    !> Smallest length of these cells
     real(wp), intent(in) :: least
     !> (2, zones)
     real(wp) :: wider(2, size(extents, 2))

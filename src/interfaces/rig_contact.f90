@@ -1,7 +1,7 @@
-!> The plate on its rigs: pressure where it rests on a frame that it may lift off, springs of clamps, and reactions.
+!> Contact with rigs: pressure where it rests on a frame that it may lift off, springs of clamps, and reactions.
 !>
-!> The frame is rigid and bears the plate by a bound on w at its nodes. The law is that of faces that touch
-!> (`face_contact`), with -w as the gap: one multiplier a node, which settles when the equations of motion are solved.
+!> A frame is rigid and constrains w at its nodes by an inequality. The law is that of contact of faces (`face_contact`)
+!> with the gap -w and one multiplier per node, updated until it converges.
 module rig_contact
   use kinds, only: wp
   use archives, only: archive_t
@@ -14,26 +14,26 @@ module rig_contact
   private
   public :: rig_contact_t, new_rig_contact
 
-  !> State of the contact with frames; unallocated lists: none may lift off.
+  !> State of the contact with frames; unallocated lists: no unilateral frame.
   type :: rig_contact_t
-    !> Estimate of the pressure and the pressure found, (local points)
+    !> Multiplier and contact pressure, (local points)
     real(wp), allocatable :: multiplier(:), pressure(:)
-    !> Slope of the pressure by the gap, not positive, (local points)
+    !> Derivative of the pressure with respect to the gap, not positive, (local points)
     real(wp), allocatable :: slope(:)
     !> Largest pressure so far
     real(wp) :: peak = 0
-    !> Forces of the rigs where a step has found them itself, (max_supports)
+    !> Forces of the rigs computed in an explicit step, (max_supports)
     real(wp), allocatable :: found(:)
   contains
     !> Adds the pressure's forces to a residual.
     procedure :: act
     !> Adds the forces of springs to internal forces.
     procedure :: add_springs
-    !> Takes the pressures found as the next estimates.
+    !> Sets the multipliers to the pressures found.
     procedure :: update_contact
     !> Work of the pressure in a step.
     procedure :: work
-    !> Keeps what rests on a frame there in the predictor.
+    !> Keeps closed contacts closed in the predictor.
     procedure :: keep_contact_closed
     !> Stiffness that frames and clamps add to the diagonal.
     procedure :: add_stiffness
@@ -45,8 +45,8 @@ module rig_contact
 
 contains
 
-  !> The plate resting on its frames without weight; below clamps that press by the pressure that bears them. Slopes are
-  !> those of contact, so that frames hold it from the start.
+  !> Initial state: the plate in contact with its frames without pressure, except for the reaction of clamps with a
+  !> force. Slopes are those of contact, so that frames support it from the first step.
   pure function new_rig_contact(model) result(self)
     type(model_t), intent(in) :: model
     !> The state
@@ -60,7 +60,7 @@ contains
     self%pressure = self%multiplier
   end function new_rig_contact
 
-  !> Owned points that a frame bears by pressure.
+  !> Owned points on unilateral frames.
   pure function on_frame(model) result(points)
     type(model_t), intent(in) :: model
     !> Points of this rank, ascending
@@ -86,14 +86,14 @@ contains
       if (model%rig%frame(i) == 0) cycle
       call contact_pressure(model%rig_law, 0.0_wp, -displacement(3, i), self%multiplier(i), self%pressure(i), &
                             self%slope(i))
-      ! A plate that just touches is held too: without weight, nothing else would hold it on the first step.
+      ! A gap of zero counts as contact, which supports the plate in the first step.
       if (self%multiplier(i) + model%rig_law%stiffness*displacement(3, i) >= 0) &
         self%slope(i) = -model%rig_law%stiffness
       residual(3, i) = residual(3, i) - model%rig_area(i)*self%pressure(i)
     end do
   end subroutine act
 
-  !> Adds the forces of springs and of clamps that press to internal forces, and what they store to an energy.
+  !> Adds the forces of springs and of clamps with a force to internal forces, and their stored energy.
   pure subroutine add_springs(self, model, displacement, force, energy)
     !> The state
     class(rig_contact_t), intent(in) :: self
@@ -115,7 +115,7 @@ contains
     end do
   end subroutine add_springs
 
-  !> Takes the pressures found as the next estimates; they have converged once they agree with the gaps.
+  !> Sets the multipliers to the pressures found; they have converged once they agree with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(rig_contact_t), intent(inout) :: self
@@ -159,7 +159,7 @@ contains
     end associate
   end function work
 
-  !> Keeps what rests on a frame there in the predictor, and keeps the rest from passing into it.
+  !> Keeps closed contacts closed in the predictor, and open ones from penetrating.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(rig_contact_t), intent(in) :: self
@@ -192,13 +192,13 @@ contains
     end do
   end subroutine add_stiffness
 
-  !> Forces of each rig on the full plate, positive against the impact: what the equations of motion leave at the
-  !> w that it holds, the pressure on its frame, and the springs of its clamps. The same on every rank.
+  !> Forces of each rig on the full plate, positive against the impact: residual of the equations of motion at
+  !> constrained w, pressure on its frame, and springs of its clamps. The same on every rank.
   function reactions(self, model, displacement, internal, inertia, loads)
     !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Unknowns, internal forces and forces of inertia at the owned points, (5, points)
+    !> Unknowns, internal forces and inertia forces at the owned points, (5, points)
     real(wp), intent(in) :: displacement(:, :), internal(:, :), inertia(:, :)
     !> Forces of pressure and lines at the owned points, (5, points)
     real(wp), intent(in) :: loads(:, :)
@@ -248,8 +248,8 @@ contains
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (share => model%distribution)
-      call archive%field('rig/pressures', share%points(:share%owned), model%mesh%points(), fields)
+    associate (partition => model%distribution)
+      call archive%field('rig/pressures', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)

@@ -1,4 +1,4 @@
-!> Released ties: their forces are ramped down, and the energy released meanwhile is summed.
+!> Released ties: their forces are ramped down, and the energy released is summed.
 !>
 !> Sudden removal of a tie would excite the plate: the energy would remain as kinetic energy, and the shorter the steps,
 !> the less of it would appear as work against the tie. The force is therefore ramped down linearly in time, while shear
@@ -17,17 +17,17 @@ module tie_release
     !> Forces on the jumps when the ties were released, (3, local points)
     real(wp), allocatable :: force(:, :)
     !> Remaining fraction of these forces, (local points)
-    real(wp), allocatable :: share(:)
+    real(wp), allocatable :: remaining(:)
     !> Duration of the ramp, (zones)
     real(wp), allocatable :: duration(:)
-    !> Energy that released faces released, full plate, (zones)
+    !> Energy released by released ties, full plate, (zones)
     real(wp), allocatable :: set_free(:)
     !> Time until the last of them is zero, the same on every rank
     real(wp) :: left = 0
   contains
     !> Releases ties.
     procedure :: release
-    !> Energy that ties just released released as they first open.
+    !> Energy released by the first opening of newly released ties.
     procedure :: first_opening
     !> Reduces the forces over a step.
     procedure :: ramp_down
@@ -46,8 +46,8 @@ contains
     type(model_t), intent(in) :: model
     !> The ties
     type(tie_release_t) :: self
-    !> Elements that waves of shear cross while a tie fades. With 10 the energy released is the same to some percent
-    !> for all shorter steps.
+    !> Number of elements crossed by shear waves during the ramp. With 10 the energy released is the same within some
+    !> per cent for all shorter steps.
     real(wp), parameter :: elements_crossed = 10
     real(wp) :: slowness
     integer :: points, zones, zone
@@ -56,7 +56,7 @@ contains
     allocate (self%set_free(zones), self%duration(zones), source=0.0_wp)
     if (.not. model%map%layered) return
     points = size(model%zone)
-    allocate (self%force(3, points), self%share(points), source=0.0_wp)
+    allocate (self%force(3, points), self%remaining(points), source=0.0_wp)
     slowness = sqrt(minval(model%plies%density/max(model%plies%elasticity%g13, model%plies%elasticity%g23)))
     do zone = 1, zones
       self%duration(zone) = elements_crossed*model%mesh%mean_cell(zone)*slowness
@@ -79,13 +79,13 @@ contains
       if (free_before(i) .or. .not. free(i)) cycle
       self%force(:, i) = forces(:, i)
       if (model%setup%delaminations(model%zone(i))%contact /= contact_none) self%force(3, i) = min(0.0_wp, forces(3, i))
-      self%share(i) = 1
+      self%remaining(i) = 1
     end do
     self%left = maxval(self%duration)
   end subroutine release
 
-  !> Energy that ties just released released as they first open, once the step has been computed again without them.
-  !> What cells released later in the same step make of the opening is theirs.
+  !> Energy released by the first opening of newly released ties, after the step was repeated without them. Opening by
+  !> cells released later in the same step is attributed to these.
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
     class(tie_release_t), intent(in) :: self
@@ -102,7 +102,7 @@ contains
     do i = 1, model%distribution%owned
       if (free_before(i) .or. .not. free(i)) cycle
       associate (zone => model%zone(i))
-        energy(zone) = energy(zone) - (1 - self%share(i))/2*dot_product(self%force(:, i), opening(1:3, i))
+        energy(zone) = energy(zone) - (1 - self%remaining(i))/2*dot_product(self%force(:, i), opening(1:3, i))
       end associate
     end do
     call model%communicator%sum(energy)
@@ -120,17 +120,17 @@ contains
 
     if (.not. self%left > 0) return
     do i = 1, model%distribution%owned
-      if (.not. self%share(i) > 0) cycle
+      if (.not. self%remaining(i) > 0) cycle
       associate (duration => self%duration(model%zone(i)))
-        if (step < self%share(i)*duration) then
-          self%share(i) = self%share(i) - step/duration
+        if (step < self%remaining(i)*duration) then
+          self%remaining(i) = self%remaining(i) - step/duration
         else
-          self%share(i) = 0
+          self%remaining(i) = 0
         end if
       end associate
     end do
     self%left = max(0.0_wp, self%left - step)
-    if (.not. self%left > 0) self%share = 0
+    if (.not. self%left > 0) self%remaining = 0
   end subroutine ramp_down
 
   !> Adds the forces to a residual.
@@ -144,13 +144,13 @@ contains
 
     if (.not. self%left > 0) return
     do i = 1, model%distribution%owned
-      if (self%share(i) > 0) residual(1:3, i) = residual(1:3, i) + self%share(i)*self%force(:, i)
+      if (self%remaining(i) > 0) residual(1:3, i) = residual(1:3, i) + self%remaining(i)*self%force(:, i)
     end do
   end subroutine act
 
-  !> Books the work against the forces in a step: as the step had it, the force at its end acting throughout, and as
-  !> the energy released has it, with the mean of the forces at its start and end. Of ties released in this step the
-  !> difference is that of `first_opening`.
+  !> Books the work against the forces in a step: that of the step with the force at its end, and the energy released
+  !> with the mean of the forces at its start and end. For ties released in this step the difference is that of
+  !> `first_opening`.
   subroutine book(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
@@ -159,7 +159,7 @@ contains
     type(tie_release_t), intent(in) :: old
     !> Change of the unknowns, (5, points)
     real(wp), intent(in) :: change(:, :)
-    !> Energy that the forces took from the full plate
+    !> Energy extracted from the full plate by the forces
     real(wp), intent(out) :: taken
     real(wp) :: sums(size(self%set_free) + 1), work, mean
     integer :: i
@@ -168,11 +168,11 @@ contains
     if (.not. old%left > 0) return
     sums = 0
     do i = 1, model%distribution%owned
-      if (.not. old%share(i) > 0) cycle
+      if (.not. old%remaining(i) > 0) cycle
       work = -dot_product(self%force(:, i), change(1:3, i))
-      sums(1) = sums(1) + self%share(i)*work
-      mean = (old%share(i) + self%share(i))/2
-      if (old%share(i) >= 1) mean = self%share(i)
+      sums(1) = sums(1) + self%remaining(i)*work
+      mean = (old%remaining(i) + self%remaining(i))/2
+      if (old%remaining(i) >= 1) mean = self%remaining(i)
       sums(1 + model%zone(i)) = sums(1 + model%zone(i)) + mean*work
     end do
     call model%communicator%sum(sums)
@@ -193,14 +193,14 @@ contains
     if (.not. model%map%layered) return
     call archive%item('ties/set_free', self%set_free)
     call archive%item('ties/left', self%left)
-    allocate (fields(4, size(self%share)))
+    allocate (fields(4, size(self%remaining)))
     fields(:3, :) = self%force
-    fields(4, :) = self%share
-    associate (share => model%distribution)
-      call archive%field('ties/forces', share%points(:share%owned), model%mesh%points(), fields)
+    fields(4, :) = self%remaining
+    associate (partition => model%distribution)
+      call archive%field('ties/forces', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
     if (.not. archive%loading) return
     self%force = fields(:3, :)
-    self%share = fields(4, :)
+    self%remaining = fields(4, :)
   end subroutine visit
 end module tie_release

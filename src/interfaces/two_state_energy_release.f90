@@ -1,15 +1,15 @@
 !> Energy release rates along a front by Eq. 11 with its sign corrected, from the states on both sides of it.
 !>
-!> The steps are those of section 3.3.3 of the paper: strains are carried to the nodes of the front from inside the
-!> cells on either side of it; they are smoothed along the front, never across it; the smooth states give G at the
-!> nodes, and the mean of its three nodes is a segment's. To smooth G in place of the states would take what differs
-!> between neighbours for released: where a front turns around an intact cell its legs have unlike states, and on discs
-!> that grow cell by cell the rates would add up to 1.32 of the energy released, 1.18 with smooth states.
+!> The steps are those of section 3.3.3 of the paper: strains are extrapolated to the nodes of the front from the cells
+!> on either side and smoothed along the front, not across it; the smooth states give G at the nodes, and the mean of
+!> three nodes is G of a segment. Smoothing G instead of the states would count differences between adjacent segments as
+!> released energy, as where a front turns around an intact cell: on discs that grow cell by cell the rates would sum to
+!> 1.32 of the energy released, against 1.18 with smooth states.
 !>
-!> Where plies have cracked on one side only, the strains across the front jump there without any delamination. The
-!> states are then compared in the stiffness of the stiffer side, to which they are carried by the forces across the
-!> front. In the softer one a force that the crack has not yet released would count as the energy of a long soft layer,
-!> though the cell ahead is short: up to 18 times G_c for a step or two after each crack.
+!> If plies have cracked on one side only, strains across the front are discontinuous without any delamination. The
+!> states are then compared with the stiffness of the stiffer side, to which they are converted by equal forces across
+!> the front. With the softer stiffness a force not yet released by the crack would be overestimated in energy, up to 18
+!> times G_c for one or two steps after each crack.
 module two_state_energy_release
   use kinds, only: wp
   use element_batches, only: lanes, batch_of, lane_of
@@ -50,12 +50,12 @@ contains
                                   reshape(values(96*n + 1:), [21, 2, 2, n]))
   end function two_state_rates
 
-  !> Rates of the segments from the states at their nodes.
+  !> Energy release rates of the segments from the states at their nodes.
   function rates_of_states(model, segments, found, stiffness) result(rates)
     type(model_t), intent(in) :: model
     !> The front
     type(front_segment_t), intent(in) :: segments(:)
-    !> Strains as found, (8, 3 nodes, 2 layers, 2 sides, segments)
+    !> Extrapolated strains, (8, 3 nodes, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: found(:, :, :, :, :)
     !> Stiffness, (21, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: stiffness(:, :, :, :)
@@ -69,7 +69,7 @@ contains
       do layer = 1, 2
         common(:, layer, s) = common_stiffness(segments(s), stiffness(:, layer, :, s))
         do side = 1, 2
-          ! Where the zone ends one layer follows, whose stiffness is not that of these two.
+          ! At the border of the zone follows a single layer, with another stiffness than these two.
           known = stiffness(:, layer, merge(1, side, segments(s)%at_border), s)
           do line = 1, 3
             states(:, line, layer, side, s) = &
@@ -88,7 +88,7 @@ contains
     end do
   end function rates_of_states
 
-  !> Stiffness in which the states of a layer on both sides of a segment are compared: that of the stiffer side.
+  !> Stiffness for the comparison of the states of a layer on both sides of a segment: that of the stiffer side.
   pure function common_stiffness(segment, stiffness) result(common)
     !> The segment
     type(front_segment_t), intent(in) :: segment
@@ -96,7 +96,7 @@ contains
     real(wp), intent(in) :: stiffness(:, :)
     !> The stiffer of them
     real(wp) :: common(21)
-    !> Where the diagonal of the membrane stiffness stands
+    !> Positions of the diagonal of the membrane stiffness
     integer, parameter :: diagonal(3) = [1, 4, 6]
 
     common = stiffness(:, 1)
@@ -104,8 +104,8 @@ contains
     if (sum(stiffness(diagonal, 2)) > sum(common(diagonal))) common = stiffness(:, 2)
   end function common_stiffness
 
-  !> Strains without those that vanish on a line of symmetry. Along the front of the full plate their mean from both
-  !> sides of the line does that.
+  !> Strains without the components that vanish on a line of symmetry, as their mean from both sides does on the full
+  !> plate.
   pure function symmetric(model, node, strains)
     type(model_t), intent(in) :: model
     !> Node
@@ -124,16 +124,16 @@ contains
     end do
   end function symmetric
 
-  !> State at a node of a segment: the mean of those of the segments that share the node and lead into cells of the same
-  !> stiffness. States of unlike cells cannot be compared: strains across their border jump.
+  !> State at a node of a segment: mean over the segments that share the node and border on cells of the same stiffness.
+  !> Between cells of different stiffness strains are discontinuous.
   pure function smooth_state(segments, states, common, s, line) result(smooth)
     !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Strains, (8, 3 nodes, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: states(:, :, :, :, :)
-    !> Stiffness that the strains belong to, (21, 2 layers, segments)
+    !> Stiffness of the strains, (21, 2 layers, segments)
     real(wp), intent(in) :: common(:, :, :)
-    !> The segment, and which of its nodes
+    !> The segment, and the number of its node
     integer, intent(in) :: s, line
     !> Strains, (8, 2 layers, 2 sides)
     real(wp) :: smooth(8, 2, 2)
@@ -151,8 +151,8 @@ contains
     smooth = smooth/found
   end function smooth_state
 
-  !> Elements above and below the interface on the delaminated and the intact side of every segment, as this rank
-  !> numbers them; 0: another rank has it.
+  !> Elements above and below the interface on the delaminated and the intact side of every segment, as numbered on this
+  !> rank; 0: on another rank.
   pure function front_elements(model, zone, segments) result(elements)
     type(model_t), intent(in) :: model
     !> Index of the zone
@@ -175,8 +175,8 @@ contains
     end do
   end function front_elements
 
-  !> Strains of the elements along a front at the three nodes of their segments, and their stiffness; zero where another
-  !> rank has the element. Every batch is computed once.
+  !> Strains of the elements along a front at the three nodes of their segments, and their stiffness; zero for elements
+  !> of other ranks. Every batch is computed once.
   subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)

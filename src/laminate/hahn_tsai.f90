@@ -1,6 +1,6 @@
-!> Shear in the plane of a ply whose strain grows faster than its stress: s12/G12 + beta s12**3 (H. T. Hahn, S. W. Tsai,
-!> Journal of Composite Materials 7 (1973) 102-118). Unloading leads back to the origin, so that what stiffness the
-!> shear has lost stays lost; or it follows the initial modulus, so that beta s12**3 stays as a permanent strain.
+!> Nonlinear in-plane shear of a ply: strain s12/G12 + beta s12**3 (H. T. Hahn, S. W. Tsai, Journal of Composite
+!> Materials 7 (1973) 102-118). Unloading leads back to the origin, so that what stiffness the shear has lost stays
+!> lost; or it follows the initial modulus, so that beta s12**3 stays as a permanent strain.
 module hahn_tsai
   use kinds, only: wp
   implicit none

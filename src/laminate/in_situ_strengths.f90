@@ -28,7 +28,7 @@ contains
     integer, intent(in) :: ply
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
-    !> Whether strengths are those in place
+    !> True: in-situ strengths
     type(ply_damage_t), intent(in) :: damage
     !> The material
     type(material_t) :: material
@@ -51,7 +51,7 @@ contains
     integer, intent(in) :: ply
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
-    !> Whether strengths are those in place
+    !> True: in-situ strengths
     type(ply_damage_t), intent(in) :: damage
     !> The strengths
     type(matrix_strengths_t) :: strengths
@@ -59,7 +59,7 @@ contains
     strengths = matrix_strengths(material_in_place(plies, ply, materials, damage), criteria_puck)
   end function crack_strengths
 
-  !> Strengths in place of a block of plies.
+  !> In-situ strengths of a block of plies.
   pure function strengths_in_place(material, thickness, at_face) result(strengths)
     !> Its material, with strengths and fracture energies
     type(material_t), intent(in) :: material

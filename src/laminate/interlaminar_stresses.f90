@@ -1,5 +1,5 @@
-!> Stresses between the plies of a stack that carries shear forces, by equilibrium through its thickness, and how near
-!> they bring its interfaces to failing.
+!> Stresses between the plies of a stack that carries shear forces, by equilibrium through its thickness, and the onset
+!> index of its interfaces.
 module interlaminar_stresses
   use kinds, only: wp
   use plies, only: ply_t, in_plane_stiffness
@@ -8,15 +8,14 @@ module interlaminar_stresses
   private
   public :: unit_stresses_t, unit_stresses_of
 
-  !> Stresses below each ply of a stack but the last. Plies as they were made: what cracks have taken from them is not
-  !> looked at.
+  !> Stresses below each ply of a stack but the last, of undamaged plies.
   type :: unit_stresses_t
     !> tau_xz and tau_yz for Qx = 1 and Qy = 1, and the parts of these forces that plies above carry, (2, 2, plies - 1)
     real(wp), allocatable :: shear(:, :, :), carried(:, :, :)
   contains
     !> Normal stress.
     procedure :: opening
-    !> How near interfaces are to failing.
+    !> Onset index of interfaces.
     procedure :: onset_indices
   end type unit_stresses_t
 

@@ -1,4 +1,4 @@
-!> Stacking sequence, as the deck gives it.
+!> Stacking sequence in the deck.
 module laminate_parameters
   use kinds, only: wp
   implicit none

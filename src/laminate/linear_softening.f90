@@ -86,7 +86,7 @@ contains
     end if
   end function damage_at
 
-  !> Energy per volume that damage takes as it grows on a fall; 0: it does not grow.
+  !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
   pure real(wp) function taken_by(softening, part, damage_from, damage_to) result(energy)
     !> The fall
     type(softening_t), intent(in) :: softening
@@ -96,11 +96,11 @@ contains
     real(wp), intent(in) :: damage_from, damage_to
 
     energy = 0
-    if (damage_to > damage_from) energy = part*softening%energy*share_growth(softening%ratio, damage_from, damage_to)
+    if (damage_to > damage_from) energy = part*softening%energy*fraction_growth(softening%ratio, damage_from, damage_to)
   end function taken_by
 
   !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
-  pure real(wp) function share_growth(ratio, damage_from, damage_to) result(growth)
+  pure real(wp) function fraction_growth(ratio, damage_from, damage_to) result(growth)
     !> N
     real(wp), intent(in) :: ratio
     !> Damage before and after
@@ -110,5 +110,5 @@ contains
     from = ratio*(1 - damage_from) + damage_from
     to = ratio*(1 - damage_to) + damage_to
     growth = ratio*(damage_to - damage_from)/(from*to)
-  end function share_growth
+  end function fraction_growth
 end module linear_softening

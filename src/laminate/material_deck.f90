@@ -87,7 +87,7 @@ contains
 
   !> All materials.
   subroutine fill_materials(settings, materials, problems)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(material_t), allocatable, intent(out) :: materials(:)
@@ -106,9 +106,9 @@ contains
     end do
   end subroutine fill_materials
 
-  !> One material; its constants stay 0 if they aren't all there and sound.
+  !> One material; its constants are 0 unless all are given and valid.
   subroutine fill_material(settings, place, material, problems)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
     !> Its index
     integer, intent(in) :: place
@@ -253,7 +253,7 @@ contains
 
   !> Constants of an orthotropic material.
   subroutine fill_orthotropic(settings, place, material)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
     !> Index of the material
     integer, intent(in) :: place

@@ -1,4 +1,4 @@
-!> Data of one ply material, as the deck gives it.
+!> Data of one ply material in the deck.
 module material_parameters
   use kinds, only: wp
   implicit none
@@ -40,7 +40,7 @@ module material_parameters
 
 contains
 
-  !> First material whose constants are all those of a material: two names for one material make no two of it.
+  !> First material with equal constants: two names with equal constants are one material.
   pure integer function first_alike(materials, index) result(first)
     !> All materials
     type(material_t), intent(in) :: materials(:)

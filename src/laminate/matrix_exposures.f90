@@ -1,5 +1,5 @@
-!> How near a state of stress in the plane of a ply is to failure of the matrix, for each set of criteria: the stress
-!> exposure of Puck, which is 1 at failure and grows in proportion to the stresses.
+!> Stress exposure of the matrix by the in-plane stresses of a ply, for each set of criteria: the stress exposure of
+!> Puck, which is 1 at failure and grows in proportion to the stresses.
 module matrix_exposures
   use kinds, only: wp
   use mathematical_constants, only: pi

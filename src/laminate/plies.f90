@@ -1,4 +1,4 @@
-!> One unidirectional ply: elastic constants, place in the stack, stiffness in the axes of the plate.
+!> One unidirectional ply: elastic constants, position in the stack, stiffness in the axes of the plate.
 module plies
   use kinds, only: wp
   use mathematical_constants, only: degree

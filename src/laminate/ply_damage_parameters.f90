@@ -1,4 +1,4 @@
-!> Damage of the plies, as the deck gives it.
+!> Parameters of ply damage in the deck.
 module ply_damage_parameters
   use kinds, only: wp
   implicit none
@@ -25,7 +25,7 @@ module ply_damage_parameters
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
-    !> Divisor of the elastic constants that a mode of failure takes away
+    !> Divisor of the elastic constants affected by a mode of failure
     real(wp) :: d = 100
     !> Smallest value of an elastic constant, as a fraction of the undamaged one
     real(wp) :: e = 1.0e-3_wp
@@ -33,7 +33,7 @@ module ply_damage_parameters
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces
     integer :: stress = stress_at_middle
-    !> True: the strengths of the matrix are those in place
+    !> True: in-situ strengths of the matrix
     logical :: in_situ = .false.
     !> True: shear strain beyond s12/G12 is permanent, otherwise shear unloads to the origin
     logical :: permanent_shear = .false.

@@ -1,4 +1,4 @@
-!> Which reduction of the transverse shear stiffness suits a stack of plies, and how far the factor 5/6 is off.
+!> Suitable reduction of the transverse shear stiffness of a stack of plies, and the error of the factor 5/6.
 module shear_corrections
   use kinds, only: wp
   use laminate_parameters, only: shear_five_sixths, shear_energy
@@ -15,7 +15,7 @@ module shear_corrections
 
 contains
 
-  !> The reduction for a stack that the deck gives none for.
+  !> Default reduction for a stack.
   pure integer function natural_correction(plies) result(correction)
     !> All plies
     type(ply_t), intent(in) :: plies(:)

@@ -25,7 +25,7 @@ contains
     type(laminate_t), intent(in) :: laminate
     !> Materials that it refers to
     type(material_t), intent(in) :: materials(:)
-    !> The plies in their places
+    !> The plies with their positions
     type(ply_t), allocatable :: plies(:)
     real(wp) :: z
     integer :: i

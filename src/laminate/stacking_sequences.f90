@@ -18,7 +18,7 @@ module stacking_sequences
   !> The signs of a pair of plies as one character of UTF-8, and the minus of typesetters.
   character(len=*), parameter :: plus_minus = char(194)//char(177), typeset_minus = char(226)//char(136)//char(146)
 
-  !> A place in a sequence, and the first fault found in it.
+  !> A position in a sequence, and its first fault.
   type :: reader_t
     !> The sequence
     character(len=:), allocatable :: text
@@ -84,7 +84,7 @@ contains
     end do
   end subroutine read_list
 
-  !> An angle or a pair with its count, or a bracket with what stands behind it.
+  !> An angle or a pair with its count, or a bracket with its suffix.
   pure recursive subroutine read_item(reader, angles, barred)
     !> Where to read
     type(reader_t), intent(inout) :: reader
@@ -231,7 +231,7 @@ contains
   pure function repeated(angles, count) result(plies)
     !> Degrees
     real(wp), intent(in) :: angles(:)
-    !> How often
+    !> Number of repetitions
     integer, intent(in) :: count
     !> Degrees
     real(wp), allocatable :: plies(:)

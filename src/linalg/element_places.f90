@@ -1,5 +1,5 @@
-!> Places of element matrices among the values of PETSc's symmetric matrix. Assembly with places that are known takes a
-!> third of the time of MatSetValues, which looks for each entry.
+!> Positions of the entries of element matrices among the values of PETSc's symmetric matrix. Assembly with stored
+!> positions takes a third of the time of MatSetValues, which searches for each entry.
 module element_places
   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int, c_intptr_t, c_ptr
   use petscksp, only: tMat, MatGetDiagonalBlock
@@ -8,20 +8,20 @@ module element_places
   private
   public :: element_places_t
 
-  !> Places of the upper triangle of an element's matrix.
+  !> Positions of the entries of the upper triangle of an element's matrix.
   type :: places_t
-    !> Column by column, 0 for what is left out; empty if equations of other ranks are among the element's
+    !> Column by column, 0 for constrained rows; empty if the element has equations of other ranks
     integer, allocatable :: of_entries(:)
   end type places_t
 
-  !> Places of all elements of a rank.
+  !> Positions for all elements of a rank.
   type :: element_places_t
     !> First row that this rank owns
     integer, private :: first_row = 0
-    !> Places before each row of the upper triangle in this rank's rows and columns, (owned rows + 1), and the column of
-    !> each place
+    !> Number of positions before each row of the upper triangle of this rank's diagonal block, (owned rows + 1), and
+    !> the column of each position
     integer, allocatable, private :: row_start(:), columns(:)
-    !> Places of each element that has come
+    !> Positions for each element assembled so far
     type(places_t), allocatable, private :: elements(:)
     !> Number of assemblies so far
     integer, private :: assemblies = 0
@@ -45,10 +45,10 @@ module element_places
 
 contains
 
-  !> Takes the pattern.
+  !> Stores the pattern.
   subroutine define(self, first_row, row_start, columns, is_stored)
     class(element_places_t), intent(out) :: self
-    !> First row that this rank owns, where the columns of each row begin, and all columns, as for a matrix
+    !> First row that this rank owns, index of the first column of each row, and all columns, as for a matrix
     integer, intent(in) :: first_row, row_start(:), columns(:)
     !> True for columns of the upper triangle that are this rank's rows
     logical, intent(in) :: is_stored(:)
@@ -62,7 +62,7 @@ contains
     end do
   end subroutine define
 
-  !> Begins an assembly.
+  !> Starts an assembly.
   subroutine begin(self, matrix, elements, ierr)
     class(element_places_t), intent(inout) :: self
     !> The matrix
@@ -81,12 +81,12 @@ contains
     if (ierr == 0) call c_f_pointer(address, self%values, shape(self%columns))
   end subroutine begin
 
-  !> Adds an element's matrix, but for the first time, when PETSc adds it and holds it against the pattern.
+  !> Adds an element's matrix. In the first assembly PETSc adds it, and checks it against the pattern.
   subroutine add(self, element, equations, matrix, added)
     class(element_places_t), intent(inout) :: self
     !> Number of the element on this rank
     integer, intent(in) :: element
-    !> Equation of each row, -1 for a row left out
+    !> Equation of each row, -1 for a constrained row
     integer, intent(in) :: equations(:)
     !> The symmetric matrix, shape (equations, equations)
     real(wp), intent(in) :: matrix(:, :)
@@ -103,7 +103,7 @@ contains
       do b = 1, merge(size(equations), 0, added)
         do a = 1, b
           k = k + 1
-          ! The entry that PETSc would take, as rounding may make the two triangles differ.
+          ! The entry that PETSc would use: the two triangles may differ by round-off.
           if (places(k) > 0) self%values(places(k)) = self%values(places(k)) &
                                                       + merge(matrix(b, a), matrix(a, b), equations(a) < equations(b))
         end do
@@ -111,12 +111,12 @@ contains
     end associate
   end subroutine add
 
-  !> Finds the places of an element when it comes for the first time.
+  !> Finds the positions for an element in its first assembly.
   pure subroutine find(self, element, equations)
     class(element_places_t), intent(inout) :: self
     !> Number of the element on this rank
     integer, intent(in) :: element
-    !> Equation of each row, -1 for a row left out
+    !> Equation of each row, -1 for a constrained row
     integer, intent(in) :: equations(:)
     integer :: a, b, k, row
 

@@ -1,6 +1,6 @@
-!> Packages behind PETSc that factor symmetric matrices: CHOLMOD (Chen et al., ACM Trans. Math. Softw. 35, 2008), which
-!> works on one rank, for all of them if there are several; MUMPS (Amestoy et al., SIAM J. Matrix Anal. Appl. 23, 2001)
-!> on any number of ranks; PETSc's own on one.
+!> Packages for the factorization of symmetric matrices through PETSc: CHOLMOD (Chen et al., ACM Trans. Math. Softw. 35,
+!> 2008) on one rank, which solves for all ranks if there are several; MUMPS (Amestoy et al., SIAM J. Matrix Anal. Appl.
+!> 23, 2001) on any number of ranks; PETSc's own on one.
 module factor_packages
   use petscksp, only: tMat, tPC
   use linear_solver_parameters, only: factorization_cholmod, factorization_mumps
@@ -8,30 +8,30 @@ module factor_packages
   private
   public :: packages_for, package_title, prepare_mumps, mumps_report, why_not_factored
 
-  !> MUMPS' controls: room beyond the estimate in %, and whether the root of the elimination tree stays on
-  !> one rank and is factored like the rest of it.
+  !> MUMPS' controls: memory beyond the estimate in %, and whether the root of the elimination tree is factorized on one
+  !> rank like the other nodes.
   integer, parameter :: control_room = 14, control_root = 13
   !> MUMPS' reports: outcome, negative pivots, memory in MB, entries of the factor
   integer, parameter, public :: mumps_outcome = 1, mumps_negative_pivots = 12, mumps_memory = 22, mumps_entries = 29
   !> MUMPS' outcome for a singular matrix
   integer, parameter, public :: mumps_singular = -10
-  !> Outcomes of MUMPS that more room cures
+  !> Outcomes of MUMPS for lack of memory, after which the factorization is repeated with more
   integer, parameter, public :: mumps_short_of_room(*) = [-8, -9, -11, -14, -15, -17, -19, -20]
 
-  !> What comes of a factorization
+  !> Outcomes of a factorization
   integer, parameter, public :: factor_made = 0, factor_not_positive = 1, factor_singular = 2, factor_lacks_memory = 3
 
-  !> Rows up to which one rank factors for all. Measured: on two ranks MUMPS takes 1.3 times as long for a solve as
-  !> CHOLMOD on one for 59 000 rows, and .93 times for 240 000.
+  !> Largest number of rows for which one rank factorizes for all. Measured: on two ranks MUMPS takes 1.3 times as long
+  !> for a solve as CHOLMOD on one for 59 000 rows, and .93 times for 240 000.
   integer, parameter :: max_rows_for_one = 200000
 
 contains
 
-  !> PETSc's names of the packages that suit, the best first.
+  !> PETSc's names of suitable packages, in order of preference.
   pure function packages_for(factorization, positive_definite, ranks, rows) result(names)
     !> One of the factorization_* choices
     integer, intent(in) :: factorization
-    !> Whether the matrix is promised to be positive definite
+    !> True: the caller declares the matrix positive definite
     logical, intent(in) :: positive_definite
     !> Number of ranks, and of rows on all of them
     integer, intent(in) :: ranks, rows
@@ -49,9 +49,9 @@ contains
     if (ranks > 1) names = pack(names, names /= 'petsc')
   end function packages_for
 
-  !> What people call a package.
+  !> Usual name of a package.
   pure function package_title(name) result(title)
-    !> PETSc's name of it; empty: no package factors
+    !> PETSc's name of it; empty: none
     character(len=*), intent(in) :: name
     !> The title
     character(len=:), allocatable :: title
@@ -66,13 +66,13 @@ contains
     end select
   end function package_title
 
-  !> Sets the controls of MUMPS for a factor that isn't filled yet.
+  !> Sets the controls of MUMPS before the factorization.
   subroutine prepare_mumps(preconditioner, memory_margin, ierr)
-    !> What is to make the factor
+    !> The preconditioner that factorizes
     type(tPC), intent(in) :: preconditioner
-    !> Room beyond MUMPS' estimate in %, negative for its own choice
+    !> Memory beyond MUMPS' estimate in %, negative for its own choice
     integer, intent(in) :: memory_margin
-    !> First code of PETSc that isn't zero
+    !> First non-zero code of PETSc
     integer, intent(out) :: ierr
     type(tMat) :: factor
     integer :: codes(3)
@@ -86,9 +86,9 @@ contains
 
   !> One of MUMPS' reports on the factor, INFOG.
   integer function mumps_report(preconditioner, number)
-    !> What made the factor
+    !> The preconditioner that factorized
     type(tPC), intent(in) :: preconditioner
-    !> Which report
+    !> Number of the report
     integer, intent(in) :: number
     type(tMat) :: factor
     integer :: ierr
@@ -98,13 +98,13 @@ contains
     if (ierr == 0) call MatMumpsGetInfog(factor, number, mumps_report, ierr)
   end function mumps_report
 
-  !> A sentence that says why there is no factor.
+  !> Message for a failed factorization.
   pure function why_not_factored(title, outcome) result(sentence)
-    !> Who failed
+    !> Name of the package
     character(len=*), intent(in) :: title
     !> One of the factor_* outcomes
     integer, intent(in) :: outcome
-    !> The sentence
+    !> The message
     character(len=:), allocatable :: sentence
 
     select case (outcome)

@@ -1,6 +1,6 @@
 !> Iterative solution of linear equations by PETSc's KSP: flexible GMRES (Y. Saad, SIAM J. Sci. Comput. 14 (1993)
-!> 461-469) or conjugate gradients, with matrix and preconditioner known by their products alone (MATSHELL, PCSHELL).
-!> Options of PETSc for them begin with `newton_`.
+!> 461-469) or conjugate gradients, with matrix-free matrix and preconditioner (MATSHELL, PCSHELL). Options of PETSc for
+!> them begin with `newton_`.
 module krylov_solvers
   use, intrinsic :: iso_c_binding, only: c_int, c_intptr_t, c_loc, c_f_pointer, c_ptr
   use petscksp, only: tMat, tVec, tKSP, tPC, MATOP_MULT, KSP_GMRES_CGS_REFINE_IFNEEDED, &
@@ -14,7 +14,7 @@ module krylov_solvers
   private
   public :: krylov_solver_t, linear_system_t
 
-  !> Largest dimension of the Krylov space: as many solves take about as long as a factorization.
+  !> Largest dimension of the Krylov space: this number of solves takes about as long as a factorization.
   integer, parameter :: max_dimension = 30
   !> PETSC_ERR_NOT_CONVERGED, by which a product that fails ends the iteration
   integer, parameter :: product_failed = 82
@@ -56,15 +56,15 @@ module krylov_solvers
     !> Right-hand side and solution
     type(tVec), private :: right, left
   contains
-    !> Sets the solver up.
+    !> Creates the solver.
     procedure :: define
     !> Solves.
     procedure :: solve
-    !> Frees it.
+    !> Deallocates it.
     procedure :: release
   end type krylov_solver_t
 
-  !> What the products need to know during a solve.
+  !> Data of the products during a solve.
   type :: products_t
     !> The equations
     class(linear_system_t), pointer :: system => null()
@@ -75,7 +75,7 @@ module krylov_solvers
   end type products_t
 
   interface
-    !> Sets what a matrix known by its products alone carries along: the C entries take any address.
+    !> Sets the context of a matrix-free matrix: the C entries accept any address.
     integer(c_int) function set_matrix_context(matrix, context) bind(c, name='MatShellSetContext')
       import :: c_int, c_intptr_t, c_ptr
       !> The matrix
@@ -84,7 +84,7 @@ module krylov_solvers
       type(c_ptr), value :: context
     end function set_matrix_context
 
-    !> What it carries along.
+    !> Its context.
     integer(c_int) function get_matrix_context(matrix, context) bind(c, name='MatShellGetContext')
       import :: c_int, c_intptr_t, c_ptr
       !> The matrix
@@ -96,7 +96,7 @@ module krylov_solvers
 
 contains
 
-  !> Sets the solver up. Collective.
+  !> Creates the solver. Collective.
   subroutine define(self, communicator, rows, method, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self
@@ -148,7 +148,7 @@ contains
     real(wp), intent(out) :: solution(:)
     !> False: the tolerance was not reached
     logical, intent(out) :: converged
-    !> True: conjugate gradients have met negative curvature, and stopped before it
+    !> True: conjugate gradients met a direction of negative curvature and stopped before it
     logical, intent(out) :: indefinite
     !> Set if a product fails
     type(error_t), allocatable, intent(inout) :: error
@@ -173,7 +173,7 @@ contains
     end if
   end subroutine solve
 
-  !> The products that a matrix carries along.
+  !> The products in the context of a matrix.
   subroutine find_products(matrix, products, ierr)
     !> The matrix
     type(tMat), intent(in) :: matrix
@@ -187,7 +187,7 @@ contains
     if (ierr == 0) call c_f_pointer(context, products)
   end subroutine find_products
 
-  !> Product of the matrix, its rows multiplied by their factors.
+  !> Product of the matrix, with scaled rows.
   subroutine multiply_rows(matrix, vector, product, ierr)
     !> The matrix
     type(tMat) :: matrix
@@ -207,7 +207,7 @@ contains
     if (allocated(products%error)) ierr = product_failed
   end subroutine multiply_rows
 
-  !> Product of the preconditioner with rows that were multiplied by their factors.
+  !> Product of the preconditioner with scaled rows.
   subroutine precondition_rows(preconditioner, vector, product, ierr)
     !> The preconditioner
     type(tPC) :: preconditioner
@@ -229,7 +229,7 @@ contains
     if (allocated(products%error)) ierr = product_failed
   end subroutine precondition_rows
 
-  !> Frees the solver. Collective.
+  !> Deallocates the solver. Collective.
   subroutine release(self)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self

@@ -1,4 +1,4 @@
-!> Linear algebra, as the deck gives it.
+!> Parameters of linear algebra in the deck.
 module linear_solver_parameters
   implicit none
   private
@@ -10,9 +10,9 @@ module linear_solver_parameters
 
   !> Factorization and options of the linear solver.
   type :: linear_solver_parameters_t
-    !> factorization_mumps, factorization_cholmod, or the quickest that suits ranks and operator
+    !> factorization_mumps, factorization_cholmod, or the fastest for the number of ranks and the operator
     integer :: factorization = factorization_automatic
-    !> Handed to PETSc as they are
+    !> Passed to PETSc unchanged
     character(len=:), allocatable :: petsc_options
   end type linear_solver_parameters_t
 end module linear_solver_parameters

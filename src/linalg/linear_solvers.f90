@@ -1,4 +1,4 @@
-!> Direct solution of large symmetric linear equations by PETSc. Rows are shared out among the ranks in contiguous
+!> Direct solution of large symmetric linear equations by PETSc. Rows are distributed over the ranks in contiguous
 !> blocks; equations are numbered from 0 over all ranks.
 module linear_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
@@ -20,8 +20,8 @@ module linear_solvers
   integer, parameter :: definite = 1, indefinite = 2
   character(len=11), parameter :: prefixes(2) = [character(len=11) :: '', 'indefinite_']
 
-  !> A symmetric matrix and its factor. The factor stays what it was until `factorize` is called again,
-  !> whatever values are assembled meanwhile.
+  !> A symmetric matrix and its factorization, which is unchanged until the next call of `factorize`, also while new
+  !> values are assembled.
   type :: linear_solver_t
     !> One of the factorization_* choices; to be set before `define`
     integer :: factorization = factorization_automatic
@@ -29,7 +29,7 @@ module linear_solvers
     integer :: factorizations = 0
     !> Number of right-hand sides solved so far
     integer :: solves = 0
-    !> Factorizations of a matrix that was promised to be positive definite and was not
+    !> Factorizations of a matrix that was declared positive definite but is not
     integer, private :: indefinite_matrices = 0
     !> All ranks
     type(communicator_t), private :: communicator
@@ -37,28 +37,28 @@ module linear_solvers
     integer, private :: total_rows = 0
     !> The matrix, which callers assemble
     type(petsc_matrix_t) :: matrix
-    !> Its factor as a rule, and that of a matrix that broke its promise, set up when that happens
+    !> Factorization of a positive definite matrix, and of an indefinite one, created when first needed
     type(petsc_factor_t), private :: factors(2)
-    !> Which of them is in force
+    !> Index of the one in use
     integer, private :: current = definite
-    !> True while there is a factor
+    !> True after a factorization
     logical, private :: factored = .false.
-    !> True: the matrix is promised to be positive definite
+    !> True: the caller declares the matrix positive definite
     logical, private :: promised = .false.
     !> Motion of least stiffness, by which mechanisms of the structure are found
     real(wp), allocatable, private :: mode(:)
   contains
-    !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
+    !> Sets the pattern of the matrix, replacing a previous one. Collective.
     procedure :: define
-    !> Factors the matrix as it was assembled last; called by all ranks together. If it fails there is no factor.
+    !> Factorizes the assembled matrix. Collective.
     procedure :: factorize
-    !> Solves for one right-hand side with the factor; called by all ranks together.
+    !> Solves for one right-hand side. Collective.
     procedure :: solve
     !> Size of the factor, the same on every rank.
     procedure :: statistics
     !> Name of what factors the matrix, and how often something else had to.
     procedure :: package_used
-    !> Frees matrix and factor.
+    !> Deallocates matrix and factors.
     procedure :: release
     procedure, private :: set_up_factor
     procedure, private :: make_factor
@@ -66,7 +66,7 @@ module linear_solvers
 
 contains
 
-  !> Sets the pattern of the matrix, anew if there was one; called by all ranks together.
+  !> Sets the pattern of the matrix, replacing a previous one. Collective.
   subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
     class(linear_solver_t), intent(inout) :: self
     !> All ranks
@@ -75,13 +75,13 @@ contains
     integer, intent(in) :: first_row
     !> Number of rows of all ranks
     integer, intent(in) :: total_rows
-    !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
+    !> Index of the first column of each owned row, from 1, shape (owned rows + 1)
     integer, intent(in) :: row_start(:)
     !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
     integer, intent(in) :: columns(:)
-    !> A promise that saves work
+    !> True: the caller declares the matrix positive definite, which needs no pivoting
     logical, intent(in) :: positive_definite
-    !> Raised when the solver cannot be set up
+    !> Set if the solver cannot be created
     type(error_t), allocatable, intent(inout) :: error
 
     call self%release()
@@ -89,7 +89,7 @@ contains
     self%total_rows = total_rows
     self%promised = positive_definite
     if (self%factorization == factorization_cholmod .and. .not. positive_definite) &
-      call fail(error, exit_usage, 'CHOLMOD factors what stays positive definite only: choose '// &
+      call fail(error, exit_usage, 'CHOLMOD factorizes positive definite matrices only: choose '// &
                 "'automatic' or 'mumps' for factorization of &solver.")
     if (allocated(error)) return
     call self%matrix%define(communicator, first_row, total_rows, row_start, columns, error)
@@ -97,14 +97,14 @@ contains
     call communicator%agree(error)
   end subroutine define
 
-  !> Chooses the package of a factor.
+  !> Chooses the package of a factorization.
   subroutine set_up_factor(self, number, positive_definite, error)
     class(linear_solver_t), intent(inout) :: self
-    !> Which of the two factors
+    !> Index of the factorization
     integer, intent(in) :: number
-    !> Whether the matrix is promised to be positive definite
+    !> True: the caller declares the matrix positive definite
     logical, intent(in) :: positive_definite
-    !> Raised when PETSc fails or has no package
+    !> Set if PETSc fails or has no package
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(number)%define(self%communicator, self%matrix%object, &
@@ -113,11 +113,11 @@ contains
                                      positive_definite, trim(prefixes(number)), error)
   end subroutine set_up_factor
 
-  !> Factors the matrix as it was assembled last; called by all ranks together. Which package does it follows from the
-  !> matrix alone, so that a run taken up again has the same factor.
+  !> Factorizes the assembled matrix. Collective. The choice of the package depends on the matrix only, so that a
+  !> restarted run has the same factors.
   subroutine factorize(self, error)
     class(linear_solver_t), intent(inout) :: self
-    !> Raised on all ranks when the matrix is singular or memory is short
+    !> Set on all ranks if the matrix is singular or memory is insufficient
     type(error_t), allocatable, intent(inout) :: error
     integer :: outcome
 
@@ -136,12 +136,12 @@ contains
     self%factored = .not. allocated(error)
   end subroutine factorize
 
-  !> Makes the factor in force and looks whether a part of the structure can move freely.
+  !> Factorizes with the package in use, and tests for mechanisms of the structure.
   subroutine make_factor(self, outcome, error)
     class(linear_solver_t), intent(inout) :: self
     !> One of the factor_* outcomes
     integer, intent(out) :: outcome
-    !> Raised when PETSc fails for another reason than the numbers
+    !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(self%current)%factorize(self%matrix%object, outcome, error)
@@ -175,7 +175,7 @@ contains
     call self%communicator%agree(error)
   end subroutine solve
 
-  !> Size of the factor, the same on every rank.
+  !> Size of the factors, the same on every rank.
   subroutine statistics(self, factor_entries, megabytes)
     class(linear_solver_t), intent(in) :: self
     !> Numbers stored in the factor; 0: there is none
@@ -186,7 +186,7 @@ contains
     call self%factors(self%current)%statistics(factor_entries, megabytes)
   end subroutine statistics
 
-  !> Name of what factors the matrix, and how often something else had to.
+  !> Name of the package, and number of factorizations by the second package.
   function package_used(self) result(name)
     class(linear_solver_t), intent(in) :: self
     !> The name
@@ -198,7 +198,7 @@ contains
            ' by '//self%factors(indefinite)%title()//', as the matrix was not positive definite)'
   end function package_used
 
-  !> Frees matrix and factor.
+  !> Deallocates matrix and factors.
   subroutine release(self)
     class(linear_solver_t), intent(inout) :: self
     integer :: i

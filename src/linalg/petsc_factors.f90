@@ -1,4 +1,4 @@
-!> The factor of a matrix, as PETSc keeps it: a PC, and a KSP that applies it.
+!> The factorization of a matrix by PETSc: a PC, and a KSP that applies it.
 module petsc_factors
   use petscksp, only: tMat, tKSP, tPC, PETSC_COMM_SELF, PETSC_TRUE, PETSC_FALSE, MAT_FACTOR_CHOLESKY, MAT_LOCAL, &
                       MAT_INFO_SIZE, MAT_INFO_NZ_USED, MAT_INFO_MEMORY, MAT_SPD, KSPSetOperators
@@ -26,26 +26,26 @@ module petsc_factors
     logical :: defined = .false.
     !> PETSc's name of the package; empty: none, by options of the user
     character(len=:), allocatable :: package
-    !> True: one rank factors and solves for all of them
+    !> True: one rank factorizes and solves for all of them
     logical, private :: gathered = .false.
-    !> Applies the factor once
+    !> Applies the factors once
     type(tKSP) :: solver
-    !> Makes and keeps the factor
+    !> Computes and stores the factors
     type(tPC), private :: preconditioner
     !> All ranks
     type(communicator_t), private :: communicator
-    !> Whether the matrix is promised to be positive definite
+    !> True: the caller declares the matrix positive definite
     logical, private :: positive_definite = .true.
   contains
     !> Chooses the package.
     procedure :: define
-    !> Factors a matrix.
+    !> Factorizes a matrix.
     procedure :: factorize
-    !> Name of the package as people call it.
+    !> Usual name of the package.
     procedure :: title
-    !> Size of the factor.
+    !> Size of the factors.
     procedure :: statistics
-    !> Frees the factor.
+    !> Deallocates the factors.
     procedure :: release
     procedure, private :: choose_package
     procedure, private :: gather_on_one_rank
@@ -58,20 +58,20 @@ module petsc_factors
 
 contains
 
-  !> Chooses the package: the first that PETSc has, or what options of the user say.
+  !> Chooses the package: the first that PETSc has, or that of the user's options.
   subroutine define(self, communicator, matrix, packages, positive_definite, prefix, error)
     class(petsc_factor_t), intent(inout) :: self
     !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> The matrix to be factored
     type(tMat), intent(in) :: matrix
-    !> PETSc's names of packages, the best first
+    !> PETSc's names of packages, in order of preference
     character(len=*), intent(in) :: packages(:)
-    !> A promise that lets packages do without pivoting
+    !> True: the caller declares the matrix positive definite, which needs no pivoting
     logical, intent(in) :: positive_definite
-    !> What options for this solver begin with, behind their dash
+    !> Prefix of the options for this solver, after the dash
     character(len=*), intent(in) :: prefix
-    !> Set when PETSc fails, or (usage) has none of the packages
+    !> Set if PETSc fails, or (usage) has none of the packages
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(7)
 
@@ -90,12 +90,12 @@ contains
     if (.not. allocated(error)) call self%renew(matrix, usual_margin, error)
   end subroutine define
 
-  !> Chooses the package, unless the user has.
+  !> Chooses the package, unless the user's options do.
   subroutine choose_package(self, matrix, packages, error)
     class(petsc_factor_t), intent(inout) :: self
     !> The matrix to be factored
     type(tMat), intent(in) :: matrix
-    !> PETSc's names of packages, the best first
+    !> PETSc's names of packages, in order of preference
     character(len=*), intent(in) :: packages(:)
     !> Set (usage) if PETSc has none of them
     type(error_t), allocatable, intent(inout) :: error
@@ -131,10 +131,10 @@ contains
               ', which is to factor the stiffness matrix.')
   end subroutine choose_package
 
-  !> Lets one rank factor and solve for all of them by CHOLMOD, which knows no ranks.
+  !> Gathers the matrix on one rank, which factorizes and solves for all by the serial package CHOLMOD.
   subroutine gather_on_one_rank(self, ierr)
     class(petsc_factor_t), intent(inout) :: self
-    !> First code of PETSc that isn't zero, so where it was built without CHOLMOD
+    !> First non-zero code of PETSc, as if it was built without CHOLMOD
     integer, intent(out) :: ierr
     type(tMat) :: small, factor
     integer :: codes(7)
@@ -152,8 +152,8 @@ contains
     ierr = maxval(codes)
   end subroutine gather_on_one_rank
 
-  !> Factors on the rank that does it for all, before a solve would: if that failed there, the others would wait for a
-  !> solution that never comes.
+  !> Factorizes on the rank that solves for all, before the first solve: a failure within the solve would leave the
+  !> other ranks waiting.
   subroutine factorize_gathered(self, ierr)
     class(petsc_factor_t), intent(in) :: self
     !> PETSc's code
@@ -166,35 +166,35 @@ contains
     if (ierr == 0) call KSPSetUp(inner, ierr)
   end subroutine factorize_gathered
 
-  !> Gives the package a new factor to fill and sets its controls.
+  !> Creates new factors and sets the controls of the package.
   subroutine renew(self, matrix, memory_margin, error)
     class(petsc_factor_t), intent(inout) :: self
     !> The matrix to be factored
     type(tMat), intent(in) :: matrix
-    !> Room beyond MUMPS' estimate in %, negative for its own choice
+    !> Memory beyond MUMPS' estimate in %, negative for its own choice
     integer, intent(in) :: memory_margin
-    !> Raised when PETSc fails
+    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(5)
 
     ierr = 0
     call PCReset(self%preconditioner, ierr(1))
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
-    ! MUMPS asks the matrix whether it is positive definite when the factor is made.
+    ! MUMPS reads the option of the matrix on definiteness when the factors are created.
     call MatSetOption(matrix, MAT_SPD, merge(PETSC_TRUE, PETSC_FALSE, self%positive_definite), ierr(3))
     if (self%package /= '' .and. .not. self%gathered) call PCFactorSetUpMatSolverType(self%preconditioner, ierr(4))
     if (self%package == 'mumps' .and. ierr(4) == 0) call prepare_mumps(self%preconditioner, memory_margin, ierr(5))
     call report_petsc(ierr, error)
   end subroutine renew
 
-  !> Factors a matrix, with ever more room if that is what lacks; called by all ranks together.
+  !> Factorizes a matrix, repeatedly with more memory if MUMPS requires it. Collective.
   subroutine factorize(self, matrix, outcome, error)
     class(petsc_factor_t), intent(inout) :: self
     !> The matrix
     type(tMat), intent(in) :: matrix
     !> One of the factor_* outcomes, the same on every rank
     integer, intent(out) :: outcome
-    !> Raised when PETSc fails for another reason than the numbers
+    !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr, attempt
     logical :: short
@@ -209,7 +209,7 @@ contains
     call self%communicator%agree(error)
     if (allocated(error)) return
     if (outcome == factor_made) then
-      ! The factor stays, whatever is assembled, until the next call of this procedure.
+      ! The factors are kept until the next call of this procedure, also while new values are assembled.
       call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
     else
       ! After a failure the packages refuse to go on with the factor that they have.
@@ -217,23 +217,23 @@ contains
     end if
   end subroutine factorize
 
-  !> Factors a matrix once.
+  !> Factorizes a matrix once.
   subroutine factorize_once(self, matrix, outcome, short, error)
     class(petsc_factor_t), intent(inout) :: self
     !> The matrix
     type(tMat), intent(in) :: matrix
     !> One of the factor_* outcomes
     integer, intent(out) :: outcome
-    !> Whether MUMPS needs more room
+    !> True: MUMPS needs more memory
     logical, intent(out) :: short
-    !> Raised when PETSc fails for another reason than the numbers
+    !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3), failure
 
     short = .false.
     outcome = factor_made
     call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
-    ! Setting the same matrix again is what makes the solver look whether its values changed.
+    ! Setting the same matrix again makes the solver check whether its values have changed.
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
     call KSPSetUp(self%solver, ierr(3))
     if (self%gathered .and. ierr(3) == 0) call self%factorize_gathered(ierr(3))
@@ -248,25 +248,25 @@ contains
     if (self%package == 'mumps') call self%check_mumps(outcome, short)
   end subroutine factorize_once
 
-  !> What MUMPS reports.
+  !> Outcome of a factorization by MUMPS.
   subroutine check_mumps(self, outcome, short)
     class(petsc_factor_t), intent(in) :: self
     !> One of the factor_* outcomes
     integer, intent(inout) :: outcome
-    !> Whether it needs more room
+    !> True: it needs more memory
     logical, intent(out) :: short
 
     associate (code => mumps_report(self%preconditioner, mumps_outcome))
       short = any(code == mumps_short_of_room)
       if (code < 0) outcome = merge(factor_singular, factor_lacks_memory, code == mumps_singular)
     end associate
-    ! It does not mind negative pivots of a matrix that was promised to have none.
+    ! MUMPS accepts negative pivots of a matrix that was declared positive definite.
     if (outcome == factor_made .and. self%positive_definite) then
       if (mumps_report(self%preconditioner, mumps_negative_pivots) > 0) outcome = factor_not_positive
     end if
   end subroutine check_mumps
 
-  !> Name of the package as people call it.
+  !> Usual name of the package.
   pure function title(self)
     class(petsc_factor_t), intent(in) :: self
     !> The name
@@ -275,10 +275,10 @@ contains
     title = package_title(self%package)
   end function title
 
-  !> Size of the factor, the same on every rank.
+  !> Size of the factors, the same on every rank.
   subroutine statistics(self, entries, megabytes)
     class(petsc_factor_t), intent(in) :: self
-    !> Numbers stored in the factor
+    !> Number of stored entries of the factors
     real(wp), intent(out) :: entries
     !> Memory of the factorization on all ranks, in MB
     real(wp), intent(out) :: megabytes
@@ -292,7 +292,7 @@ contains
     if (.not. self%defined) return
     if (self%package == 'mumps') then
       counted = mumps_report(self%preconditioner, mumps_entries)
-      ! MUMPS counts in millions, with a negative sign, what an integer can't hold.
+      ! Beyond the range of an integer MUMPS reports millions, with a negative sign.
       entries = merge(-1e6_wp, 1.0_wp, counted < 0)*counted
       megabytes = mumps_report(self%preconditioner, mumps_memory)
     else
@@ -306,12 +306,12 @@ contains
     end if
   end subroutine statistics
 
-  !> The factor of a package other than MUMPS.
+  !> The factors of a package other than MUMPS.
   subroutine factor_matrix(self, factor, found)
     class(petsc_factor_t), intent(in) :: self
     !> The factor
     type(tMat), intent(out) :: factor
-    !> False: this rank has none
+    !> False: this rank has no factors
     logical, intent(out) :: found
     type(tKSP) :: inner
     type(tPC) :: preconditioner
@@ -327,7 +327,7 @@ contains
     found = all(ierr == 0)
   end subroutine factor_matrix
 
-  !> Frees the factor.
+  !> Deallocates the factors.
   subroutine release(self)
     class(petsc_factor_t), intent(inout) :: self
     integer :: ierr

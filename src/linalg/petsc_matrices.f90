@@ -1,4 +1,4 @@
-!> A symmetric sparse matrix of PETSc, with vectors to go with it.
+!> A symmetric sparse matrix of PETSc, with vectors of its rows.
 module petsc_matrices
   use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
   use petscksp, only: tMat, tVec, tKSP, PETSC_TRUE, ADD_VALUES, INSERT_VALUES, MAT_FINAL_ASSEMBLY, &
@@ -13,7 +13,7 @@ module petsc_matrices
   private
   public :: petsc_matrix_t, put, take
 
-  !> The matrix, of which PETSc keeps the upper triangle (SBAIJ); its rows are shared out among the ranks in contiguous
+  !> The matrix, stored by PETSc as upper triangle (SBAIJ); its rows are distributed over the ranks in contiguous
   !> blocks.
   type :: petsc_matrix_t
     !> The matrix
@@ -31,13 +31,13 @@ module petsc_matrices
     !> First code that PETSc returned for an added matrix, 0 for success
     integer, private :: first_error = 0
   contains
-    !> Makes the matrix, with a place for every entry of the pattern.
+    !> Creates the matrix with all entries of the pattern.
     procedure :: define
     !> Zeroes the values.
     procedure :: clear
     !> Adds an element's matrix.
     procedure :: add
-    !> Brings the matrix together.
+    !> Completes the assembly.
     procedure :: finish_assembly
     !> The diagonal.
     procedure :: diagonal
@@ -51,18 +51,18 @@ module petsc_matrices
 
 contains
 
-  !> Makes the matrix, with a place for every entry of the pattern.
+  !> Creates the matrix with all entries of the pattern.
   subroutine define(self, communicator, first_row, total_rows, row_start, columns, error)
     class(petsc_matrix_t), intent(inout) :: self
     !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> First row that this rank owns, and number of rows of all ranks
     integer, intent(in) :: first_row, total_rows
-    !> Where the columns of each owned row begin, from 1, shape (owned rows + 1)
+    !> Index of the first column of each owned row, from 1, shape (owned rows + 1)
     integer, intent(in) :: row_start(:)
     !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
     integer, intent(in) :: columns(:)
-    !> Raised when PETSc fails
+    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: rows, row, ierr(5), inner(size(row_start) - 1), outer(size(row_start) - 1)
     logical :: is_inner(size(columns))
@@ -88,7 +88,7 @@ contains
     call report_petsc(ierr, error)
   end subroutine define
 
-  !> Puts zeros at all places of the pattern, as PETSc forgets places that the first assembly leaves out.
+  !> Sets all entries of the pattern to zero, as PETSc removes entries that the first assembly does not set.
   subroutine fill_pattern(matrix, first_row, row_start, columns, ierr)
     !> The matrix
     type(tMat), intent(inout) :: matrix
@@ -96,7 +96,7 @@ contains
     integer, intent(in) :: first_row
     !> Pattern of the owned rows, as for `define`
     integer, intent(in) :: row_start(:), columns(:)
-    !> First code of PETSc that is not zero
+    !> First non-zero code of PETSc
     integer, intent(out) :: ierr
     real(wp), allocatable :: zeros(:)
     integer :: row, n
@@ -122,7 +122,7 @@ contains
     if (self%first_error == 0) call self%places%begin(self%object, elements, self%first_error)
   end subroutine clear
 
-  !> Adds a matrix; each is added by one rank only.
+  !> Adds an element's matrix; each is added by one rank only.
   subroutine add(self, equations, values, element)
     class(petsc_matrix_t), intent(inout) :: self
     !> Equation of each row of the element's matrix, owned by any rank; -1 for a row left out
@@ -141,10 +141,10 @@ contains
     if (self%first_error == 0) self%first_error = ierr
   end subroutine add
 
-  !> Brings the matrix together.
+  !> Completes the assembly.
   subroutine finish_assembly(self, error)
     class(petsc_matrix_t), intent(inout) :: self
-    !> Raised on all ranks when an entry falls outside the pattern
+    !> Set on all ranks if an entry is outside the pattern
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3)
 
@@ -203,7 +203,7 @@ contains
     call take(self%left, solution, ierr(3))
   end subroutine solve
 
-  !> Frees the matrix and its vectors.
+  !> Deallocates the matrix and its vectors.
   subroutine release(self)
     class(petsc_matrix_t), intent(inout) :: self
     integer :: ierr
@@ -231,7 +231,7 @@ contains
     call VecRestoreArrayF90(vector, inside, ierr)
   end subroutine put
 
-  !> Copies values out of a vector.
+  !> Copies the values of a vector.
   subroutine take(vector, values, ierr)
     !> The vector
     type(tVec), intent(inout) :: vector

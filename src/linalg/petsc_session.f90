@@ -1,4 +1,4 @@
-!> Begin and end of PETSc within a run: our communicator, our command line, our error messages.
+!> Start and end of PETSc in a run, with the program's communicator, command line and error messages.
 module petsc_session
   use, intrinsic :: iso_c_binding, only: c_int, c_ptr, c_null_ptr, c_char, c_null_char, c_funptr, c_funloc, &
                                          c_associated, c_f_pointer
@@ -9,35 +9,35 @@ module petsc_session
   private
   public :: start_petsc, finish_petsc, report_petsc
 
-  !> Ours, which the user's override: signals are for the run to see; and CHOLMOD factors all matrices as it does large
-  !> ones, with square roots, so that it refuses what is not positive definite.
-  !> "telescope" is the solver on one rank for all of them.
+  !> Options of the program, which those of the user override: the run handles signals, and CHOLMOD uses its supernodal
+  !> factorization with square roots for all matrices, which detects those that are not positive definite. "telescope"
+  !> is the solver on one rank for all of them.
   character(len=*), parameter :: own_options = '-no_signal_handler true -mat_cholmod_factor supernodal '// &
     '-telescope_pc_type cholesky -telescope_pc_factor_mat_solver_type cholmod '// &
     '-telescope_mat_cholmod_factor supernodal '
 
   interface
-    !> Starts PETSc. This is the C entry, as the Fortran one reads the command line in any case.
+    !> Starts PETSc by its C entry: the Fortran one always reads the command line.
     integer(c_int) function initialize() bind(c, name='PetscInitializeNoArguments')
       import :: c_int
     end function initialize
 
-    !> Makes PETSc's constants known to its Fortran interface.
+    !> Initializes PETSc's Fortran interface.
     integer(c_int) function initialize_fortran() bind(c, name='PetscInitializeFortran')
       import :: c_int
     end function initialize_fortran
 
-    !> Pushes what PETSc does when it finds an error.
+    !> Sets PETSc's error handler.
     integer(c_int) function push_error_handler(handler, context) bind(c, name='PetscPushErrorHandler')
       import :: c_int, c_funptr, c_ptr
       !> The handler
       type(c_funptr), value :: handler
-      !> Data of its own
+      !> Its context
       type(c_ptr), value :: context
     end function push_error_handler
 
-    !> PETSc's handler that says nothing and returns the code. It is never called from here, so its
-    !> arguments are left out.
+    !> PETSc's handler that prints nothing and returns the code. It is not called from Fortran, so its arguments are
+    !> omitted.
     integer(c_int) function quiet_handler() bind(c, name='PetscIgnoreErrorHandler')
       import :: c_int
     end function quiet_handler
@@ -49,7 +49,7 @@ module petsc_session
       integer(c_int), value :: levels
     end subroutine limit_parallel_regions
 
-    !> Meaning of an error code, in general and for the latest error.
+    !> Messages of PETSc for an error code and for the latest error.
     integer(c_int) function error_message(code, general, particular) bind(c, name='PetscErrorMessage')
       import :: c_int, c_ptr
       !> The code
@@ -61,13 +61,13 @@ module petsc_session
 
 contains
 
-  !> Starts PETSc, unless it runs already. The command line stays ours.
+  !> Starts PETSc, unless it is already started, without the command line.
   subroutine start_petsc(communicator, options, error)
     !> All ranks of the run
     type(communicator_t), intent(in) :: communicator
     !> Options for PETSc's database, such as `-log_view -mat_mumps_icntl_14 50`; may be blank
     character(len=*), intent(in) :: options
-    !> Raised when PETSc does not start
+    !> Set if PETSc does not start
     type(error_t), allocatable, intent(inout) :: error
     logical :: running
     integer :: ierr, length
@@ -76,7 +76,7 @@ contains
     call PetscInitialized(running, ierr)
     if (running) return
     call set_threads()
-    ! Options such as -log_view must be there when PETSc starts, and it looks for them in the environment.
+    ! Options such as -log_view must be set when PETSc starts, which reads them from the environment.
     call get_environment_variable('PETSC_OPTIONS', length=length)
     allocate (character(len=length) :: all_options)
     if (length > 0) call get_environment_variable('PETSC_OPTIONS', all_options)
@@ -89,8 +89,8 @@ contains
     call communicator%agree(error)
   end subroutine start_petsc
 
-  !> Keeps OpenMP to one thread a rank, as the ranks share the work, unless the environment requests more. CHOLMOD
-  !> before SuiteSparse 6 else takes four, whatever the environment says, for loops over before these have begun.
+  !> Limits OpenMP to one thread per rank, unless the environment requests more. CHOLMOD before SuiteSparse 6 otherwise
+  !> uses four, whatever the environment requests, for loops too short for threads.
   subroutine set_threads()
     character(len=8) :: threads
     integer :: length
@@ -99,7 +99,7 @@ contains
     if (length == 0 .or. threads == '1') call limit_parallel_regions(0_c_int)
   end subroutine set_threads
 
-  !> Ends PETSc; its objects must have been freed before.
+  !> Ends PETSc; its objects must be deallocated before.
   subroutine finish_petsc()
     logical :: running
     integer :: ierr
@@ -108,11 +108,11 @@ contains
     if (running) call PetscFinalize(ierr)
   end subroutine finish_petsc
 
-  !> Raises an error when one of several codes that PETSc returned isn't zero.
+  !> Sets an error if one of several codes of PETSc is not zero.
   subroutine report_petsc(codes, error)
     !> Codes in the order of the calls
     integer, intent(in) :: codes(:)
-    !> Raised with PETSc's own words
+    !> Set with PETSc's message
     type(error_t), allocatable, intent(inout) :: error
     type(c_ptr) :: general, particular
     integer :: i, ierr
@@ -127,7 +127,7 @@ contains
 
   !> First line of a C text.
   function text_at(address) result(text)
-    !> Where the text begins; nowhere for an empty text
+    !> Address of the text; null for an empty one
     type(c_ptr), intent(in) :: address
     !> The text
     character(len=:), allocatable :: text

@@ -34,7 +34,7 @@ module cell_grids
     procedure :: struck_side
     !> Node with the same motion as a given node on the cut line of point symmetry.
     procedure :: turned_node
-    !> True for a node whose motion another one gives.
+    !> True for a dependent node.
     procedure :: follows
   end type cell_grid_t
 
@@ -168,7 +168,7 @@ contains
     if (lines(1) == 0) image = self%node_at(0, last_line(self%cells(2)) - lines(2))
   end function turned_node
 
-  !> True for a node whose motion that of its image gives, which is the one with the higher number.
+  !> True for a dependent node: its image has the lower number and determines its motion.
   pure logical function follows(self, node)
     !> The grid
     class(cell_grid_t), intent(in) :: self

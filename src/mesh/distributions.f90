@@ -9,7 +9,7 @@ module distributions
   private
   public :: distribution_t, distribute
 
-  !> One rank's share of the mesh.
+  !> One rank's part of the mesh.
   type :: distribution_t
     !> Elements of this rank
     integer, allocatable :: elements(:)
@@ -37,7 +37,7 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> This rank's share
+    !> This rank's part
     type(distribution_t), intent(out) :: self
     !> Set if METIS fails
     type(error_t), allocatable, intent(out) :: error
@@ -133,7 +133,7 @@ contains
     neighbours = neighbours(:found)
   end subroutine cell_graph
 
-  !> Gives each point to the lowest rank whose cells touch its node or the one that it moves with.
+  !> Assigns each point to the lowest rank with a cell at its node or at its master node.
   pure subroutine own_points(mesh, part, owner)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -148,7 +148,7 @@ contains
       nodes = mesh%cell_nodes(cell)
       node_owner(nodes) = min(node_owner(nodes), part(cell))
     end do
-    ! Nodes that give each other their motion stay together.
+    ! Dependent nodes and their masters belong to one rank.
     do node = 1, mesh%nodes()
       if (.not. mesh%follows(node)) cycle
       nodes(:2) = [node, mesh%turned_node(node)]

@@ -12,7 +12,7 @@ module elastic_edges
   type :: edge_spring_t
     !> Which of the cell's nine nodes lie on that side
     integer :: nodes(3) = 0
-    !> Weights by which their unknowns give that of the point
+    !> Weights of their unknowns
     real(wp) :: weights(3) = 0
     !> The unknown: 3 for w, 4 for theta_x, 5 for theta_y
     integer :: component = 0

@@ -147,8 +147,8 @@ contains
     edges(low:0:-1) = struck - cored_half_line(length/2 + struck, low, patch/2, grading, core/2, side)
   end function off_centre_line
 
-  !> Moves edges to where edges must be: the nearest one is taken, and those up to the next edge that has its place, on
-  !> either side, are stretched or drawn together alike. An edge that no other one can reach is left out.
+  !> Moves edges to required coordinates: the nearest edge is moved, and those up to the next fixed edge on either side
+  !> are scaled uniformly. A coordinate without a free edge is left out.
   pure subroutine move_to_lines(edges, kept, lines)
     !> Ascending coordinates of the element edges
     real(wp), intent(inout) :: edges(0:)
@@ -244,7 +244,7 @@ contains
 
   !> Ratio r of a series r + r**2 + ... + r**count that sums to `total`, by bisection of its logarithm.
   pure real(wp) function smooth_ratio(total, count) result(ratio)
-    !> Sum wanted, in sizes of the element before the series
+    !> Required sum, in sizes of the element before the series
     real(wp), intent(in) :: total
     !> Number of terms
     integer, intent(in) :: count

@@ -45,7 +45,7 @@ module layered_meshes
     !> Area of a zone, and length of its mean cell.
     procedure :: zone_area
     procedure :: mean_cell
-    !> Point that gives a point its motion.
+    !> Master of a point.
     procedure :: leader
   end type layered_mesh_t
 
@@ -70,8 +70,8 @@ contains
     call build_elements(self, plies)
   end function create_mesh
 
-  !> Gives a node one point more for each zone that it lies inside of; on the border of a zone both
-  !> layers share the point, so that their displacements are continuous without a constraint.
+  !> Gives a node an additional point for each zone that contains it; on the border of a zone both layers share the
+  !> point, so that their displacements are continuous without a constraint.
   pure subroutine number_points(self)
     !> The mesh, with its nodes placed
     type(layered_mesh_t), intent(inout) :: self

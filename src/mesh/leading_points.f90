@@ -8,7 +8,7 @@ module leading_points
   private
   public :: find_leading_points
 
-  !> Sign of u, v, w, theta_x, theta_y of a point at which a turned plate is cut that follows another one.
+  !> Signs of u, v, w, theta_x, theta_y of a dependent point on the cut of a plate with point symmetry.
   real(wp), parameter :: turned(5) = [-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp]
 
 contains
@@ -17,7 +17,7 @@ contains
   pure subroutine find_leading_points(mesh, leader, signs, held, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> Point that gives a point its motion; 0: none, (points)
+    !> Master of each point; 0: none, (points)
     integer, intent(out) :: leader(:)
     !> Signs by which its motion is multiplied, (5, points)
     real(wp), intent(out) :: signs(:, :)
@@ -35,11 +35,11 @@ contains
     if (allocated(images%points)) call link_images(images, leader, signs, held)
   end subroutine find_leading_points
 
-  !> Has each point follow the first of its images, if that comes before it.
+  !> Makes each point dependent on the first of its images, if that has a lower number.
   pure subroutine link_images(images, leader, signs, held)
     !> The images
     type(symmetry_images_t), intent(in) :: images
-    !> Receives the leaders, (points)
+    !> Receives the masters, (points)
     integer, intent(inout) :: leader(:)
     !> Receives the signs of the points' motion, (5, points)
     real(wp), intent(inout) :: signs(:, :)

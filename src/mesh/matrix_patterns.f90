@@ -68,8 +68,8 @@ contains
     end do
   end function columns_around
 
-  !> True if equations may occur twice around a node, or those around its image count too: it shares a cell with the
-  !> line at which a turned plate is cut.
+  !> True for a node that shares a cell with the cut of a plate with point symmetry: equations may occur twice around
+  !> it, and those around its image are coupled, too.
   pure logical function near_cut(mesh, node)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

@@ -1,4 +1,4 @@
-!> The mesh of the deck: rows of its table, filling and checks. What the element brings is in `element_deck`.
+!> The mesh of the deck: rows of its table, filling and checks. Keys of the element are in `element_deck`.
 module mesh_deck
   use deck_problems, only: problems_t
   use deck_remarks, only: report, are_clear

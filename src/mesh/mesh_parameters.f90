@@ -1,4 +1,4 @@
-!> Plate, supports and mesh, as the deck gives them.
+!> Parameters of plate, supports and mesh in the deck.
 module mesh_parameters
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -58,8 +58,8 @@ module mesh_parameters
   end type mesh_t
 contains
 
-  !> Adds coordinates to lines of the mesh. Their order is that of distance from the centre, so that the mesh does not
-  !> depend on what brings them.
+  !> Adds coordinates to lines of the mesh, in the order of their distance from the centre, so that the mesh does not
+  !> depend on their source.
   pure subroutine add_lines(lines, further)
     !> The lines
     real(wp), allocatable, intent(inout) :: lines(:)

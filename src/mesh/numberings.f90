@@ -22,7 +22,7 @@ module numberings
     integer :: first_row = 0, rows = 0, total = 0
     !> Points that this rank owns
     integer :: owned = 0
-    !> Point of this rank that gives a point its motion, or itself if another rank has it; 0: none, (local points)
+    !> Master of each point on this rank, or the point itself if another rank has it; 0: none, (local points)
     integer, allocatable :: leader(:)
     !> Signs of its motion, (5, local points)
     real(wp), allocatable :: signs(:, :)
@@ -40,7 +40,7 @@ module numberings
     !> Copies between fields over points and vectors of this rank's rows.
     procedure :: gather
     procedure :: scatter
-    !> Adds the forces on points that follow to those on their leaders, or gives them their leaders' motion.
+    !> Adds the forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: spread
   end type numbering_t
@@ -230,7 +230,7 @@ contains
     call self%spread(field)
   end subroutine scatter
 
-  !> Adds forces on this rank's points that follow others to those on their leaders, and leaves none.
+  !> Adds forces on this rank's dependent points to those on their masters, and sets them to zero.
   pure subroutine fold(self, field)
     !> The numbering
     class(numbering_t), intent(in) :: self
@@ -245,7 +245,7 @@ contains
     end do
   end subroutine fold
 
-  !> Gives this rank's points that follow others the motion of their leaders.
+  !> Sets the motion of this rank's dependent points to that of their masters.
   pure subroutine spread(self, field)
     !> The numbering
     class(numbering_t), intent(in) :: self

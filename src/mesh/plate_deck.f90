@@ -100,7 +100,7 @@ contains
       'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or ''none''.')
     if (.not. abs(plate%imperfection) > 0) call remark_idle(settings, problems, plate_group, key_half_waves, &
                                                             'has no effect without '//key_imperfection//'.')
-    ! A plate that is turned onto itself has all opposite edges alike.
+    ! A plate with point symmetry has equal opposite edges.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &
       call report(settings, problems, plate_group, key_length, 'one side is more than '//to_text(max_aspect_ratio)// &

@@ -16,7 +16,7 @@ module rigs
   type :: crossing_t
     !> Which of the cell's nine nodes lie on that side
     integer :: nodes(3) = 0
-    !> Weights by which their w gives that of the point
+    !> Weights of their w
     real(wp) :: weights(3) = 0
   end type crossing_t
 

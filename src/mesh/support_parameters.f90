@@ -1,4 +1,4 @@
-!> Rigs under the plate, as the deck gives them: frames with a window, and clamps at points.
+!> Parameters of rigs under the plate in the deck: frames with a window, and clamps at points.
 module support_parameters
   use kinds, only: wp
   implicit none

@@ -15,23 +15,24 @@ module contact_areas
 
   !> Additional separation of the surfaces at the edge of a Hertzian contact, relative to the indentation.
   real(wp), parameter, public :: edge_gap = 0.5_wp
-  !> Weight over the largest from which a place counts as touched: as contact ends, weights fade.
+  !> Weight relative to the largest above which a point counts as in contact: at the end of contact weights decrease
+  !> gradually.
   real(wp), parameter :: min_weight = 1.0e-3_wp
 
   !> Struck face and nose.
   type :: contact_area_t
     !> Weights of the deck's patch, whose product with w is its mean deflection, (local points); ghosts zero
     real(wp), allocatable :: under(:)
-    !> Area beside the patch that belongs to each point within reach of the nose, (local points); ghosts zero
+    !> Area of each point outside the patch within reach of the nose, (local points); ghosts zero
     real(wp), allocatable :: beside(:)
     !> Height of the nose's surface above its tip, (local points)
     real(wp), allocatable :: rise(:)
     !> Area of the modelled part of the patch
     real(wp) :: area = 0
   contains
-    !> Weights by which the force is spread.
+    !> Weights of the force distribution.
     procedure :: weights
-    !> Area that has pressure.
+    !> Area under pressure.
     procedure :: touched
   end type contact_area_t
 
@@ -41,7 +42,7 @@ contains
   pure function new_contact_area(under, area, beside, distance, radius) result(self)
     !> Weights of the patch, (local points), and area of its modelled part
     real(wp), intent(in) :: under(:), area
-    !> Area beside the patch that belongs to each point, and its distance from the struck point, (local points)
+    !> Area of each point outside the patch, and its distance from the struck point, (local points)
     real(wp), intent(in) :: beside(:), distance(:)
     !> Radius of the nose
     real(wp), intent(in) :: radius
@@ -54,7 +55,7 @@ contains
     self%rise = radius - sqrt(max(0.0_wp, radius**2 - distance**2))
   end function new_contact_area
 
-  !> Weights by which the force is spread, whose sum over the modelled part is one. Collective.
+  !> Weights of the force distribution, with the sum 1 over the modelled part. Collective.
   function weights(self, communicator, deflection, indentation)
     !> The nose
     class(contact_area_t), intent(in) :: self
@@ -79,13 +80,13 @@ contains
     weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
   end function weights
 
-  !> Area of the modelled part that has pressure. Collective.
+  !> Area under pressure in the modelled part. Collective.
   real(wp) function touched(self, communicator, weights)
     !> The nose
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> How the force is spread, (local points)
+    !> Weights of the force distribution, (local points)
     real(wp), intent(in) :: weights(:)
     real(wp) :: largest
 

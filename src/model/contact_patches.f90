@@ -1,4 +1,4 @@
-!> Where the impactor presses on the plate: the one part of a model that changes from step to step.
+!> Contact patch of the impactor on the plate: the only part of a model that changes from step to step.
 module contact_patches
   use communicators, only: communicator_t
   use contact_areas, only: contact_area_t
@@ -12,7 +12,7 @@ module contact_patches
   type :: contact_patch_t
     !> Weights whose product with w is the mean deflection of the patch, (local points); ghosts zero
     real(wp), allocatable :: weights(:)
-    !> Points that have one
+    !> Points with a weight
     integer, allocatable :: points(:)
     !> Nose that determines the patch in each step; unallocated: a constant patch
     type(contact_area_t), allocatable :: nose
@@ -21,7 +21,7 @@ module contact_patches
   contains
     !> Mean deflection.
     procedure :: mean
-    !> Takes other weights.
+    !> Sets other weights.
     procedure :: spread
     !> Adds the nodal forces of a force.
     procedure :: add_force
@@ -41,7 +41,7 @@ contains
     mean = total_of(communicator, self%weights(self%points)*displacement(3, self%points))
   end function mean
 
-  !> Takes other weights.
+  !> Sets other weights.
   pure subroutine spread(self, weights, offset)
     !> The patch
     class(contact_patch_t), intent(inout) :: self

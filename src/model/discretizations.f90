@@ -1,5 +1,5 @@
-!> The plate as elements, points and unknowns, and their distribution over ranks. A run does not change them; new layers
-!> make new ones.
+!> Elements, points and unknowns of the plate, and their distribution over ranks. All are constant in a run; new layers
+!> require new ones.
 module discretizations
   use border_sums, only: border_sum_t
   use communicators, only: communicator_t
@@ -15,25 +15,24 @@ module discretizations
   private
   public :: discretization_t
 
-  !> Mesh, elements and points of this rank's share. It has many components because ranks, layers and symmetry each have
-  !> theirs.
+  !> Mesh, elements and points of this rank. It has many components because ranks, layers and symmetry each have theirs.
   type :: discretization_t
     !> The ranks
     type(communicator_t) :: communicator
-    !> Mesh of the modelled part, whole on every rank
+    !> Complete mesh of the modelled part, on every rank
     type(layered_mesh_t) :: mesh
     !> Profile of time and memory, if requested
     type(profile_t) :: profile
-    !> This rank's share
+    !> Distribution over ranks
     type(distribution_t) :: distribution
     !> Exchange of ghost points
     type(halo_t) :: halo
-    !> Sums of elements' contributions to points on the borders between ranks: what adds to points by `elements` takes
-    !> a field with `borders%columns` columns and then calls `borders%add`, before forces are turned to unknowns
+    !> Sums of elements' contributions to points on the borders between ranks: a field assembled by `elements` has
+    !> `borders%columns` columns and is summed by `borders%add`, before forces are transformed to unknowns
     type(border_sum_t) :: borders
     !> This rank's elements
     type(element_batches_t) :: elements
-    !> Fixed unknowns of every point of the mesh, (5, points of the mesh)
+    !> True for constrained unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: held(:, :)
     !> Images of the points of a full plate that keeps its symmetry during failure
     type(symmetry_images_t) :: images

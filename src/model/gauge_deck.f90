@@ -44,7 +44,7 @@ contains
     end do
   end subroutine fill_gauges
 
-  !> Gauges that lie on the plate.
+  !> Checks that gauges lie on the plate.
   subroutine check_gauges(settings, length, all, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -1,4 +1,4 @@
-!> Strain gauges on the surfaces of the plate, as the deck gives them.
+!> Strain gauges on the surfaces of the plate, given in the deck.
 module gauges
   use kinds, only: wp
   implicit none

@@ -1,5 +1,5 @@
-!> Carries all that evolves from a model to one of the same setup with more layers: an archive in memory, whose fields
-!> find their points and elements again. What has no origin keeps the value that it has where it is loaded.
+!> Transfers a state from a model to one of the same setup with more layers: an archive in memory that maps fields from
+!> points and elements to those of the new model. Points and elements without origin keep their initial values.
 module layer_transfers
   use archives, only: archive_t
   use communicators, only: communicator_t
@@ -25,14 +25,14 @@ module layer_transfers
     integer, allocatable :: point_origin(:), element_origin(:)
     !> True for elements of the mesh loaded that have fewer plies than their origin
     logical, allocatable :: is_split(:)
-    !> Signs that the motion of each point takes where its origin is its image, (5, points)
+    !> Signs of the motion of each point with an image as origin, (5, points)
     real(wp), allocatable :: signs(:, :)
     !> The items, the first ones of the list
     type(stored_item_t), allocatable :: kept(:)
     !> Their number
     integer :: items = 0
   contains
-    !> Turns from saving to loading.
+    !> Switches from saving to loading.
     procedure :: turn_to
     procedure :: real_item
     procedure :: integer_item
@@ -41,18 +41,18 @@ module layer_transfers
     procedure :: integers_item
     procedure :: table_item
     procedure :: field
-    !> Keeps an item, and finds it.
+    !> Stores an item, and finds it.
     procedure :: keep
     procedure :: find
-    !> Keeps a field of all ranks.
+    !> Stores a field of all ranks.
     procedure :: keep_field
   end type layer_transfer_t
 
 contains
 
-  !> Turns from saving to loading, and finds the sources of points and elements. Zones of the new mesh contain those of
-  !> the old one, so that every saved point has a place. Parts of the plate that only the new mesh models come from
-  !> their images in the old one.
+  !> Switches from saving to loading, and finds the origins of points and elements. Zones of the new mesh contain those
+  !> of the old one, so that every saved point has a target. Parts of the plate modelled only by the new mesh originate
+  !> from their images in the old one.
   subroutine turn_to(self, old, new)
     !> The archive
     class(layer_transfer_t), intent(inout) :: self
@@ -84,15 +84,16 @@ contains
     end do
   end subroutine turn_to
 
-  !> Finds where a line of nodes or a cell along each direction lies in the part of the plate that another mesh models.
+  !> Finds the position of a line of nodes or a cell, or of its image, in the part of the plate modelled by another
+  !> mesh.
   pure subroutine find_image(old, new, first, place, turned)
-    !> The other mesh, and the one that the place is of
+    !> The other mesh, and the mesh of the position
     type(layered_mesh_t), intent(in) :: old, new
     !> Number of the first: 0 for lines of nodes, 1 for cells
     integer, intent(in) :: first
-    !> The place, then that of its image
+    !> The position; on return that of its image
     integer, intent(inout) :: place(2)
-    !> Directions that have the other sign there
+    !> Directions with reversed sign there
     logical, intent(out) :: turned(2)
     integer :: middle(2), last(2)
 
@@ -109,13 +110,13 @@ contains
       where (turned) place = place + 1
     end if
     if (turned(1) .and. .not. old%mirrored(1)) then
-      ! Half of a plate that a turn leaves as it is.
+      ! Half of a plate with point symmetry.
       turned(2) = .true.
       place(2) = last(2) + first - place(2)
     end if
   end subroutine find_image
 
-  !> Keeps an item.
+  !> Stores an item.
   subroutine keep(self, name, values)
     !> The archive
     class(layer_transfer_t), intent(inout) :: self
@@ -136,7 +137,7 @@ contains
     self%kept(self%items)%values = values
   end subroutine keep
 
-  !> Number of an item. States of one setup consist of the same items, so it is there.
+  !> Index of an item; it exists, as states of one setup consist of the same items.
   pure integer function find(self, name) result(item)
     !> The archive
     class(layer_transfer_t), intent(in) :: self
@@ -243,7 +244,7 @@ contains
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
-    !> Number of columns of the whole field
+    !> Number of columns of the global field
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
@@ -268,7 +269,7 @@ contains
     end if
   end subroutine field
 
-  !> Keeps a field of all ranks. Collective.
+  !> Stores a field of all ranks. Collective.
   subroutine keep_field(self, name, columns, global_columns, value)
     !> The archive
     class(layer_transfer_t), intent(inout) :: self
@@ -276,7 +277,7 @@ contains
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
-    !> Number of columns of the whole field
+    !> Number of columns of the global field
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(in) :: value(:, :)

@@ -14,7 +14,7 @@ module line_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: line_group = 'line', key_at = 'at', key_layer = 'layer', &
                                          key_rise = 'rise', key_displacement = 'displacement'
-  !> The keys of a value, those of displacements first.
+  !> Keys of values, displacements first.
   character(len=*), parameter :: value_keys(4) = [character(len=12) :: 'force', 'displacement', 'moment', 'rotation']
   !> Row of the group.
   character(len=group_row_length), parameter, public :: line_group_row = &
@@ -72,7 +72,7 @@ contains
     end do
   end subroutine fill_lines
 
-  !> One value each, of the kind that suits the component.
+  !> Checks that each line has one value, of a kind that suits its component.
   subroutine check_lines(settings, lines, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -8,12 +8,12 @@ module line_loads
 
   !> Direction in which a line runs: along x at one y, or along y at one x.
   integer, parameter, public :: along_x = 1, along_y = 2
-  !> Histories of a line's value: in proportion to the load factor, or there from the start.
+  !> Histories of a line's value: proportional to the load factor, or constant from the start.
   integer, parameter, public :: line_ramp = 1, line_fixed = 2
   !> Layer of a line that acts on all layers.
   integer, parameter, public :: all_layers = 0
 
-  !> Distance from the plate's edge, over its length, up to which a line lies on it.
+  !> Relative tolerance within which a line lies on an edge of the plate.
   real(wp), parameter :: at_end = 1.0e-6_wp
 
   !> One line.
@@ -37,13 +37,13 @@ module line_loads
   contains
     !> Value at a time, and its first and second derivative.
     procedure :: course
-    !> True: it is there, and has moved the plate, before a run in time begins.
+    !> True: its displacement is applied before a run in time.
     procedure :: precedes
     !> Value at a load factor.
     procedure :: at_factor
     !> Change of the value with the load factor.
     procedure :: slope
-    !> True: it fixes or moves an end of the plate in its plane, in tension or compression.
+    !> True: it constrains or displaces an end of the plate in its plane, in tension or compression.
     procedure :: is_end
   end type line_load_t
 
@@ -64,11 +64,11 @@ contains
     end if
   end function at_factor
 
-  !> Value at a time, and its first and second derivative by it.
+  !> Value at a time, and its first and second time derivative.
   pure function course(self, time, end) result(values)
     !> The line
     class(line_load_t), intent(in) :: self
-    !> The time, and that at which the run ends
+    !> The time, and the end of the run
     real(wp), intent(in) :: time, end
     !> Value, velocity and acceleration
     real(wp) :: values(3)
@@ -84,7 +84,7 @@ contains
     end if
   end function course
 
-  !> True: it is there, and has moved the plate, before a run in time begins.
+  !> True: its displacement is applied before a run in time.
   elemental logical function precedes(self)
     !> The line
     class(line_load_t), intent(in) :: self
@@ -101,7 +101,7 @@ contains
     if (self%history == line_ramp) slope = self%value
   end function slope
 
-  !> True: it fixes or moves an end of the plate in its plane, in tension or compression.
+  !> True: it constrains or displaces an end of the plate in its plane, in tension or compression.
   pure logical function is_end(self, length)
     !> The line
     class(line_load_t), intent(in) :: self

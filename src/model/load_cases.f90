@@ -1,5 +1,4 @@
-!> A load case: what holds, loads or strikes the plate, and whether the plate moves in time or follows its loads in
-!> equilibrium.
+!> A load case: supports, loads and impactor, and the kind of analysis.
 module load_cases
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use kinds, only: wp
@@ -14,13 +13,13 @@ module load_cases
   !> Kinds of analysis: motion in time, or load steps, each an equilibrium without inertia.
   integer, parameter, public :: analysis_in_time = 1, analysis_by_load_steps = 2
 
-  !> A load case. Callers ask its procedures rather than for the kind of analysis.
+  !> A load case. Callers use its procedures instead of the kind of analysis.
   type :: load_case_t
     !> analysis_in_time or analysis_by_load_steps
     integer :: analysis = analysis_in_time
     !> Rigs under the plate; unallocated: none
     type(support_t), allocatable :: supports(:)
-    !> Which loads there are
+    !> True for the loads of the deck
     logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_thermal = .false.
     !> Impactor
     type(impactor_parameters_t) :: impactor
@@ -28,26 +27,25 @@ module load_cases
     type(indentation_law_t) :: indentation
     !> Pressure
     type(pressure_t) :: pressure
-    !> Temperature less that at which the plies were joined without stress
+    !> Temperature minus the stress-free temperature of the laminate
     real(wp) :: temperature_change = 0
     !> Lines across the plate; unallocated: none
     type(line_load_t), allocatable :: lines(:)
-    !> True: the plate begins in the state that another run has left
+    !> True: the run starts from the final state of another run
     logical :: inherits = .false.
-    !> Time at which lines begin to load, and in which their ramps then reach their full value; load steps do not use
-    !> them
+    !> Start of the loads of lines, and duration of their ramps; not used in load steps
     real(wp) :: load_start = 0, ramp_time = 1
   contains
-    !> True: the analysis takes load steps.
+    !> True: load steps.
     procedure :: is_static
     !> True: inertia forces act.
     procedure :: has_inertia
-    !> True: an impactor moves and strikes, or load steps press one into the plate.
+    !> True: an impactor moves freely, or is pressed into the plate in load steps.
     procedure :: moves_impactor
     procedure :: presses_impactor
-    !> True: an impactor comes with a velocity.
+    !> True: an impactor with an initial velocity.
     procedure :: is_impact
-    !> Name of what grows from step to step.
+    !> Name of the quantity that increases from step to step.
     procedure :: progress_name
     !> Pressure over its full value.
     procedure :: pressure_factor
@@ -55,13 +53,13 @@ module load_cases
     procedure :: load_level
     !> Ramps of lines over their full values at a time.
     procedure :: load_factor_at
-    !> Factor of initial deformations that supports and lines do not have.
+    !> Factor of the offsets between initial and prescribed displacements of supports and lines.
     procedure :: offset_left
   end type load_case_t
 
 contains
 
-  !> True: the analysis takes load steps.
+  !> True: load steps.
   elemental logical function is_static(self)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -69,7 +67,8 @@ contains
     is_static = self%analysis == analysis_by_load_steps
   end function is_static
 
-  !> True: inertia forces act. Without them rigid motions must be held, and a softening plate has an indefinite tangent.
+  !> True: inertia forces act. Without them rigid-body motions must be constrained, and a softening plate has an
+  !> indefinite tangent.
   elemental logical function has_inertia(self)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -85,7 +84,7 @@ contains
     moves_impactor = self%has_impactor .and. self%has_inertia()
   end function moves_impactor
 
-  !> True: load steps press an impactor into the plate.
+  !> True: an impactor is pressed into the plate in load steps.
   elemental logical function presses_impactor(self)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -93,7 +92,7 @@ contains
     presses_impactor = self%has_impactor .and. self%is_static()
   end function presses_impactor
 
-  !> True: an impactor of known mass and contact stiffness comes with a velocity.
+  !> True: an impactor of known mass and contact stiffness has an initial velocity.
   elemental logical function is_impact(self)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -102,7 +101,7 @@ contains
                 self%indentation%k > 0
   end function is_impact
 
-  !> Name of what grows from step to step.
+  !> Name of the quantity that increases from step to step.
   pure function progress_name(self) result(name)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -127,7 +126,7 @@ contains
     end if
   end function pressure_factor
 
-  !> Loads over those at the end; an impact is a full load from its start.
+  !> Loads relative to those at the end; 1 for an impact.
   elemental real(wp) function load_level(self, time)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -152,8 +151,8 @@ contains
     load_factor = max(0.0_wp, time - self%load_start)/self%ramp_time
   end function load_factor_at
 
-  !> Factor at a time of initial deformations that supports and lines do not have: it decreases smoothly to zero until
-  !> these begin to load, and is constant without time for that.
+  !> Factor at a time of the offsets between initial and prescribed displacements of supports and lines: it decreases
+  !> smoothly to zero until the loads start, and is constant without time for that.
   pure real(wp) function offset_left(self, time) result(left)
     !> The load case
     class(load_case_t), intent(in) :: self

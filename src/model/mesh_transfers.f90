@@ -1,8 +1,8 @@
-!> Carries what a plate has become to another mesh of it: an archive in memory, whose fields are mapped.
+!> Transfers a state to another mesh of the plate: an archive in memory that maps fields.
 !>
-!> Motion has the values of the old elements at the new nodes. What nodes and cells have per area or per volume becomes
-!> the mean over the area that belongs to the new node or cell, so that integrals over the plate stay what they are:
-!> each node of nine-node cells has a rectangle, whose sides are the integrals of its quadratics.
+!> Motion is interpolated by the old elements at the new nodes. Quantities per area or volume are averaged over the area
+!> of the new node or cell, so that integrals over the plate are conserved: the area of a node of nine-node cells is a
+!> rectangle with the integrals of its shape functions as sides.
 module mesh_transfers
   use kinds, only: wp
   use lagrange9, only: line_values
@@ -13,7 +13,7 @@ module mesh_transfers
   private
   public :: mesh_transfer_t
 
-  !> Beginnings of the names of motion, and of what each ply of an element has; the field that elements have as a whole.
+  !> Prefixes of the names of motion, and of quantities per ply of an element; name of the field per element.
   character(len=*), parameter :: motion_group = 'motion/', ply_group = 'ply_failure/', &
                                  section_field = 'ply_failure/stiffness', slip_field = 'cohesive/sliding'
 
@@ -23,7 +23,7 @@ module mesh_transfers
     type(layered_mesh_t), private :: old, new
     !> Plies of the laminate
     integer, private :: plies = 0
-    !> What nodes and cells of the new mesh have in common with those of the old one along x and y
+    !> Overlaps of nodes and cells of the new mesh with those of the old one along x and y
     type(line_overlap_t), allocatable, private :: nodes_x(:), nodes_y(:), cells_x(:), cells_y(:)
   contains
     procedure :: turn_to
@@ -32,8 +32,8 @@ module mesh_transfers
 
 contains
 
-  !> Turns from saving to loading, and finds what both meshes have in common. All sections of elements are new ones, all
-  !> points have a motion.
+  !> Switches from saving to loading, and computes the overlaps of both meshes. All section stiffnesses are computed
+  !> anew.
   subroutine turn_to(self, old, new)
     !> The archive
     class(mesh_transfer_t), intent(inout) :: self
@@ -55,11 +55,11 @@ contains
                                old%halved(2))
   end subroutine turn_to
 
-  !> Bounds of the parts of nodes that begin at the cut.
+  !> Bounds of the intervals of nodes, from the symmetry line on.
   pure function from_cut(edges, halved) result(bounds)
     !> Edges of the cells, ascending
     real(wp), intent(in) :: edges(:)
-    !> True: the line begins on a cut at 0
+    !> True: the line starts on a symmetry line at 0
     logical, intent(in) :: halved
     !> Ascending
     real(wp), allocatable :: bounds(:)
@@ -76,7 +76,7 @@ contains
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
-    !> Number of columns of the whole field
+    !> Number of columns of the global field
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
@@ -133,7 +133,7 @@ contains
     if (turned(2)) motion([2, 5]) = -motion([2, 5])
   end function motion_at
 
-  !> Unknowns of the layer below a zone at a node; where layers are joined there are no jumps.
+  !> Unknowns of the layer below a zone at a node, with zero jumps where layers are not separate.
   pure function unknowns_at(mesh, saved, node, zone) result(unknowns)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -141,7 +141,7 @@ contains
     real(wp), intent(in) :: saved(:, :)
     !> Node, and zone; 0: the first layer
     integer, intent(in) :: node, zone
-    !> They
+    !> The unknowns
     real(wp) :: unknowns(5)
     integer :: above
 
@@ -154,7 +154,7 @@ contains
     if (above /= zone) unknowns(1:3) = 0
   end function unknowns_at
 
-  !> Cell along a line that a coordinate lies in, and the quadratics of its nodes there.
+  !> Cell of a coordinate along a line, and the quadratic shape functions there.
   pure subroutine locate(edges, coordinate, cell, shapes)
     !> Edges of the cells, ascending
     real(wp), intent(in) :: edges(:)
@@ -169,7 +169,7 @@ contains
     shapes = line_values((2*coordinate - edges(cell) - edges(cell + 1))/(edges(cell + 1) - edges(cell)))
   end subroutine locate
 
-  !> Means over the area of a node; where the old mesh has no such layer, what is there already counts.
+  !> Means over the area of a node; where the old mesh has no such layer, the present value is used.
   pure subroutine find_at_node(self, saved, point, name, values)
     !> The archive
     class(mesh_transfer_t), intent(in) :: self
@@ -208,7 +208,7 @@ contains
     values = mean_of(terms, weights)
   end subroutine find_at_node
 
-  !> Means over the area of a cell; what plies have each on its own, also where layers have been divided.
+  !> Means over the area of a cell; per ply, also between different layers.
   pure subroutine find_in_cells(self, saved, element, name, values)
     !> The archive
     class(mesh_transfer_t), intent(in) :: self
@@ -248,30 +248,30 @@ contains
     values = mean_of(terms, weights)
   end subroutine find_in_cells
 
-  !> Place of an interval of x and one of y in the part of the plate that the old mesh models.
+  !> Position of intervals of x and y in the part of the plate modelled by the old mesh.
   pure subroutine find_image(self, x, y, i, j, intervals, place, turned)
     !> The archive
     class(mesh_transfer_t), intent(in) :: self
-    !> What an interval has in common with those of the old mesh along x and y
+    !> Overlaps of an interval with those of the old mesh along x and y
     type(line_overlap_t), intent(in) :: x, y
     !> Which of them
     integer, intent(in) :: i, j
     !> Number of intervals of the old mesh along x and y
     integer, intent(in) :: intervals(2)
-    !> The place, from 1
+    !> The position, from 1
     integer, intent(out) :: place(2)
-    !> Directions that have the other sign there
+    !> Directions with reversed sign there
     logical, intent(out) :: turned(2)
 
     place = [x%interval(i), y%interval(j)]
     turned = [x%turned(i), y%turned(j)]
     if (.not. turned(1) .or. self%old%mirrored(1)) return
-    ! Half of a plate that a turn leaves as it is.
+    ! Half of a plate with point symmetry.
     turned(2) = .true.
     place(2) = intervals(2) + 1 - place(2)
   end subroutine find_image
 
-  !> Weighted means, within the range of the terms: those of equal terms are these.
+  !> Weighted means, limited to the range of the terms, so that the mean of equal terms is exact.
   pure function mean_of(terms, weights) result(means)
     !> The terms, (rows, terms)
     real(wp), intent(in) :: terms(:, :)

@@ -1,4 +1,4 @@
-!> Makes a setup ready for computing: mesh, elements, loads and interfaces of this rank's share.
+!> Builds the model of a setup: mesh, elements, loads and interfaces on this rank.
 module model_building
   use kinds, only: wp
   use errors, only: error_t
@@ -36,14 +36,14 @@ module model_building
 
 contains
 
-  !> Makes a setup ready.
+  !> Builds the model of a setup.
   subroutine create_model(setup, communicator, self, error)
     !> The setup; it has passed the deck's checks
     type(setup_t), intent(in) :: setup
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(out) :: self
-    !> Set if the mesh can't be distributed or an element is ill-shaped; the same on every rank
+    !> Set if the mesh cannot be distributed or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
     type(zone_t), allocatable :: zones(:)
     integer :: ply
@@ -83,7 +83,7 @@ contains
     call find_struck_point(self)
   end subroutine create_model
 
-  !> True if membrane and bending do not act on each other.
+  !> True if membrane and bending are uncoupled.
   pure logical function uncoupled(section)
     !> The laminate's section
     type(section_t), intent(in) :: section
@@ -120,7 +120,7 @@ contains
     end associate
   end function unrestrained
 
-  !> Lines that fix or move the plate in its plane.
+  !> Lines that constrain or displace the plate in its plane.
   pure function lines_in_plane(setup) result(in_plane)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -140,17 +140,17 @@ contains
     integer :: element, first, last, point
     type(section_t) :: section
 
-    associate (mesh => self%mesh, share => self%distribution)
-      call self%elements%create(mesh%node_coordinates(:, mesh%point_node(share%points)), share%connectivity, &
+    associate (mesh => self%mesh, partition => self%distribution)
+      call self%elements%create(mesh%node_coordinates(:, mesh%point_node(partition%points)), partition%connectivity, &
                                 self%setup%mesh%shear, error)
       if (allocated(error)) return
       if (abs(self%setup%plate%imperfection) > 0) call set_initial_shape(self%elements, &
-        [(initial_deflection(self%setup%plate, mesh%node_coordinates(:, mesh%point_node(share%points(point)))), &
-          point=1, size(share%points))])
+        [(initial_deflection(self%setup%plate, mesh%node_coordinates(:, mesh%point_node(partition%points(point)))), &
+          point=1, size(partition%points))])
       if (self%setup%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
-      do element = 1, size(share%elements)
-        first = mesh%element_plies(1, share%elements(element))
-        last = mesh%element_plies(2, share%elements(element))
+      do element = 1, size(partition%elements)
+        first = mesh%element_plies(1, partition%elements(element))
+        last = mesh%element_plies(2, partition%elements(element))
         section = self%section
         if (last - first + 1 < size(self%plies)) &
           section = section_of(self%plies(first:last), self%setup%laminate%shear_correction)
@@ -228,9 +228,9 @@ contains
                              *product(self%setup%plate%length/self%setup%mesh%elements)/self%mesh%multiplicity)
     if (allocated(self%rig%line_rig)) call self%rig%join_ranks(self%communicator, self%halo)
     if (.not. self%rig%unilateral) return
-    associate (share => self%distribution, last => self%plies(size(self%plies)))
+    associate (partition => self%distribution, last => self%plies(size(self%plies)))
       self%rig_area = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
-                                             self%mesh%element_plies(1, share%elements) == 1))
+                                             self%mesh%element_plies(1, partition%elements) == 1))
       self%rig_law = create_contact_law(contact_augmented_lagrangian, 1.0_wp, last%elasticity%e2/self%thickness, &
                                         self%thickness, moving=self%setup%has_inertia())
     end associate
@@ -244,18 +244,18 @@ contains
     real(wp) :: thickness
     integer :: zone, i
 
-    associate (mesh => self%mesh, share => self%distribution)
-      self%map = create_layer_map(mesh, share, self%plies(mesh%zones%below_ply)%z_bottom)
-      self%zone = mesh%point_zone(share%points)
-      allocate (areas(1, size(share%points)), source=0.0_wp)
+    associate (mesh => self%mesh, partition => self%distribution)
+      self%map = create_layer_map(mesh, partition, self%plies(mesh%zones%below_ply)%z_bottom)
+      self%zone = mesh%point_zone(partition%points)
+      allocate (areas(1, size(partition%points)), source=0.0_wp)
       if (self%map%layered) then
         areas(1, :) = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
-                                             mesh%element_plies(1, share%elements) > 1))
+                                             mesh%element_plies(1, partition%elements) > 1))
         call self%halo%update(areas)
         where (self%zone == 0) areas(1, :) = 0
       end if
       self%contact_area = areas(1, :)
-      self%beside_border = [(beside_border(mesh, share%points(i)), i=1, size(share%points))]
+      self%beside_border = [(beside_border(mesh, partition%points(i)), i=1, size(partition%points))]
       allocate (self%contact_laws(size(mesh%zones)), self%cohesive_laws(size(mesh%zones)))
       do zone = 1, size(mesh%zones)
         associate (below => mesh%zones(zone)%below_ply, interface => self%setup%delaminations(zone))

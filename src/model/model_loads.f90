@@ -14,20 +14,20 @@ module model_loads
 
 contains
 
-  !> How the elements' contributions are summed at points on the borders between ranks.
+  !> Prepares the sums of elements' contributions at points on the borders between ranks.
   subroutine build_borders(self)
     !> The model, with its elements and halo
     type(model_t), intent(inout) :: self
     integer :: targets(size(self%distribution%connectivity))
 
-    associate (share => self%distribution)
-      call self%borders%define(self%communicator, self%halo, reshape(share%connectivity, shape(targets)), &
-                               reshape(spread(share%elements, 1, 9), shape(targets)), targets)
-      call self%elements%set_targets(reshape(targets, shape(share%connectivity)))
+    associate (partition => self%distribution)
+      call self%borders%define(self%communicator, self%halo, reshape(partition%connectivity, shape(targets)), &
+                               reshape(spread(partition%elements, 1, 9), shape(targets)), targets)
+      call self%elements%set_targets(reshape(targets, shape(partition%connectivity)))
     end associate
   end subroutine build_borders
 
-  !> Areas that belong to the points of some of this rank's elements. Collective.
+  !> Nodal areas of some of this rank's elements. Collective.
   function nodal_areas(self, elements) result(areas)
     !> The model, with its elements and borders
     type(model_t), intent(in) :: self
@@ -80,7 +80,7 @@ contains
     end associate
   end function patch_elements
 
-  !> The nose whose contact the patch follows.
+  !> Creates the nose that determines the patch.
   subroutine build_nose(self, area)
     !> The model, with its patch
     type(model_t), intent(inout) :: self
@@ -104,13 +104,13 @@ contains
 
     allocate (forces(5, self%borders%columns), source=0.0_wp)
     allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
-    associate (mesh => self%mesh, share => self%distribution, value => self%setup%pressure%value)
-      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(share%points)), x)
+    associate (mesh => self%mesh, partition => self%distribution, value => self%setup%pressure%value)
+      call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(partition%points)), x)
       pressure = value
       if (self%setup%pressure%distribution == distribution_sine) &
         pressure = value*cos(pi*x(1, :, :)/self%setup%plate%length(1))*cos(pi*x(2, :, :)/self%setup%plate%length(2))
-      do element = 1, size(share%elements)
-        if (mesh%element_plies(1, share%elements(element)) /= 1) pressure(:, element) = 0
+      do element = 1, size(partition%elements)
+        if (mesh%element_plies(1, partition%elements(element)) /= 1) pressure(:, element) = 0
       end do
     end associate
     call add_pressure(self%elements, pressure, forces)

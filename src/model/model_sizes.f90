@@ -1,4 +1,4 @@
-!> How large a model is before it is built: unknowns and memory, for `implam check` and the scripts of queues.
+!> Size of a model before it is built: unknowns and memory, for `implam check` and job scripts.
 module model_sizes
   use kinds, only: wp
   use layer_extents, only: largest_extents
@@ -11,16 +11,16 @@ module model_sizes
   private
   public :: model_size_t, size_of_model
 
-  !> Unknowns of one rank in a script; a choice, since the best value depends on the machine.
+  !> Unknowns per rank in a job script; a choice, since the best value depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
-  !> Megabytes of the libraries a process: MPI, PETSc and those behind it.
+  !> Megabytes of the libraries per process: MPI, PETSc and its libraries.
   real(wp), parameter :: megabytes_of_libraries = 55
-  !> Bytes for each pair of unknowns of a node times the doublings of the number of nodes: nested dissection of a plane
-  !> grid fills its factor so. Measured, doc/manual/queue.md.
+  !> Bytes per pair of unknowns of a node times log2 of the number of nodes: fill-in of a plane grid by nested
+  !> dissection. Measured, doc/manual/queue.md.
   real(wp), parameter :: bytes_whole = 56, bytes_layered = 93
-  !> Bytes for each element of a layer where nothing is factored. Measured: 4400 in an elastic plate, 5400 with cohesive
-  !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm). Where layers follow the damage all that
-  !> evolves is in memory once more as they grow: 13700 and 14900 in all on cells of 1.5 and 3 mm.
+  !> Bytes per element of a layer without a factorization. Measured: 4400 in an elastic plate, 5400 with cohesive
+  !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm). With adaptive layers the state is in
+  !> memory twice during their extension: 13700 and 14900 in total on cells of 1.5 and 3 mm.
   real(wp), parameter :: bytes_explicit = 9700, bytes_transferred = 5000
   !> Memory of several ranks together over that of one: MUMPS' buffers and ghosts.
   real(wp), parameter :: more_on_ranks = 1.7_wp
@@ -31,11 +31,11 @@ module model_sizes
     integer :: unknowns = 0
     !> Elements of all layers
     real(wp) :: elements = 0
-    !> Ranks that suit them
+    !> Recommended number of ranks
     integer :: ranks = 1
     !> Megabytes beyond those of the libraries, on one rank
     real(wp) :: megabytes = 0
-    !> True: layers follow the damage, and these are its largest sizes
+    !> True: upper bounds, with adaptive layers
     logical :: at_most = .false.
   contains
     procedure :: megabytes_a_rank
@@ -63,7 +63,7 @@ contains
     if (allocated(setup%delaminations)) size_found%at_most = any(setup%delaminations%follows)
     size_found%elements = product(real(cells, wp))
     size_found%unknowns = nint(5*nodes)
-    ! A node has a layer more for each zone that it is in: (1 + sum)**2 pairs, added up over pairs of zones.
+    ! A node has an additional layer for each zone that contains it: (1 + sum)**2 pairs, summed over pairs of zones.
     do i = 1, size(zones)
       inside = nodes_in_both(zones(i), zones(i), cells)
       size_found%elements = size_found%elements + cells_in(zones(i))
@@ -80,9 +80,8 @@ contains
     size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
   end function size_of_model
 
-  !> The setup with the largest zones that adaptive layers may reach: with central differences all of the plate, as
-  !> waves of failing fibres may reach the strength of interfaces anywhere; with implicit steps the core, which is to
-  !> contain them.
+  !> The setup with the largest zones that adaptive layers may reach: the full plate with central differences, where
+  !> waves of failing fibres may reach the strength of interfaces anywhere; the core with implicit steps.
   pure function with_largest_zones(setup, explicit) result(largest)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -101,7 +100,7 @@ contains
     end do
   end function with_largest_zones
 
-  !> Number of nodes inside of two zones; the model's own border counts as inside.
+  !> Number of nodes inside two zones; the border of the model counts as inside.
   pure real(wp) function nodes_in_both(a, b, cells) result(nodes)
     !> The zones
     type(zone_t), intent(in) :: a, b
@@ -132,7 +131,7 @@ contains
     megabytes = megabytes_of_libraries + self%megabytes*merge(1.0_wp, more_on_ranks/ranks, ranks == 1)
   end function megabytes_a_rank
 
-  !> What `implam check` says.
+  !> Sentence of `implam check`.
   pure function sentence(self) result(words)
     class(model_size_t), intent(in) :: self
     !> One sentence

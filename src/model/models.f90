@@ -1,5 +1,5 @@
-!> A setup prepared for steps: mesh, supports, loads and laws; and the forces that follow from a motion. A run changes
-!> only the patch under the impactor, between steps; a change of layers makes a new model.
+!> Model of a setup: mesh, supports, loads and laws, and forces of a motion. A run changes only the patch under the
+!> impactor, between steps; a change of layers requires a new model.
 module models
   use kinds, only: wp
   use bending_forces, only: add_bending_force, add_bending_inertia
@@ -17,29 +17,29 @@ module models
   private
   public :: model_t
 
-  !> A setup made ready for computing on this rank's share of the mesh: plate, laws and loads, which a run does not
-  !> change, and the patch under the impactor, which steps do.
+  !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run, and the patch under the
+  !> impactor, which steps change.
   type, extends(loaded_plate_t) :: model_t
-    !> What the deck asked for
+    !> The setup of the deck
     type(setup_t) :: setup
     !> Plies of the laminate, struck face first
     type(ply_t), allocatable :: plies(:)
     !> Transverse shear stresses of its plies under unit shear forces, (2, 2, plies)
     real(wp), allocatable :: shear_shares(:, :, :)
-    !> Section of the whole laminate
+    !> Section of the full laminate
     type(section_t) :: section
     !> Thickness of the laminate
     real(wp) :: thickness = 0
-    !> Resultants of the strains that the plies' cooling would give them without stress, and their energy per area,
-    !> without damage, (lanes, 7, batches); allocated only if they are modelled
+    !> Resultants of the thermal strains of undamaged plies, and their energy per area, (lanes, 7, batches); allocated
+    !> only if they are modelled
     real(wp), allocatable :: free(:, :, :)
-    !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if asked for
+    !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if requested
     real(wp), allocatable :: lumped(:, :)
-    !> Area that belongs to each point of a lower layer, (local points)
+    !> Area of each point of a lower layer, (local points)
     real(wp), allocatable :: contact_area(:)
     !> Contact of each zone's faces
     type(contact_law_t), allocatable :: contact_laws(:)
-    !> Cohesive law of each zone; without meaning where fronts release ties
+    !> Cohesive law of each zone; not used where fronts release ties
     type(cohesive_law_t), allocatable :: cohesive_laws(:)
     !> True if layers, frames or clamps add stiffness to the operator's diagonal
     logical :: has_bonds = .false.
@@ -63,7 +63,7 @@ module models
 
 contains
 
-  !> Internal forces at the owned points and this rank's share of the strain energy.
+  !> Internal forces at the owned points and strain energy of this rank's elements.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)
     class(model_t), intent(in) :: self
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -76,7 +76,7 @@ contains
     real(wp), intent(out) :: energy
     !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
-    !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
+    !> Resultants of stress-free strains, and their energy per area, (lanes, 7, batches); absent: none
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     real(wp), allocatable :: field(:, :)
@@ -108,7 +108,7 @@ contains
     real(wp), intent(out) :: energy
     !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
-    !> Resultants of strains that go without stress, and their energy per area, (lanes, 7, batches); absent: none
+    !> Resultants of stress-free strains, and their energy per area, (lanes, 7, batches); absent: none
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     if (self%map%layered) then
@@ -189,7 +189,7 @@ contains
     w = self%patch_mean(displacement) + self%contact%offset
   end function contact_deflection
 
-  !> Area of the full plate that the impactor presses on, the same on every rank.
+  !> Contact area on the full plate, the same on every rank.
   real(wp) function pressed_area(self) result(area)
     class(model_t), intent(in) :: self
 
@@ -198,7 +198,7 @@ contains
       area = self%contact%nose%touched(self%communicator, self%contact%weights)*self%mesh%multiplicity
   end function pressed_area
 
-  !> Spreads the impactor's force in another way.
+  !> Sets the distribution of the impactor's force.
   pure subroutine spread_force(self, weights, offset)
     class(model_t), intent(inout) :: self
     !> Weights, (local points); ghosts zero

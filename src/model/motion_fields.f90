@@ -23,12 +23,12 @@ module motion_fields
 
 contains
 
-  !> Writes the fields that are wanted.
+  !> Writes the requested fields.
   subroutine write_motion_fields(model, motion, output, fields, error)
     type(model_t), intent(in) :: model
     !> The motion
     type(motion_t), intent(in) :: motion
-    !> Which fields
+    !> Requested fields
     type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields

@@ -1,4 +1,4 @@
-!> Lines of nodes of the mesh across the plate, and the part of such a line that belongs to one of its nodes.
+!> Lines of nodes of the mesh across the plate, and the nodes' fractions of their length.
 module nodal_lines
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -39,17 +39,17 @@ contains
   pure real(wp) function place_of_node(edges, line) result(place)
     !> Edges of the cells
     real(wp), intent(in) :: edges(:)
-    !> Which line, from 0
+    !> Index of the line, from 0
     integer, intent(in) :: line
 
     place = (edges(line/2 + 1) + edges((line + 1)/2 + 1))/2
   end function place_of_node
 
-  !> Part of a line of nodes that belongs to one of them.
+  !> Fraction of the length of a line of nodes for a node.
   pure real(wp) function simpson_weight(edges, line) result(weight)
     !> Edges of the cells along it
     real(wp), intent(in) :: edges(:)
-    !> Which node, from 0
+    !> Index of the node, from 0
     integer, intent(in) :: line
     integer :: cell, cells
 

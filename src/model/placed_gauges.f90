@@ -1,5 +1,5 @@
-!> Strains at gauges: those of the outermost layer at its surface, bilinear through the points of the element where they
-!> are most accurate.
+!> Strains at gauges on the surface of the outermost layer, interpolated bilinearly from the superconvergent points of
+!> the element.
 module placed_gauges
   use element_batches, only: batch_of, lane_of, lanes
   use exact_sums, only: exact_sum_t
@@ -14,7 +14,7 @@ module placed_gauges
   private
   public :: back_to_back, gauge_strains, percent_bending
 
-  !> Column of the history, once a gauge: N is its number in the deck.
+  !> Column of the history, once per gauge: N is its number in the deck.
   character(len=result_row_length), parameter, public :: gauge_column_rows(*) = [character(len=result_row_length) :: &
     'gauge_strain_N | real | - | Strain of the surface under the N-th &gauge along its angle, positive in tension.']
   !> Corners of an element among its nodes, in the order of their shape functions.
@@ -27,7 +27,7 @@ contains
     type(model_t), intent(in) :: model
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> One a gauge
+    !> One per gauge
     real(wp), allocatable :: strains(:)
     type(exact_sum_t), allocatable :: sums(:)
     real(wp), allocatable :: motion(:, :)
@@ -99,7 +99,7 @@ contains
     call total%add(dot_product(direction, strain(1:3) + z*strain(4:6)))
   end subroutine add_strain
 
-  !> Place of a gauge in the modelled part, itself or by its image, and its direction there.
+  !> Position of a gauge or its image in the modelled part, and its direction there.
   pure subroutine find_place(model, gauge, at, angle)
     type(model_t), intent(in) :: model
     !> The gauge
@@ -120,7 +120,7 @@ contains
     end do
   end subroutine find_place
 
-  !> Cell that a coordinate lies in, the first of two at an edge.
+  !> Cell of a coordinate, the first of two at an edge.
   pure integer function cell_at(edges, at) result(cell)
     !> Edges of the cells, ascending
     real(wp), intent(in) :: edges(:)
@@ -130,7 +130,7 @@ contains
     cell = max(1, min(size(edges) - 1, count(edges < at)))
   end function cell_at
 
-  !> Part of a cell that lies before a coordinate.
+  !> Fraction of a cell before a coordinate.
   pure real(wp) function part_of(edges, cell, at) result(part)
     !> Edges of the cells
     real(wp), intent(in) :: edges(:)

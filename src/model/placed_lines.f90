@@ -25,23 +25,24 @@ module placed_lines
 
   !> A line on this rank's points.
   type :: placed_line_t
-    !> The line as the deck gives it
+    !> The line of the deck
     type(line_load_t) :: load
-    !> Part of the full plate's line that lies in the model
+    !> Fraction of the full plate's line in the model
     real(wp) :: share = 1
     !> Total stiffness of its springs
     real(wp) :: stiffness = 0
-    !> Each node's part of the modelled line, all ranks together 1, (nodes of this rank)
+    !> Fraction of each node in the modelled line, with the sum 1 over all ranks, (nodes of this rank)
     real(wp), allocatable :: weight(:)
     !> Height z of the middle of the layer acted on, (nodes of this rank)
     real(wp), allocatable :: height(:)
-    !> Where the unknowns that move a node begin in the next two, (nodes of this rank + 1)
+    !> Index of the first entry of each node in the next two lists, (nodes of this rank + 1)
     integer, allocatable :: first(:)
-    !> Points whose unknowns move a node
+    !> Points of the unknowns that determine the motion of a node
     integer, allocatable :: point(:)
     !> Weights of their unknowns in the motion of the node, (5, points)
     real(wp), allocatable :: coefficient(:, :)
-    !> Parts of this rank's nodes that supports hold where the line prescribes a motion: it does not act on them
+    !> Fractions of this rank's nodes that are constrained by supports in the prescribed component: the line does not
+    !> act on them
     real(wp), allocatable :: left_out(:)
   contains
     !> Motion of a node of the line.
@@ -50,9 +51,9 @@ module placed_lines
     procedure :: force_at
     !> Adds the nodal forces of the line.
     procedure :: add_forces
-    !> Moves the nodes of the line in a field.
+    !> Sets the motion of the nodes of the line in a field.
     procedure :: move_to
-    !> Adds them for a line that is fixed in its position without load.
+    !> Adds the nodal forces that hold a line at zero displacement.
     procedure :: add_holding_forces
     !> Adds the change of the nodal forces with the load factor.
     procedure :: add_slopes
@@ -62,7 +63,7 @@ module placed_lines
 
 contains
 
-  !> Puts a line on the mesh.
+  !> Finds nodes and weights of a line on the mesh.
   pure function place_line(load, mesh, distribution, map, held, plies, section, symmetry) result(self)
     !> The line
     type(line_load_t), intent(in) :: load
@@ -72,13 +73,13 @@ contains
     type(distribution_t), intent(in) :: distribution
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
-    !> Unknowns that supports hold, (5, points)
+    !> True for unknowns constrained by supports, (5, points)
     logical, intent(in) :: held(:, :)
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Section of the laminate
     type(section_t), intent(in) :: section
-    !> Part that is modelled
+    !> Symmetry of the model
     integer, intent(in) :: symmetry
     !> The line on this rank
     type(placed_line_t) :: self
@@ -106,11 +107,11 @@ contains
     call leave_out_held(self, held)
   end function place_line
 
-  !> Leaves out the nodes whose motion supports hold, if the line prescribes it: its springs would pull at the supports.
+  !> Excludes nodes constrained by supports in a prescribed component: its springs would act on the supports.
   pure subroutine leave_out_held(self, held)
     !> The line
     type(placed_line_t), intent(inout) :: self
-    !> Unknowns that supports hold, (5, points)
+    !> True for unknowns constrained by supports, (5, points)
     logical, intent(in) :: held(:, :)
     logical :: acts(size(self%weight)), kept(size(self%point))
     integer :: node, k
@@ -133,7 +134,7 @@ contains
     self%point = pack(self%point, kept)
   end subroutine leave_out_held
 
-  !> Stiffness of a section that a component of the motion is measured by.
+  !> Stiffness of the section that scales the springs of a component.
   pure real(wp) function section_scale(section, component) result(scale)
     !> Section of the laminate
     type(section_t), intent(in) :: section
@@ -150,7 +151,7 @@ contains
     end select
   end function section_scale
 
-  !> Adds a node with the layers of it that the line acts on, each with its part of the thickness.
+  !> Adds a node with the layers on which the line acts, each with its fraction of the thickness.
   pure subroutine add_layers(self, mesh, map, plies, first_point, local, weight)
     !> The line
     type(placed_line_t), intent(inout) :: self
@@ -160,9 +161,9 @@ contains
     type(layer_map_t), intent(in) :: map
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
-    !> First point of the node, and where it is among this rank's
+    !> First point of the node, and its index on this rank
     integer, intent(in) :: first_point, local
-    !> The node's part of the line
+    !> The node's fraction of the line
     real(wp), intent(in) :: weight
     real(wp) :: top, bottom, total
     integer :: point, last, chosen
@@ -186,13 +187,13 @@ contains
     end do
   end subroutine add_layers
 
-  !> Adds the unknowns that move one layer at a node: its own and those of the points above it.
+  !> Adds the unknowns that determine the motion of a layer at a node: its own and those of the points above it.
   pure subroutine add_unknowns(self, map, lowest, height)
     !> The line
     type(placed_line_t), intent(inout) :: self
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
-    !> Point of the layer among this rank's
+    !> Point of the layer on this rank
     integer, intent(in) :: lowest
     !> Height z of the layer's middle
     real(wp), intent(in) :: height
@@ -218,7 +219,7 @@ contains
   pure real(wp) function motion_at(self, node, displacement) result(motion)
     !> The line
     class(placed_line_t), intent(in) :: self
-    !> Which of this rank's nodes
+    !> Index of the node on this rank
     integer, intent(in) :: node
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -234,7 +235,7 @@ contains
   pure real(wp) function force_at(self, node, displacement, load_factor) result(force)
     !> The line
     class(placed_line_t), intent(in) :: self
-    !> Which of this rank's nodes
+    !> Index of the node on this rank
     integer, intent(in) :: node
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -262,7 +263,7 @@ contains
     end do
   end subroutine add_forces
 
-  !> Moves the nodes of the line in a field, by the unknowns of their own layers.
+  !> Sets the motion of the nodes of the line in a field, by the unknowns of their own layers.
   pure subroutine move_to(self, value, field)
     !> The line
     class(placed_line_t), intent(in) :: self
@@ -272,7 +273,7 @@ contains
     real(wp), intent(inout) :: field(:, :)
     integer :: node
 
-    ! Upper layers come first, as lower ones move with them.
+    ! Upper layers first, as they contribute to the motion of lower ones.
     do node = 1, size(self%weight)
       associate (own => field(self%load%component, self%point(self%first(node))))
         own = own + (value - self%motion_at(node, field))
@@ -280,7 +281,7 @@ contains
     end do
   end subroutine move_to
 
-  !> Adds the nodal forces of a line that is fixed in its position without load; none if it is not prescribed.
+  !> Adds the nodal forces that hold a line at zero displacement; none if it is not prescribed.
   pure subroutine add_holding_forces(self, displacement, forces)
     !> The line
     class(placed_line_t), intent(in) :: self
@@ -313,9 +314,9 @@ contains
   pure subroutine spread(self, node, force, forces)
     !> The line
     type(placed_line_t), intent(in) :: self
-    !> Which of this rank's nodes
+    !> Index of the node on this rank
     integer, intent(in) :: node
-    !> Force of the whole line
+    !> Force of the full line
     real(wp), intent(in) :: force
     !> Forces on the unknowns, (5, points)
     real(wp), intent(inout) :: forces(:, :)
@@ -334,7 +335,8 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Ramps over their full values
     real(wp), intent(in) :: load_factor
-    !> Force of the full plate's line, mean motion of its nodes times their part, and the part of those left out
+    !> Force of the full plate's line, sum of the motion of its nodes times their fraction, and fraction of excluded
+    !> nodes
     type(exact_sum_t) :: totals(3)
     integer :: node
 

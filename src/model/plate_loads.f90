@@ -1,4 +1,4 @@
-!> What holds and loads the plate at its points: pressure, lines, rigs. A run does not change it.
+!> Loads and supports of the plate at its points: pressure, lines, rigs, constant in a run.
 module plate_loads
   use discretizations, only: discretization_t
   use face_contact, only: contact_law_t
@@ -13,11 +13,11 @@ module plate_loads
   type, extends(discretization_t) :: loaded_plate_t
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
-    !> Lines that fix, move or load; empty: none
+    !> Lines; empty: none
     type(placed_line_t), allocatable :: lines(:)
-    !> How rigs hold the plate
+    !> Supports by rigs
     type(rig_model_t) :: rig
-    !> Area that belongs to each node, (local points); allocated only if the plate may lift off a frame
+    !> Area of each node, (local points); allocated only with a unilateral frame
     real(wp), allocatable :: rig_area(:)
     !> Contact with that frame
     type(contact_law_t) :: rig_law
@@ -40,7 +40,7 @@ contains
     real(wp), intent(in) :: load_factor
     !> Forces on the unknowns, (5, points); ghosts zero
     real(wp), intent(out) :: forces(:, :)
-    !> Whether the lines are prescribed; left out: all of them
+    !> True: prescribed lines only, false: the others; absent: all
     logical, intent(in), optional :: prescribed
     integer :: i
 
@@ -53,7 +53,7 @@ contains
     end do
   end subroutine line_forces
 
-  !> Adds the nodal forces of the lines that support the plate before any load or motion.
+  !> Adds the nodal forces that hold prescribed lines at zero displacement.
   pure subroutine add_holding_lines(self, displacement, forces)
     class(loaded_plate_t), intent(in) :: self
     !> Displacement, (5, points)

@@ -43,7 +43,7 @@ contains
     pressure%ramp_time = end_time
   end subroutine fill_pressure
 
-  !> A pressure without effect.
+  !> Remarks on a pressure without effect.
   subroutine check_pressure(settings, pressure, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

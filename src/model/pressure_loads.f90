@@ -1,11 +1,11 @@
-!> The pressure of the deck and how it grows.
+!> The pressure of the deck, and its history.
 module pressure_loads
   use kinds, only: wp
   implicit none
   private
   public :: pressure_t
 
-  !> Histories of the pressure: there from the start, or growing in proportion to time up to `value` at the end.
+  !> Histories of the pressure: constant from the start, or proportional to time up to `value` at the end.
   integer, parameter, public :: history_step = 1, history_ramp = 2
   !> Distributions of the pressure over the plate: uniform, or one half-sine along each side.
   integer, parameter, public :: distribution_uniform = 1, distribution_sine = 2
@@ -16,7 +16,7 @@ module pressure_loads
     real(wp) :: value = 0
     !> history_step or history_ramp
     integer :: history = history_step
-    !> Time in which a ramp reaches the full value
+    !> Duration of a ramp
     real(wp) :: ramp_time = 0
     !> distribution_uniform or distribution_sine
     integer :: distribution = distribution_uniform

@@ -17,30 +17,30 @@ module rig_models
 
   !> The rigs at this rank's points. They act on the first point of a node only.
   type :: rig_model_t
-    !> True if the plate rests on a unilateral frame, or below clamps that press
+    !> True with a unilateral frame, or with clamps with a force
     logical :: unilateral = .false.
-    !> True if clamps have springs or press
+    !> True if clamps have springs or a force
     logical :: elastic = .false.
     !> The rig that fixes w, or whose frame supports it by pressure; 0: none, (local points); unallocated: no rigs
     integer, allocatable :: held_by(:), frame(:)
     !> Stiffness of clamps along u, v and w, (3, local points)
     real(wp), allocatable :: springs(:, :)
-    !> Force with which clamps press on the plate, (local points)
+    !> Force of clamps on the plate, (local points)
     real(wp), allocatable :: presses(:)
     !> The rig that they belong to; 0: none, (local points)
     integer, allocatable :: clamps(:)
-    !> Points of three nodes each, (3, lines), whose weighted unknown a stiffness holds, and the rig; 0: an elastic edge
+    !> Points of three nodes each with a spring on their weighted unknown, (3, lines), and the rig; 0: an elastic edge
     integer, allocatable :: line_points(:, :), line_rig(:)
-    !> Element of the mesh on whose side a line lies, (lines), and columns that its forces are added to, (3, lines)
+    !> Element of the mesh with the line on its side, (lines), and columns to which its forces are added, (3, lines)
     integer, allocatable :: line_element(:), line_targets(:, :)
     !> Sums of the forces of lines at points on the borders between ranks
     type(border_sum_t) :: line_borders
-    !> Which unknown, (lines)
+    !> Component of the unknown, (lines)
     integer, allocatable :: line_component(:)
     !> Weights, (3, lines), and stiffness, (lines)
     real(wp), allocatable :: line_weights(:, :), line_stiffness(:)
   contains
-    !> Finds how the forces of lines are summed between ranks.
+    !> Prepares the sums of forces of lines between ranks.
     procedure :: join_ranks
     !> Adds the forces of supported lines.
     procedure :: add_line_forces
@@ -58,7 +58,7 @@ contains
     type(support_t), intent(in) :: supports(:)
     !> This rank's points
     type(distribution_t), intent(in) :: distribution
-    !> Stiffness that stands for a rigid frame where its edge crosses a cell
+    !> Penalty stiffness of a rigid frame where its edge crosses a cell
     real(wp), intent(in) :: rigid
     !> The rigs at its points
     type(rig_model_t) :: self
@@ -98,7 +98,7 @@ contains
       end do
     end do
     call find_lines(mesh, plate, supports, distribution, rigid, self)
-    ! A frame supports the points below a clamp that presses; fixed points need neither frame nor clamp.
+    ! A frame supports the points below a clamp with a force; constrained points need neither frame nor clamp.
     where (self%presses > 0 .and. self%frame == 0) self%frame = self%clamps
     where (self%held_by > 0) self%frame = 0
     where (self%held_by > 0) self%presses = 0
@@ -115,7 +115,7 @@ contains
     type(support_t), intent(in) :: supports(:)
     !> This rank's elements
     type(distribution_t), intent(in) :: distribution
-    !> Stiffness that stands for a rigid frame
+    !> Penalty stiffness of a rigid frame
     real(wp), intent(in) :: rigid
     !> Receives the points
     type(rig_model_t), intent(inout) :: self
@@ -164,8 +164,7 @@ contains
     self%line_stiffness = [self%line_stiffness, stiffness]
   end subroutine add_line
 
-  !> Finds how the forces of lines are summed at points on the borders between ranks: in the order of the mesh.
-  !> Collective.
+  !> Prepares the sums of forces of lines at points on the borders between ranks, in the order of the mesh. Collective.
   subroutine join_ranks(self, communicator, halo)
     !> The rigs
     class(rig_model_t), intent(inout) :: self

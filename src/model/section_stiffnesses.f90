@@ -1,4 +1,4 @@
-!> Saves and loads the section stiffness that damage has left in the elements.
+!> Saves and loads the section stiffness of the damaged elements.
 module section_stiffnesses
   use kinds, only: wp
   use archives, only: archive_t

@@ -1,4 +1,4 @@
-!> The setup of a deck as plain parameters: a plate and its load case. Physics that it does not have costs nothing.
+!> The setup of a deck as plain parameters: a plate and its load case.
 module setups
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t
@@ -12,7 +12,7 @@ module setups
   private
   public :: setup_t
 
-  !> A load case together with the plate that it acts on: geometry, mesh, laminate and damage.
+  !> A load case and its plate: geometry, mesh, laminate and damage.
   type, extends(load_case_t) :: setup_t
     !> kinematics_von_karman or kinematics_linear
     integer :: kinematics = kinematics_von_karman
@@ -39,7 +39,7 @@ module setups
 
 contains
 
-  !> True: plies soften by their fracture energies, instead of losing stiffness at once.
+  !> True: plies soften by their fracture energies, instead of sudden failure.
   pure logical function has_crack_bands(self)
     !> The setup
     class(setup_t), intent(in) :: self

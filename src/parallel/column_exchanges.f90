@@ -23,7 +23,7 @@ module column_exchanges
 
 contains
 
-  !> Finds out with whom to exchange what, from lists that are the same on every rank. Collective.
+  !> Determines the exchange between ranks, from lists that are the same on every rank. Collective.
   function new_column_exchange(communicator, mine, groups) result(self)
     !> The ranks
     type(communicator_t), intent(in) :: communicator

@@ -150,7 +150,7 @@ contains
     call self%broadcast(text)
   end subroutine broadcast_text
 
-  !> Strings lists of reals together on every rank.
+  !> Concatenates lists of reals on every rank.
   subroutine allgather_reals(self, part, whole)
     class(communicator_t), intent(in) :: self
     !> This rank's list
@@ -169,7 +169,7 @@ contains
     end if
   end subroutine allgather_reals
 
-  !> Strings lists of integers together on every rank.
+  !> Concatenates lists of integers on every rank.
   subroutine allgather_integers(self, part, whole)
     class(communicator_t), intent(in) :: self
     !> This rank's list

@@ -1,4 +1,4 @@
-!> Points on the border between ranks: each point is owned by one rank and seen as a ghost by others.
+!> Points on the border between ranks: each point is owned by one rank and is a ghost on others.
 module halos
   use mpi_f08, only: MPI_Comm, MPI_INTEGER, MPI_Alltoall, MPI_Alltoallv
   use border_traffic, only: traffic_t, new_traffic, exchange, offsets
@@ -14,9 +14,9 @@ module halos
   type :: halo_t
     !> Number of points that this rank owns
     integer :: owned = 0
-    !> Number of points seen here but owned elsewhere
+    !> Number of ghosts
     integer :: ghosts = 0
-    !> Number of points seen here
+    !> Number of points on this rank
     integer :: points = 0
     !> Number of points of all ranks
     integer :: total = 0
@@ -29,7 +29,7 @@ module halos
     !> Owned points that others see, and ghosts
     type(traffic_t), private :: shared, ghosts_of_others
   contains
-    !> Finds out with whom to exchange what.
+    !> Determines the exchange of ghosts between ranks.
     procedure :: define
     !> Copies values of owned points to their ghosts.
     procedure :: update
@@ -39,7 +39,7 @@ module halos
 
 contains
 
-  !> Finds out with whom to exchange what; called by all ranks together.
+  !> Determines the exchange of ghosts between ranks. Collective.
   subroutine define(self, communicator, owned, ghost_numbers, error)
     class(halo_t), intent(inout) :: self
     !> All ranks
@@ -71,7 +71,7 @@ contains
     call exchange_lists(self, owner, ghost_numbers)
   end subroutine define
 
-  !> Informs the owners which of their points are seen here, and learns which are ghosts elsewhere.
+  !> Exchanges with other ranks which points are ghosts where.
   subroutine exchange_lists(self, owner, ghost_numbers)
     class(halo_t), intent(inout) :: self
     !> Owning rank of each ghost

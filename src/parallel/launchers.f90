@@ -6,8 +6,8 @@ module launchers
 
 contains
 
-  !> True if a launcher has started this process as one rank of a run: each of those it knows gives a process its rank
-  !> by a variable of the environment.
+  !> True if a launcher has started this process as a rank of a run: known launchers set the rank in an environment
+  !> variable.
   logical function launched()
     !> Open MPI; PMIx (srun, prterun); PMI (MPICH, Intel MPI, srun); MVAPICH2
     character(len=*), parameter :: variables(*) = [character(len=20) :: 'OMPI_COMM_WORLD_RANK', 'PMIX_RANK', &

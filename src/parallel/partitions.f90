@@ -1,5 +1,5 @@
-!> Who computes what: elements are shared out among the ranks so that few neighbours are separated,
-!> by METIS (Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998), which is deterministic.
+!> Partition of the elements over the ranks with a short border, by METIS (Karypis and Kumar, SIAM J. Sci. Comput. 20,
+!> 1998), which is deterministic.
 module partitions
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_ptr, c_null_ptr, c_loc
   use errors, only: error_t, fail, exit_usage, exit_internal

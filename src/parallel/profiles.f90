@@ -47,7 +47,7 @@ module profiles
     procedure :: leave
     !> The parts so far.
     procedure :: rows
-    !> Frees what copies share.
+    !> Deallocates the shared data.
     procedure :: release
   end type profile_t
 
@@ -65,14 +65,14 @@ module profiles
 contains
 
   !> Starts a profile. Processor time before it, for loading libraries, is its first part.
-  function new_profile(wanted) result(self)
+  function new_profile(requested) result(self)
     !> False: only the clock is read
-    logical, intent(in) :: wanted
+    logical, intent(in) :: requested
     !> The profile
     type(profile_t) :: self
 
     self%begun = wall_time()
-    if (.not. wanted) return
+    if (.not. requested) return
     allocate (self%record)
     associate (record => self%record)
       record%rows = [profile_row_t('program and libraries', calls=1), profile_row_t('rest', calls=1)]
@@ -148,7 +148,7 @@ contains
     rows = self%record%rows
   end function rows
 
-  !> Frees what copies share; none of them may be used again.
+  !> Deallocates the shared data; no copy may be used afterwards.
   subroutine release(self)
     class(profile_t), intent(inout) :: self
 

@@ -60,7 +60,7 @@ contains
   !> Sum of a real over the ranks.
   subroutine sum_real(self, value)
     class(rank_group_t), intent(in) :: self
-    !> This rank's share; the sum on return
+    !> This rank's contribution; the sum on return
     real(wp), intent(inout) :: value
 
     if (self%size == 1) return
@@ -70,7 +70,7 @@ contains
   !> Sum of a list of reals over the ranks, item by item.
   subroutine sum_reals(self, values)
     class(rank_group_t), intent(in) :: self
-    !> This rank's shares; the sums on return
+    !> This rank's contributions; the sums on return
     real(wp), contiguous, intent(inout) :: values(:)
 
     if (self%size == 1) return
@@ -80,7 +80,7 @@ contains
   !> Sum of a table of reals over the ranks, item by item.
   subroutine sum_table(self, values)
     class(rank_group_t), intent(in) :: self
-    !> This rank's shares; the sums on return
+    !> This rank's contributions; the sums on return
     real(wp), contiguous, intent(inout) :: values(:, :)
 
     if (self%size == 1) return
@@ -90,7 +90,7 @@ contains
   !> Sum of an integer over the ranks.
   subroutine sum_integer(self, value)
     class(rank_group_t), intent(in) :: self
-    !> This rank's share; the sum on return
+    !> This rank's contribution; the sum on return
     integer, intent(inout) :: value
 
     if (self%size == 1) return
@@ -100,7 +100,7 @@ contains
   !> Sum of a long integer over the ranks.
   subroutine sum_long(self, value)
     class(rank_group_t), intent(in) :: self
-    !> This rank's share; the sum on return
+    !> This rank's contribution; the sum on return
     integer(long), intent(inout) :: value
 
     if (self%size == 1) return
@@ -110,7 +110,7 @@ contains
   !> Sum of a list of long integers over the ranks, item by item.
   subroutine sum_longs(self, values)
     class(rank_group_t), intent(in) :: self
-    !> This rank's shares; the sums on return
+    !> This rank's contributions; the sums on return
     integer(long), contiguous, intent(inout) :: values(:)
 
     if (self%size == 1) return

@@ -1,4 +1,4 @@
-!> Totals over all ranks that depend neither on the number of ranks nor on who computes what: exact sums, rounded once.
+!> Totals over all ranks that do not depend on the number of ranks or the partition: exact sums, rounded once.
 module rank_totals
   use communicators, only: communicator_t
   use exact_sums, only: exact_sum_t

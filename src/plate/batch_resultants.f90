@@ -47,7 +47,7 @@ contains
     end do
   end subroutine in_plane_resultants
 
-  !> Adds to the strain energy what strains that go without stress change of it.
+  !> Adds the contribution of stress-free strains to the strain energy.
   pure subroutine add_free_energy(free, weight, s, energies)
     !> Their resultants Nxx to Mxy, and their energy per area
     real(wp), intent(in) :: free(lanes, 7)

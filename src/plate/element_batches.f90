@@ -154,7 +154,7 @@ contains
     first_element = (b - 1)*lanes + 1
   end function first_element
 
-  !> Allocates what this treatment of shear needs, the section set to zero.
+  !> Allocates the arrays for this treatment of shear, with zero section stiffness.
   subroutine allocate_batches(self)
     !> The batches, with their counts and their shear set
     type(element_batches_t), intent(inout) :: self

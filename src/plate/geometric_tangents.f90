@@ -42,7 +42,7 @@ contains
     end do
   end subroutine add_geometric_tangent
 
-  !> Adds what links w with w: membrane stiffness through the slopes, and membrane forces.
+  !> Adds the geometric stiffness between w and w: membrane stiffness through the slopes, and membrane forces.
   subroutine add_slope_stiffness(c, weight, x_slopes, y_slopes, slopes, forces, k)
     !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
@@ -83,7 +83,7 @@ contains
     end do
   end subroutine add_slope_stiffness
 
-  !> Adds what links the strains of u, v (through A) or of theta_x, theta_y (through B) with the slopes.
+  !> Adds the coupling of the slopes with the strains of u, v (by A) or of theta_x, theta_y (by B).
   subroutine add_coupling(c, first, weight, x_slopes, y_slopes, slopes, coupling)
     !> Stiffness 11, 12, 16, 22, 26, 66
     real(wp), intent(in) :: c(lanes, 6)

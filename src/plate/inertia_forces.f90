@@ -66,7 +66,7 @@ contains
   end subroutine momenta
 
   !> Adds the mass of all elements lumped at their nodes by summing the rows of the consistent mass; for this element
-  !> that is Simpson's nodal quadrature, so every share is positive.
+  !> this is Simpson's nodal quadrature, so that every nodal mass is positive.
   subroutine add_lumped_mass(batches, mass)
     !> The elements
     type(element_batches_t), intent(in) :: batches

@@ -1,5 +1,5 @@
-!> Transverse shear strains taken straight from the displacements at 3x3 or 2x2 points: full integration (which locks)
-!> and selective integration (which leaves one zero-energy mode), kept to show what the assumed strains do.
+!> Transverse shear strains from the displacements at 3x3 or 2x2 points: full integration, which locks, and selective
+!> integration, which has one zero-energy mode, for comparison with the assumed strains.
 module integrated_shear
   use kinds, only: wp
   use element_batches, only: lanes

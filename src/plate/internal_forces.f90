@@ -66,7 +66,7 @@ contains
     if (present(energies)) energy = sum(energies)
   end subroutine add_internal_force
 
-  !> Passes a law the strains that sections share. Collective.
+  !> Passes the strains of sections with a common state to a law. Collective.
   subroutine share_strains(batches, kinematics, u, law)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -105,7 +105,7 @@ contains
     call turn_into_forces(batches, b, c, kinematics_linear, slopes, strains, r, energies)
   end subroutine batch_force
 
-  !> Turns the unknowns of a batch, whose in-plane strains are known, into its nodal forces.
+  !> Computes the nodal forces of a batch from its unknowns and in-plane strains.
   pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)
     !> The elements
     type(element_batches_t), intent(in) :: batches

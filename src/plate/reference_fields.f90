@@ -28,8 +28,8 @@ contains
     end do
   end subroutine gather
 
-  !> Adds nodal forces of a batch to those of the points, element by element: how elements share batches then has no
-  !> influence on the order of a sum.
+  !> Adds nodal forces of a batch to those of the points, element by element, so that the order of sums does not depend
+  !> on the batches.
   pure subroutine scatter(targets, r, f)
     !> Column of each node
     integer, intent(in) :: targets(lanes, 9)

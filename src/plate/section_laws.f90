@@ -1,4 +1,4 @@
-!> Sections whose stiffness follows from their strains within the iteration of equilibrium, as that of softening plies.
+!> Sections with a stiffness that depends on their strains within the equilibrium iteration, such as softening plies.
 module section_laws
   use kinds, only: wp
   use element_batches, only: lanes
@@ -6,7 +6,7 @@ module section_laws
   private
   public :: section_law_t
 
-  !> What the sections of the elements remember, and how they respond to trial strains.
+  !> History variables of the element sections, and their response to trial strains.
   type, abstract :: section_law_t
   contains
     !> True where the strains of a batch must be known before any section softens; takes them; sends them to all ranks.
@@ -40,7 +40,7 @@ module section_laws
       real(wp), intent(in) :: strains(lanes, 9, 6)
     end subroutine take_batch
 
-    !> Sends what was set to all ranks. Collective.
+    !> Sends the strains set to all ranks. Collective.
     subroutine share_with_ranks(self)
       import :: section_law_t
       !> The law
@@ -50,7 +50,7 @@ module section_laws
     !> Stiffness of the sections of a batch under trial strains.
     subroutine soften_batch(self, b, weight, strains, stiffness, free)
       import :: section_law_t, wp, lanes
-      !> The law; remembers the trial
+      !> The law; stores the trial state
       class(section_law_t), intent(inout) :: self
       !> Number of the batch
       integer, intent(in) :: b

@@ -42,7 +42,8 @@ contains
           call in_plane_resultants(stiffness(:, :, b), weight, forces, unused)
           if (present(free)) call take_free_resultants(free(:, :, b), weight, forces)
           call in_plane_strains(inverse, kinematics, r, strains, change)
-          ! Strains of the motion alone have half the square of its slopes; their derivative has what follows instead.
+          ! The strains of the motion contain half the square of its slopes, which the derivative replaces by the
+          ! following terms.
           call change_strains(slopes, change, strains)
         else
           call in_plane_strains(inverse, kinematics_linear, r, strains, change)
@@ -67,7 +68,7 @@ contains
                        - change(:, :, 1)*change(:, :, 2)
   end subroutine change_strains
 
-  !> Turns a motion of a batch, whose change of in-plane strains is known, into its nodal forces.
+  !> Computes the nodal forces of a batch from a motion and its change of in-plane strains.
   pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -98,7 +99,7 @@ contains
     call add_shear_forces(batches, b, shear, r)
   end subroutine turn_into_forces
 
-  !> Adds the forces on w of membrane forces that turn with the slopes.
+  !> Adds the forces on w by membrane forces on the slopes.
   pure subroutine add_turned_forces(inverse, forces, change, f)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)

@@ -1,4 +1,4 @@
-!> Saves and loads what softening plies store as history variables.
+!> Saves and loads the history variables of softening plies.
 module band_archives
   use archives, only: archive_t
   use crack_bands, only: band_state_t
@@ -46,7 +46,7 @@ contains
                                               permanent=shear(1), accumulated=shear(2), &
                                               closed=closed(2*ply - 1:2*ply, element))
         end associate
-        ! What is loaded may come from an element that had more plies.
+        ! The loaded state may be that of an element with more plies.
         if (ply < range(1, element) .or. ply > range(2, element)) states(ply, element) = band_state_t()
       end do
     end do

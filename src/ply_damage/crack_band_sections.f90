@@ -31,7 +31,7 @@ module crack_band_sections
     type(band_state_t), allocatable :: accepted(:, :), trial(:, :)
     !> Section stiffness in the trial, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
-    !> Resultants of strains without stress in the trial, (lanes, 7, batches); unallocated: there are none
+    !> Resultants of stress-free strains in the trial, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
     !> Plies of the laminate
     type(ply_t), allocatable, private :: plies(:)
@@ -39,20 +39,20 @@ module crack_band_sections
     type(crack_band_t), allocatable, private :: bands(:)
     !> First and last ply of each element, (2, elements)
     integer, allocatable, private :: range(:, :)
-    !> Sides along x and y of each element and those that are one with it, (2, elements)
+    !> Sides along x and y of each element with those that share its state, (2, elements)
     real(wp), allocatable, private :: sides(:, :)
     !> Area of each element, (elements)
     real(wp), allocatable, private :: area(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
-    !> Strain below which no ply of the laminate can begin to be damaged
+    !> Strain below which damage starts in no ply of the laminate
     real(wp), private :: onset = 0
-    !> True where the trial is not the undamaged state, (elements)
+    !> True for elements with damage in the trial, (elements)
     logical, allocatable, private :: touched(:)
   contains
     !> Stiffness of the sections of a batch under trial strains.
     procedure :: soften
-    !> Strains of elements that are one with others.
+    !> Strains of elements that share their state.
     procedure :: needs
     procedure :: take
     procedure :: exchange
@@ -63,12 +63,12 @@ module crack_band_sections
     procedure :: dissipation_sums
     !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
-    !> Where fibres and matrix of one ply have failed, and where most of the matrix failed in compression.
+    !> Elements with failed fibres or matrix of a ply, and with matrix failure mostly in compression.
     procedure :: failed_parts
     procedure :: mostly_compressed
-    !> Constants left in a ply of an element.
+    !> Reduced elastic constants of a ply of an element.
     procedure :: elasticity
-    !> Neighbouring plies of an element with their permanent strains; resultants of strains without stress.
+    !> Adjacent plies of an element with their permanent strains; resultants of stress-free strains.
     procedure :: strained
     procedure, private :: free_resultants_of
     !> Saves or loads.
@@ -112,7 +112,7 @@ contains
     end do
   end function new_crack_band_sections
 
-  !> True where a batch has elements that share their state with others.
+  !> True for a batch with elements that share their state.
   pure logical function needs(self, b)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
@@ -163,7 +163,7 @@ contains
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(lanes, 21)
-    !> Resultants of strains without stress
+    !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
     type(strain_moments_t) :: moments
     real(wp) :: bounds(lanes)
@@ -206,7 +206,7 @@ contains
       do ply = first, last
         before = stiffness_lost(self%trial(ply, element))
         normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
-        ! A straight crack cuts elements of this mean area over its length: the sides' shadow across it.
+        ! Mean width of the elements normal to a straight crack.
         call strain_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                            dot_product(normal, self%sides([2, 1], element))], &
                          strains_of_ply(self%plies(ply), moments), self%accepted(ply, element), &
@@ -236,7 +236,7 @@ contains
     class(crack_band_sections_t), intent(inout) :: self
     !> Section stiffness, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
-    !> Resultants of strains without stress, (lanes, 7, batches); unallocated: there are none
+    !> Resultants of stress-free strains, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable, intent(inout) :: free(:, :, :)
     integer :: element
 
@@ -286,7 +286,7 @@ contains
   pure function dissipated(self) result(energies)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
-    !> In the order of the modes, permanent shear behind them
+    !> In the order of the modes, then permanent shear
     type(exact_sum_t) :: energies(energy_modes + 1)
     integer :: element, ply, mode
 
@@ -303,7 +303,7 @@ contains
     end do
   end function dissipated
 
-  !> Elements of this rank where fibres and matrix of one ply have failed.
+  !> Elements of this rank with failed fibres and with failed matrix of a ply.
   pure function failed_parts(self, ply)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
@@ -318,7 +318,7 @@ contains
     end do
   end function failed_parts
 
-  !> True where a ply's matrix has dissipated more in transverse compression than in tension.
+  !> True if the matrix of a ply has dissipated more energy in transverse compression than in tension.
   pure function mostly_compressed(self, ply)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
@@ -335,7 +335,7 @@ contains
     end do
   end function mostly_compressed
 
-  !> Constants left in a ply of an element.
+  !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
@@ -353,7 +353,7 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> First and last ply, and element of this rank
     integer, intent(in) :: first, last, element
-    !> They
+    !> The plies
     type(ply_t) :: plies(first:last)
     integer :: ply
 
@@ -363,7 +363,7 @@ contains
     end do
   end function strained
 
-  !> Resultants of strains without stress in the trial.
+  !> Resultants of stress-free strains in the trial.
   pure function free_resultants_of(self, element) result(resultants)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self

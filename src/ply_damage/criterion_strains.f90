@@ -1,4 +1,4 @@
-!> Strains that the failure criteria take their stresses from: means over each element.
+!> Strains for the failure criteria: means over each element.
 module criterion_strains
   use kinds, only: wp
   use element_batches, only: lanes, first_element

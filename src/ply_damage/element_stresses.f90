@@ -1,4 +1,4 @@
-!> Stresses of the plies in every element, averaged over its nine points as the failure criteria take them.
+!> Stresses of the plies in every element for the failure criteria, averaged over its nine points.
 module element_stresses
   use kinds, only: wp
   use plies, only: elasticity_t, ply_t
@@ -14,7 +14,7 @@ module element_stresses
 
 contains
 
-  !> Mean strains of every element, in the form that the stresses of its plies follow from.
+  !> Mean strains and shear forces of every element, from which the stresses of its plies are computed.
   function element_strains(model, failures, displacement) result(strains)
     type(model_t), intent(in) :: model
     !> Failures of its plies
@@ -31,12 +31,12 @@ contains
     end do
   end function element_strains
 
-  !> Stresses of one ply in its own axes, with the stiffness that failures have left.
+  !> Stresses of a ply in its own axes, with its reduced stiffness.
   pure function stresses_of_ply(model, failures, strains, ply) result(stresses)
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
-    !> Those of element_strains
+    !> Result of element_strains
     real(wp), intent(in) :: strains(:, :)
     !> Ply of the laminate
     integer, intent(in) :: ply
@@ -63,11 +63,11 @@ contains
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
-    !> Constants left in the ply
+    !> Reduced elastic constants of the ply
     type(elasticity_t), intent(in) :: elasticity
-    !> Those of element_strains
+    !> Result of element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate, and element of this rank that has it
+    !> Ply of the laminate, and element of this rank with this ply
     integer, intent(in) :: ply, element
     !> The stress
     real(wp) :: stress(5)
@@ -81,9 +81,9 @@ contains
   !> Transverse shear stress of one ply of one element.
   pure function shear_of_ply(model, strains, ply, element) result(shear)
     type(model_t), intent(in) :: model
-    !> Those of element_strains
+    !> Result of element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Ply of the laminate, and element of this rank that has it
+    !> Ply of the laminate, and element of this rank with this ply
     integer, intent(in) :: ply, element
     !> xz, yz
     real(wp) :: shear(2)

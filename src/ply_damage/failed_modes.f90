@@ -1,5 +1,5 @@
-!> Modes of failure that have occurred in the plies of every element, each at once and for good (section 3.2 of the
-!> paper), and the elastic constants left.
+!> Sudden failure of the plies of every element, irreversible in each mode (section 3.2 of the paper), and the reduced
+!> elastic constants.
 module failed_modes
   use kinds, only: wp
   use archives, only: archive_t
@@ -13,17 +13,17 @@ module failed_modes
   private
   public :: failed_modes_t, new_failed_modes
 
-  !> What has failed in this rank's elements.
+  !> Failed modes in this rank's elements.
   type :: failed_modes_t
-    !> True where a mode has occurred, (modes, plies, elements); unallocated: not modelled
+    !> True for failed modes, (modes, plies, elements); unallocated: not modelled
     logical, allocatable, private :: occurred(:, :, :)
   contains
     !> Finds the modes whose criteria are met for the first time.
     procedure :: find
-    !> Elastic constants left in a ply of an element, and in all its plies.
+    !> Reduced elastic constants of a ply of an element, and of all its plies.
     procedure :: elasticity
     procedure :: elasticities
-    !> Modes that have occurred in a ply.
+    !> Failed modes of a ply.
     procedure :: failed
     !> Saves or loads.
     procedure :: visit
@@ -70,7 +70,7 @@ contains
     end do
   end subroutine find
 
-  !> Elastic constants left in a ply of an element.
+  !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
     !> The modes
     class(failed_modes_t), intent(in) :: self
@@ -87,7 +87,7 @@ contains
       elasticity = degraded(elasticity, self%occurred(:, ply, element), model%setup%ply_damage)
   end function elasticity
 
-  !> Elastic constants left in the plies of an element.
+  !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element) result(elasticity)
     !> The modes
     class(failed_modes_t), intent(in) :: self
@@ -106,13 +106,13 @@ contains
     end associate
   end function elasticities
 
-  !> Modes that have occurred in a ply.
+  !> Failed modes of a ply.
   pure function failed(self, ply)
     !> The modes
     class(failed_modes_t), intent(in) :: self
     !> Ply of the laminate
     integer, intent(in) :: ply
-    !> True where a mode has occurred, (modes, elements)
+    !> True for failed modes, (modes, elements)
     logical, allocatable :: failed(:, :)
 
     failed = self%occurred(:, ply, :)
@@ -133,7 +133,7 @@ contains
                                                           size(self%occurred, 3)])
     call archive%field('ply_failure/occurred', model%distribution%elements, model%mesh%elements(), table)
     self%occurred = reshape(table, shape(self%occurred)) > 0
-    ! What is loaded may come from an element that had more plies.
+    ! The loaded state may be that of an element with more plies.
     do element = 1, size(self%occurred, 3)
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         do ply = 1, size(self%occurred, 2)

@@ -1,8 +1,8 @@
-!> Elements on both sides of a line through the struck point, or of one at which the model is cut. They are strained
-!> alike, so that plies would break in both at once where only one crack is meant. As far as damage goes they are one
-!> element, as wide as both, with one state a ply that the strains of both drive. With its mirror image an element
-!> shares its state anyway. In a half that a turn makes whole, the element beyond the cut is the image of one on the
-!> other side of the middle.
+!> Elements on both sides of a line through the struck point or of a symmetry line. Their strains are equal, so that
+!> plies would fail in both at once, with two crack bands instead of one. For damage they are one element with the width
+!> of both and one state per ply, computed from the strains of both. With mirror symmetry an element and its image have
+!> one state in any case. With point symmetry the element beyond the cut is the image of one on the other side of the
+!> centre.
 module joined_elements
   use column_exchanges, only: column_exchange_t, new_column_exchange
   use element_batches, only: batch_of
@@ -14,39 +14,39 @@ module joined_elements
   private
   public :: joined_elements_t, find_joined_elements
 
-  !> Most elements that are one
+  !> Largest number of elements with a common state
   integer, parameter :: most = 4
 
-  !> Elements that are one with others, of this rank and of all.
+  !> Elements that share their state with others, of this rank and of all.
   type :: joined_elements_t
-    !> True along x and y where an element of this rank goes on beyond its side, (2, elements)
+    !> True along x and y for an element of this rank joined with that beyond its side, (2, elements)
     logical, allocatable :: joined(:, :)
     !> Batches of this rank with elements that share their state with others
     logical, allocatable :: concerned(:)
     !> Number of each element of this rank among all that share their state; 0: it does not, (elements)
     integer, allocatable, private :: number(:)
-    !> Numbers of those that are one, ascending, then zeros, (most, numbers)
+    !> Numbers of the joined elements, ascending, then zeros, (most, numbers)
     integer, allocatable, private :: parts(:, :)
     !> Area of each, (numbers)
     real(wp), allocatable, private :: area(:)
-    !> Moments of the strains of each, a bound of its strains behind them, (moment_values + 1, numbers)
+    !> Moments of the strains of each, then a bound of its strains, (moment_values + 1, numbers)
     real(wp), allocatable, private :: moments(:, :)
     !> Sends the strains of elements joined across ranks
     type(column_exchange_t), private :: across
   contains
     !> True where an element shares its state with others.
     procedure :: shares
-    !> Takes an element's strains; sends them to the ranks that need them.
+    !> Stores an element's strains; sends them to the ranks that need them.
     procedure :: take
     procedure :: exchange
-    !> Strains of an element and those that are one with it, and their largest bound.
+    !> Strains of an element with those joined with it, and their largest bound.
     procedure :: strains_of
     procedure :: bound_of
   end type joined_elements_t
 
 contains
 
-  !> Finds the elements that are one with others. Collective.
+  !> Finds the elements that share their state with others. Collective.
   function find_joined_elements(model) result(self)
     type(model_t), intent(in) :: model
     !> The elements
@@ -81,9 +81,9 @@ contains
     self%across = new_column_exchange(model%communicator, mine, self%parts)
   end function find_joined_elements
 
-  !> Numbers those that are not zero one after the other.
+  !> Numbers the non-zero entries consecutively.
   pure subroutine number_them(numbers)
-    !> Zeros stay
+    !> Entries; zeros are unchanged
     integer, intent(inout) :: numbers(:)
     integer :: i, last
 
@@ -95,14 +95,14 @@ contains
     end do
   end subroutine number_them
 
-  !> The modelled elements that are one with an element, itself among them, ascending, then zeros; and along which of x
-  !> and y it goes on beyond its side. Where another one has other layers it stands alone.
+  !> The modelled elements joined with an element, including itself, ascending, then zeros, and the axes along which it
+  !> is joined beyond its side. Elements with other layers are not joined.
   pure subroutine find_parts(mesh, element, is_struck, parts, joined)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Element of the mesh
     integer, intent(in) :: element
-    !> True where something strikes the plate
+    !> True: there is an impactor
     logical, intent(in) :: is_struck
     !> Elements of the mesh
     integer, intent(out) :: parts(most)
@@ -132,7 +132,8 @@ contains
     end do
   end subroutine find_parts
 
-  !> Place of the modelled cell that lies beyond a cell's side on a line through the struck point, or whose image does.
+  !> Position of the modelled cell that lies, itself or its image, beyond a cell's side on a line through the struck
+  !> point.
   pure function place_beyond(mesh, place, direction) result(beyond)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -150,7 +151,7 @@ contains
     end if
   end function place_beyond
 
-  !> Inserts an element into an ascending list with zeros behind it, once.
+  !> Inserts an element once into an ascending list padded with zeros.
   pure subroutine insert(list, element)
     !> The list
     integer, intent(inout) :: list(most)
@@ -173,7 +174,7 @@ contains
     shares = self%number(element) > 0
   end function shares
 
-  !> Takes an element's strains.
+  !> Stores an element's strains.
   pure subroutine take(self, element, moments, bound)
     !> The elements
     class(joined_elements_t), intent(inout) :: self
@@ -181,7 +182,7 @@ contains
     integer, intent(in) :: element
     !> Its strains
     type(strain_moments_t), intent(in) :: moments
-    !> What none of its plies is strained beyond
+    !> Upper bound of the strains of its plies
     real(wp), intent(in) :: bound
 
     self%moments(:, self%number(element)) = [values_of(moments), bound]
@@ -195,7 +196,7 @@ contains
     call self%across%update(self%moments)
   end subroutine exchange
 
-  !> Strains of an element and those that are one with it: means over all their area.
+  !> Strains of an element with those joined with it: means over their total area.
   pure function strains_of(self, element) result(moments)
     class(joined_elements_t), intent(in) :: self
     !> Element of this rank that shares its state
@@ -208,7 +209,7 @@ contains
     moments = moments_from(matmul(self%moments(:moment_values, its), self%area(its))/sum(self%area(its)))
   end function strains_of
 
-  !> What no ply of an element and those that are one with it is strained beyond.
+  !> Upper bound of the strains of all plies of an element and those joined with it.
   pure real(wp) function bound_of(self, element) result(bound)
     class(joined_elements_t), intent(in) :: self
     !> Element of this rank that shares its state

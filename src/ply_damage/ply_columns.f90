@@ -1,4 +1,4 @@
-!> What the history reports of failed plies.
+!> Columns of the history for failed plies.
 module ply_columns
   use kinds, only: wp
   use models, only: model_t
@@ -8,7 +8,7 @@ module ply_columns
   private
   public :: ply_values, permanent_values
 
-  !> Failures in each mode, a ply counting once in each element, and the energies of plies that soften.
+  !> Failures in each mode, counted per ply and element, and energies of softening plies.
   character(len=result_row_length), parameter, public :: ply_rows(*) = [character(len=result_row_length) :: &
     'fibre_failures | integer | - | Plies of elements whose fibres have failed, counted over the full plate.', &
     'matrix_cracks | integer | - | Plies of elements whose matrix has cracked, counted over the full plate.', &
@@ -18,7 +18,7 @@ module ply_columns
     'energy_matrix_cracking | real | energy | Part of energy_ply_damage by matrix cracking in transverse tension.', &
     'energy_matrix_crushing | real | energy | Part of energy_ply_damage by matrix failure in transverse compression.']
 
-  !> Permanent strains of plies that soften.
+  !> Permanent strains of softening plies.
   character(len=result_row_length), parameter, public :: permanent_rows(*) = [character(len=result_row_length) :: &
     'energy_permanent_shear | real | energy | Part of energy_ply_damage by permanent shear strains of plies.']
 

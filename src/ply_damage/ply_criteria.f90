@@ -14,8 +14,8 @@ module ply_criteria
 
 contains
 
-  !> How near the plies of an element are to each mode of failure, whether or not they failed so before: 1 where the
-  !> criterion is met. Roots of the criteria's values, so that they grow with the load.
+  !> Failure indices of the plies of an element in each mode, failed or not: 1 where the criterion is met. They are
+  !> square roots of the criteria, so that they are proportional to the load.
   function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)

@@ -30,37 +30,37 @@ module ply_failures
     type(crack_band_sections_t), allocatable :: bands
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
-    !> Resultants of strains without stress that this stiffness leaves, (lanes, 7, batches); unallocated: there are none
+    !> Resultants of stress-free strains with this stiffness, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
-    !> True if failures reduced the stiffness after the last step
+    !> True if failures have reduced the stiffness after the last step
     logical :: softened = .false.
-    !> Energy dissipated in each mode by plies that soften, of the full plate
+    !> Energy dissipated in each mode by softening plies, of the full plate
     real(wp) :: dissipated(energy_modes) = 0
     !> Energy dissipated by their permanent shear strains
     real(wp) :: permanent_shear = 0
     !> Lag of damage: energy error of the last step relative to its limit
     real(wp) :: damage_lag = 0
-    !> True while plies that soften keep their stiffness, as a state is carried over to other layers
+    !> True while softening plies keep their stiffness, during the transfer of a state to other layers
     logical :: lagging = .false.
   contains
-    !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
+    !> Internal forces of the plate, with the stiffness reduced by softening under this displacement.
     procedure :: find_forces
-    !> Forces of the elements on the layers, with plies that soften as they are strained.
+    !> Forces of the elements on the layers, with softening plies.
     procedure :: add_layer_forces
     !> Books the energy dissipated by softening in a step, and measures the lag of damage.
     procedure :: book
     procedure :: measure_lag
-    !> Finds what plies that soften have dissipated so far.
+    !> Computes the energy dissipated by softening plies so far.
     procedure :: total_dissipation
     !> Neighbouring plies of an element with their permanent strains.
     procedure :: strained_plies
-    !> Modes that have occurred in a ply, and constants left in it.
+    !> Failed modes and reduced constants of a ply.
     procedure :: failed
     procedure :: elasticity
     procedure :: elasticities
     !> Finds new failures in an accepted state and reduces the stiffness.
     procedure :: grow
-    !> Gives elements that have come to have fewer plies their stiffness.
+    !> Computes the stiffness of elements split into layers.
     procedure :: restack
     !> Number of ply elements failed in each mode, of the full plate.
     procedure :: counts
@@ -86,7 +86,7 @@ contains
     end if
   end function new_ply_failure
 
-  !> Internal forces of the plate, with the stiffness that softening leaves under this displacement.
+  !> Internal forces of the plate, with the stiffness reduced by softening under this displacement.
   subroutine find_forces(self, model, displacement, force, energy)
     !> The failures; store the trial state
     class(ply_failure_t), intent(inout) :: self
@@ -108,8 +108,8 @@ contains
     end if
   end subroutine find_forces
 
-  !> Adds the forces of the elements on the layers, with plies that soften as they are strained; what they remember is
-  !> accepted at once. Collective.
+  !> Adds the forces of the elements on the layers, with softening plies; their history variables are accepted at once.
+  !> Collective.
   subroutine add_layer_forces(self, model, motion, force, energies)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
@@ -148,7 +148,7 @@ contains
     energy = sum(energies)
   end subroutine book
 
-  !> Finds what plies that soften have dissipated so far in each mode. Collective.
+  !> Computes the energy dissipated by softening plies so far in each mode. Collective.
   subroutine total_dissipation(self, model)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
@@ -161,16 +161,15 @@ contains
   end subroutine total_dissipation
 
   !> Measures the lag of damage: the difference of the work on softening plies and the energy they store and dissipate.
-  !> A
-  !> step past an instability reaches a state without the work that leads to it.
+  !> A step past an instability reaches a state without the work along the path.
   pure subroutine measure_lag(self, dissipated, stored, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> Energy that plies dissipate in the step
+    !> Energy dissipated by plies in the step
     real(wp), intent(in) :: dissipated
-    !> Energy that they store in it beyond the work on them
+    !> Change of their stored energy minus the work on them
     real(wp), intent(in) :: stored
-    !> Energy of the whole run so far
+    !> Total energy of the run so far
     real(wp), intent(in) :: energy
 
     self%damage_lag = 0
@@ -185,7 +184,7 @@ contains
     class(ply_failure_t), intent(in) :: self
     !> Ply of the laminate
     integer, intent(in) :: ply
-    !> True where a mode has occurred, (modes, elements)
+    !> True for failed modes, (modes, elements)
     logical, allocatable :: failed(:, :)
 
     if (.not. allocated(self%bands)) then
@@ -200,7 +199,7 @@ contains
     end associate
   end function failed
 
-  !> Constants left in a ply of an element.
+  !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
     !> The failures
     class(ply_failure_t), intent(in) :: self
@@ -224,14 +223,14 @@ contains
     type(model_t), intent(in) :: model
     !> First and last ply, and element of this rank
     integer, intent(in) :: first, last, element
-    !> They
+    !> The plies
     type(ply_t) :: plies(first:last)
 
     plies = model%plies(first:last)
     if (allocated(self%bands)) plies = self%bands%strained(first, last, element)
   end function strained_plies
 
-  !> Constants left in the plies of an element.
+  !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element)
     !> The failures
     class(ply_failure_t), intent(in) :: self
@@ -270,7 +269,7 @@ contains
     end do
   end subroutine grow
 
-  !> Gives one element the stiffness that failures have left.
+  !> Computes the reduced stiffness of an element.
   subroutine soften(self, model, element)
     !> The failures
     type(ply_failure_t), intent(inout) :: self
@@ -287,7 +286,7 @@ contains
     end associate
   end subroutine soften
 
-  !> Gives elements that have come to have fewer plies the stiffness that these have left.
+  !> Computes the reduced stiffness of elements that were split into layers, from their plies.
   subroutine restack(self, model, is_split)
     !> The failures, loaded from elements with more plies
     class(ply_failure_t), intent(inout) :: self

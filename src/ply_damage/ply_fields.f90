@@ -1,4 +1,4 @@
-!> What the field file holds of the plies: their failures, and their stresses in their own axes.
+!> Fields of the plies: failures, and stresses in their own axes.
 module ply_fields
   use element_stresses, only: element_strains, stresses_of_ply
   use errors, only: error_t
@@ -38,14 +38,14 @@ module ply_fields
 
 contains
 
-  !> Writes the fields that are wanted.
+  !> Writes the requested fields.
   subroutine write_ply_fields(model, plies, displacement, output, fields, error)
     type(model_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Which fields
+    !> Requested fields
     type(output_t), intent(in) :: output
     !> The file
     type(fields_file_t), intent(inout) :: fields
@@ -53,12 +53,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     character(len=*), parameter :: components(5) = [character(len=7) :: 'sigma11', 'sigma22', 'tau12', 'tau13', 'tau23']
     character(len=*), parameter :: places(3) = [character(len=7) :: '', '_top', '_bottom']
-    logical :: wanted(3)
+    logical :: requested(3)
     real(wp), allocatable :: strains(:, :), stresses(:, :, :), lost(:, :)
     integer :: ply, place, i
 
-    wanted = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
-    if (any(wanted)) strains = element_strains(model, plies, displacement)
+    requested = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
+    if (any(requested)) strains = element_strains(model, plies, displacement)
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
@@ -67,9 +67,9 @@ contains
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
           call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)
         end if
-        if (any(wanted)) stresses = stresses_of_ply(model, plies, strains, ply)
+        if (any(requested)) stresses = stresses_of_ply(model, plies, strains, ply)
         do place = 1, 3
-          if (.not. wanted(place)) cycle
+          if (.not. requested(place)) cycle
           do i = 1, merge(5, 3, place == 1)
             call fields%write_cell_field(name//trim(components(i))//trim(places(place)), stresses(i:i, place, :), error)
           end do
@@ -78,7 +78,7 @@ contains
     end do
   end subroutine write_ply_fields
 
-  !> Parts of E1 and E2 that one ply has lost.
+  !> Lost fractions of E1 and E2 of a ply.
   pure function stiffness_lost(model, plies, ply) result(lost)
     type(model_t), intent(in) :: model
     !> Failures of its plies
@@ -96,9 +96,9 @@ contains
     end do
   end function stiffness_lost
 
-  !> 1 for fibre failure, 2 for matrix cracking, 4 for crushing, added up.
+  !> Sum of 1 for fibre failure, 2 for matrix cracking, 4 for crushing.
   pure function failure_code(failed) result(code)
-    !> What failed in one ply, (3, elements)
+    !> Failed modes of a ply, (3, elements)
     logical, intent(in) :: failed(:, :)
     !> The sum, (1, elements)
     real(wp) :: code(1, size(failed, 2))

@@ -10,17 +10,17 @@ module checkpoint_seal
   private
   public :: seal, verify_seal, synchronise_folder, crc32
 
-  !> Bytes of the head of the file, which HDF5 leaves to its user.
+  !> Bytes of the head of the file, which HDF5 reserves for the user.
   integer, parameter, public :: head_length = 512
   !> First line of the head.
   character(len=*), parameter :: title = 'IMPLAM CHECKPOINT'
-  !> Second line of the head; the number changes whenever older files can't be read any more.
+  !> Second line of the head; the number changes when older files cannot be read.
   character(len=*), parameter :: format_line = 'format 2'
-  !> What ends a line.
+  !> End of a line.
   character(len=*), parameter :: end_of_line = new_line('a')
   !> Bytes read at a time.
   integer, parameter :: block_length = 1048576
-  !> CRC of nothing.
+  !> CRC of an empty file.
   integer(int32), parameter :: empty_crc = 0
   !> Polynomial of CRC-32 (IEEE 802.3), bits reversed: hexadecimal EDB88320.
   integer(int32), parameter :: polynomial = -306674912_int32
@@ -31,7 +31,7 @@ contains
   subroutine seal(path, error)
     !> Path of the file
     character(len=*), intent(in) :: path
-    !> Raised if the file can't be read or written
+    !> Set if the file cannot be read or written
     type(error_t), allocatable, intent(inout) :: error
     type(output_stream_t) :: file
     integer(long) :: bytes
@@ -121,7 +121,7 @@ contains
     close (unit, iostat=closed)
   end subroutine read_head
 
-  !> Length and checksum of what follows the head of a file.
+  !> Length and checksum of the body of a file.
   subroutine read_body(path, bytes, crc, status)
     !> Path of the file
     character(len=*), intent(in) :: path

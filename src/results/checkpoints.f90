@@ -28,7 +28,7 @@ module checkpoints
     type(provenance_t) :: provenance
     !> The file
     type(hdf5_file_t), private :: file
-    !> Path of the file in the end
+    !> Final path of the file
     character(len=:), allocatable, private :: path
   contains
     procedure :: open_for_saving
@@ -45,7 +45,7 @@ module checkpoints
 
 contains
 
-  !> Starts a checkpoint; the one before stays until this one is closed.
+  !> Starts a checkpoint; the previous one is kept until this one is closed.
   subroutine open_for_saving(self, communicator, path, provenance, error)
     !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
@@ -88,11 +88,11 @@ contains
     call self%file%close()
   end subroutine open_for_loading
 
-  !> Ends saving or loading, and reports all that went wrong meanwhile.
+  !> Ends saving or loading, and reports errors.
   subroutine close (self, error)
     !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Raised if an item couldn't be saved or loaded; the checkpoint before is then still there
+    !> Set if an item could not be saved or loaded; the previous checkpoint is then kept
     type(error_t), allocatable, intent(inout) :: error
 
     call self%file%close()
@@ -144,7 +144,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Path of the checkpoint
     character(len=*), intent(in) :: path
-    !> Its new path, whose file is replaced; empty: there was no checkpoint
+    !> Its new path, replacing a file of that name; empty: there was no checkpoint
     character(len=:), allocatable, intent(out) :: retired
     !> Raised if it can't be renamed
     type(error_t), allocatable, intent(inout) :: error
@@ -161,7 +161,7 @@ contains
 
   !> Seals the new file and gives it its name.
   subroutine put_in_place(path, error)
-    !> Path of the file in the end
+    !> Final path of the file
     character(len=*), intent(in) :: path
     !> Raised if one of these steps failed
     type(error_t), allocatable, intent(inout) :: error
@@ -171,7 +171,7 @@ contains
     if (.not. allocated(error)) call synchronise_folder(folder(path), error)
   end subroutine put_in_place
 
-  !> Removes a file, if it is there: what could not be finished would only take up room.
+  !> Removes an incomplete file, if it exists.
   subroutine remove_file(path)
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -183,9 +183,9 @@ contains
 
   !> Path of the file until it is complete.
   pure function aside(path)
-    !> Path of the file in the end
+    !> Final path of the file
     character(len=*), intent(in) :: path
-    !> Path meanwhile
+    !> Temporary path
     character(len=:), allocatable :: aside
 
     aside = path//'.tmp'
@@ -315,7 +315,7 @@ contains
     end if
   end subroutine table_item
 
-  !> Visits a field spread over the ranks, stored in global order.
+  !> Visits a field distributed over the ranks, stored in global order.
   subroutine field(self, name, columns, global_columns, value)
     !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
@@ -323,7 +323,7 @@ contains
     character(len=*), intent(in) :: name
     !> Global columns (from 1) of the leading columns of `value`
     integer, intent(in) :: columns(:)
-    !> Number of columns of the whole field
+    !> Number of columns of the global field
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
@@ -335,7 +335,7 @@ contains
     end if
   end subroutine field
 
-  !> Extents of a stored list or table, or zeros, which will not fit, if it has another rank or is not there.
+  !> Extents of a stored list or table; zeros, which do not fit, if it has another rank or does not exist.
   function extents_of(self, name, rank) result(extents)
     !> The checkpoint
     class(checkpoint_archive_t), intent(in) :: self

@@ -13,7 +13,7 @@ module field_datasets
 
 contains
 
-  !> Writes a scalar or vector field as it is and any other by components.
+  !> Writes a scalar or vector field unchanged, any other by components.
   subroutine write_field(file, rows, path, columns, global_columns, values, error)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -45,7 +45,7 @@ contains
     end select
   end subroutine write_field
 
-  !> Gives a dataset its unit and meaning out of the table.
+  !> Adds unit and meaning of the table to a dataset.
   subroutine explain_dataset(file, rows, path, error)
     !> The file
     type(hdf5_file_t), intent(inout) :: file

@@ -35,7 +35,7 @@ module fields_file
     character(len=:), allocatable :: base
     !> Name of the HDF5 file, without its folder
     character(len=:), allocatable :: name
-    !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
+    !> Modelled part of the plate: whole, quarter, half_x, half_y or point
     character(len=:), allocatable :: part
     !> The HDF5 file
     type(hdf5_file_t) :: file
@@ -43,7 +43,7 @@ module fields_file
     character(len=result_row_length), allocatable :: rows(:)
     !> XDMF text of each time written
     type(line_t), allocatable :: grids(:)
-    !> Number of the mesh that fields are on
+    !> Number of the mesh of the fields
     integer :: mesh = 0
     !> Group of the time being written
     character(len=:), allocatable :: time_group
@@ -95,7 +95,7 @@ contains
     character(len=*), intent(in) :: base
     !> The run
     type(provenance_t), intent(in) :: provenance
-    !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
+    !> Modelled part of the plate: whole, quarter, half_x, half_y or point
     character(len=*), intent(in) :: part
     !> Raised if the file can't be written
     type(error_t), allocatable, intent(inout) :: error
@@ -111,7 +111,7 @@ contains
     call self%close_file(error)
   end subroutine create
 
-  !> Makes sure, before anything is changed, that the file that is there, if any, is that of a deck.
+  !> Checks, before any change, that an existing file is that of the deck.
   subroutine check_deck(communicator, base, deck, error)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -119,7 +119,7 @@ contains
     character(len=*), intent(in) :: base
     !> Text of the deck
     character(len=*), intent(in) :: deck
-    !> Raised if it is that of another deck
+    !> Set if it is that of another deck
     type(error_t), allocatable, intent(inout) :: error
     type(hdf5_file_t) :: file
     character(len=:), allocatable :: found
@@ -145,9 +145,9 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
-    !> The run that goes on
+    !> The continued run
     type(provenance_t), intent(in) :: provenance
-    !> Which part of the plate is modelled: whole, quarter, half_x, half_y or point
+    !> Modelled part of the plate: whole, quarter, half_x, half_y or point
     character(len=*), intent(in) :: part
     !> Time of the checkpoint
     real(wp), intent(in) :: last_time
@@ -175,7 +175,7 @@ contains
     call self%close_file(error)
   end subroutine resume
 
-  !> Writes the mesh that the fields to come are on. Called at the start and whenever the mesh has changed.
+  !> Writes the mesh of the following fields. Called at the start and after changes of the mesh.
   subroutine write_mesh(self, points, global_points, coordinates, cells, global_cells, connectivity, names, &
                         values, error)
     !> The fields
@@ -184,7 +184,7 @@ contains
     integer, intent(in) :: points(:)
     !> Number of points on all ranks
     integer, intent(in) :: global_points
-    !> Places of these points (x, y, z by points)
+    !> Coordinates of these points (x, y, z by points)
     real(wp), intent(in) :: coordinates(:, :)
     !> Global numbers (from 1) of this rank's elements
     integer, intent(in) :: cells(:)
@@ -192,7 +192,7 @@ contains
     integer, intent(in) :: global_cells
     !> Global numbers of the nine points of each element, in the order 1 + i + 3 j (9 by elements)
     integer, intent(in) :: connectivity(:, :)
-    !> Names of what stays with the elements, such as their layer; may be none
+    !> Names of constant fields of the elements, such as their layer; may be empty
     character(len=*), intent(in) :: names(:)
     !> Constant fields of the elements (names by elements)
     integer, intent(in) :: values(:, :)
@@ -219,7 +219,7 @@ contains
     call self%close_file(error, group)
   end subroutine write_mesh
 
-  !> True if the mesh written last has so many points: layers only ever join a mesh.
+  !> True if the last mesh has this number of points: layers are only added to a mesh.
   pure logical function is_on(self, points)
     !> The fields
     class(fields_file_t), intent(in) :: self
@@ -284,11 +284,11 @@ contains
     call report(self, error)
   end subroutine write_cell_field
 
-  !> Writes values that every rank has, in columns, such as one for each interface.
+  !> Writes values known to every rank, in columns, such as one for each interface.
   subroutine write_figures(self, name, values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
-    !> What they are
+    !> Their name
     character(len=*), intent(in) :: name
     !> The figures (rows by columns)
     real(wp), intent(in) :: values(:, :)
@@ -300,11 +300,11 @@ contains
     call report(self, error)
   end subroutine write_figures
 
-  !> Ends the time: from now on the files show it.
+  !> Completes the time, so that the files contain it.
   subroutine finish(self, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
-    !> Raised if a field of this time couldn't be written
+    !> Set if a field of this time could not be written
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: grid
 
@@ -325,7 +325,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
-    !> Which part of the plate is modelled
+    !> Modelled part of the plate
     character(len=*), intent(in) :: part
 
     self%communicator = communicator
@@ -348,12 +348,12 @@ contains
     if (allocated(self%file%failure)) call self%close_file(error)
   end subroutine open_file
 
-  !> Closes NAME.h5. If what was added can't be written, as when the disk is full, it is taken out again, so that what
-  !> was there before stays readable.
+  !> Closes NAME.h5. If an added group cannot be written, as on a full disk, it is removed again, so that the previous
+  !> content remains readable.
   subroutine close_file(self, error, added)
     !> The fields
     class(fields_file_t), intent(inout) :: self
-    !> Raised if anything went wrong since it was opened
+    !> Set if there was an error since it was opened
     type(error_t), allocatable, intent(inout) :: error
     !> Group that was added
     character(len=*), intent(in), optional :: added
@@ -363,7 +363,7 @@ contains
     call report(self, error)
   end subroutine close_file
 
-  !> Raises an error if there was trouble with NAME.h5.
+  !> Sets an error if there was a failure with NAME.h5.
   subroutine report(self, error)
     !> The fields
     class(fields_file_t), intent(in) :: self
@@ -374,7 +374,7 @@ contains
       'Trouble with the field file '//self%base//'.h5: '//self%file%failure//'.')
   end subroutine report
 
-  !> Drops the times after a checkpoint and describes the others.
+  !> Removes the times after a checkpoint and describes the others.
   subroutine drop_times_after(self, last_time)
     !> The fields
     class(fields_file_t), intent(inout) :: self

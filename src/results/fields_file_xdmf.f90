@@ -1,4 +1,4 @@
-!> NAME.xdmf: describes to ParaView and the like what lies where in NAME.h5.
+!> NAME.xdmf: description of the content of NAME.h5 for ParaView and similar programs.
 module fields_file_xdmf
   use errors, only: error_t, exit_files, fail
   use files, only: rename_file
@@ -14,7 +14,7 @@ module fields_file_xdmf
 
 contains
 
-  !> Describes one time as an XDMF grid, from what is in the open file.
+  !> Describes one time as an XDMF grid, from the open file.
   subroutine grid_of_time(file, name, time_group, grid)
     !> The open file
     type(hdf5_file_t), intent(inout) :: file
@@ -22,7 +22,7 @@ contains
     character(len=*), intent(in) :: name
     !> Path of the group of that time
     character(len=*), intent(in) :: time_group
-    !> The XML text; empty if there is trouble
+    !> The XML text; empty after an error
     character(len=:), allocatable, intent(out) :: grid
     character(len=:), allocatable :: mesh
     integer, allocatable :: shape_of_cells(:), shape_of_points(:), mesh_number(:), step(:)
@@ -86,9 +86,9 @@ contains
   subroutine write_xdmf(path, part, grids, error)
     !> Path of the document
     character(len=*), intent(in) :: path
-    !> Which part of the plate the file holds
+    !> Part of the plate in the file
     character(len=*), intent(in) :: part
-    !> One grid a time
+    !> One grid per time
     type(line_t), intent(in) :: grids(:)
     !> Raised if it can't be written
     type(error_t), allocatable, intent(inout) :: error
@@ -145,7 +145,7 @@ contains
   pure function line(depth, content)
     !> Depth of indentation
     integer, intent(in) :: depth
-    !> What it says
+    !> Its content
     character(len=*), intent(in) :: content
     !> The line with its end
     character(len=:), allocatable :: line
@@ -153,7 +153,7 @@ contains
     line = repeat('  ', depth)//content//new_line('a')
   end function line
 
-  !> A name with XML's own characters written out.
+  !> A name with the special characters of XML escaped.
   pure function escaped(name)
     !> The name
     character(len=*), intent(in) :: name

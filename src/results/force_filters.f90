@@ -1,9 +1,9 @@
-!> Low pass of the contact force, as amplifiers of test rigs have one: Butterworth's of 4th order. It is causal, so that
+!> Low-pass filter of the contact force, as in amplifiers of test rigs: Butterworth of 4th order. It is causal, so that
 !> the filtered force lags by 2.6 over the corner's angular frequency.
 !>
-!> Two sections x'' + 2 zeta omega x' + omega**2 x = omega**2 f follow each other, zeta the cosine of pi/8 and of 3 pi/8
-!> (S. Butterworth, Experimental Wireless 7 (1930) 536). The trapezoidal rule takes each over a step of any length; it
-!> keeps a constant force and is stable.
+!> Two sections x'' + 2 zeta omega x' + omega**2 x = omega**2 f in series, with zeta = cos(pi/8) and cos(3 pi/8) (S.
+!> Butterworth, Experimental Wireless 7 (1930) 536). Each is integrated by the trapezoidal rule, which is stable for any
+!> step and exact for a constant force.
 module force_filters
   use archives, only: archive_t
   use kinds, only: wp
@@ -12,23 +12,23 @@ module force_filters
   private
   public :: force_filter_t
 
-  !> What a result says of it.
+  !> Name of the filter in results.
   character(len=*), parameter, public :: filter_kind = 'Butterworth low pass of 4th order, causal'
   !> Damping of the two sections.
   real(wp), parameter :: damping(2) = [cos(pi/8), cos(3*pi/8)]
 
   !> A filter and its state.
   type :: force_filter_t
-    !> Corner frequency, at which a half of the power passes; 0: everything passes
+    !> Corner frequency (half power); 0: no filter
     real(wp) :: frequency = 0
-    !> What comes out
+    !> Filtered force
     real(wp) :: force = 0
     !> Input at the end of the last step
     real(wp), private :: input = 0
     !> Output of each section, and its rate over omega, (2, sections)
     real(wp), private :: state(2, 2) = 0
   contains
-    !> Takes a step.
+    !> Advances the filter by a step.
     procedure :: advance
     !> Saves or loads.
     procedure :: visit
@@ -36,7 +36,7 @@ module force_filters
 
 contains
 
-  !> Takes a step.
+  !> Advances the filter by a step.
   pure subroutine advance(self, step, force)
     !> The filter
     class(force_filter_t), intent(inout) :: self
@@ -53,7 +53,7 @@ contains
     input = [self%input, force]
     do section = 1, 2
       associate (x => self%state(1, section), v => self%state(2, section), zeta => damping(section))
-        ! v' = omega (f - x - 2 zeta v), x' = omega v, both by their means over the step.
+        ! v' = omega (f - x - 2 zeta v), x' = omega v by the trapezoidal rule.
         before = x
         rate = (v*(1 - 2*zeta*half - half**2) + half*(sum(input) - 2*x))/(1 + 2*zeta*half + half**2)
         x = x + half*(v + rate)

@@ -1,5 +1,5 @@
-!> Numbers and text in a shared HDF5 file: arrays that every rank has, and tables whose columns are distributed over the
-!> ranks but stored in global order. Every routine is collective.
+!> Numbers and text in a shared HDF5 file: arrays known to every rank, and tables with columns distributed over the
+!> ranks and stored in global order. Every routine is collective.
 module hdf5_data
   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
     h5t_native_integer, h5t_std_i32le, h5tclose_f, h5tcopy_f, h5tget_size_f, h5tset_size_f, hid_t, size_t
@@ -14,7 +14,7 @@ module hdf5_data
 
 contains
 
-  !> Writes reals that every rank has.
+  !> Writes reals known to every rank.
   subroutine write_reals(file, name, values, extents)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -47,7 +47,7 @@ contains
     values = buffer(:product(extents))
   end subroutine read_reals
 
-  !> Writes integers that every rank has.
+  !> Writes integers known to every rank.
   subroutine write_integers(file, name, values, extents)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -80,7 +80,7 @@ contains
     values = buffer(:product(extents))
   end subroutine read_integers
 
-  !> Writes a text that every rank has.
+  !> Writes a text known to every rank.
   subroutine write_text(file, name, value)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -133,7 +133,7 @@ contains
     end do
   end subroutine read_text
 
-  !> Writes a table of reals whose columns are spread over the ranks.
+  !> Writes a table of reals with columns distributed over the ranks.
   subroutine write_real_columns(file, name, columns, global_columns, values)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -143,7 +143,7 @@ contains
     integer, intent(in) :: columns(:)
     !> Number of columns on all ranks
     integer, intent(in) :: global_columns
-    !> The table; columns after size(columns) are left alone
+    !> The table; columns after size(columns) are ignored
     real(wp), intent(in) :: values(:, :)
     real(wp), allocatable, target :: buffer(:)
     integer, allocatable :: order(:)
@@ -154,7 +154,7 @@ contains
              table_extents(size(values, 1), global_columns), columns(order))
   end subroutine write_real_columns
 
-  !> Reads a table of reals whose columns are spread over the ranks.
+  !> Reads a table of reals with columns distributed over the ranks.
   subroutine read_real_columns(file, name, columns, global_columns, values)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -164,7 +164,7 @@ contains
     integer, intent(in) :: columns(:)
     !> Number of columns on all ranks
     integer, intent(in) :: global_columns
-    !> The table; columns after size(columns) are left alone, and all if there is trouble
+    !> The table; columns after size(columns) are unchanged, and all after an error
     real(wp), intent(inout) :: values(:, :)
     real(wp), allocatable, target :: buffer(:)
     integer, allocatable :: order(:)
@@ -181,7 +181,7 @@ contains
     end do
   end subroutine read_real_columns
 
-  !> Writes a table of integers whose columns are spread over the ranks.
+  !> Writes a table of integers with columns distributed over the ranks.
   subroutine write_integer_columns(file, name, columns, global_columns, values)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -191,7 +191,7 @@ contains
     integer, intent(in) :: columns(:)
     !> Number of columns on all ranks
     integer, intent(in) :: global_columns
-    !> The table; columns after size(columns) are left alone
+    !> The table; columns after size(columns) are ignored
     integer, intent(in) :: values(:, :)
     integer, allocatable, target :: buffer(:)
     integer, allocatable :: order(:)
@@ -202,9 +202,9 @@ contains
              table_extents(size(values, 1), global_columns), columns(order))
   end subroutine write_integer_columns
 
-  !> Extents under which a table is stored: one number a column makes a list.
+  !> Extents of a stored table: one number per column is a list.
   pure function table_extents(height, global_columns) result(extents)
-    !> Numbers a column
+    !> Numbers per column
     integer, intent(in) :: height
     !> Number of columns on all ranks
     integer, intent(in) :: global_columns
@@ -230,7 +230,7 @@ contains
     order = pack(position, position > 0)
   end function ascending_order
 
-  !> Columns that this rank writes of an array that every rank has: all on the first rank.
+  !> Columns that this rank writes of an array known to every rank: all on the first rank.
   pure function shares_of_root(file, extents) result(columns)
     !> The file
     type(hdf5_file_t), intent(in) :: file

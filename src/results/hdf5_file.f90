@@ -15,8 +15,8 @@ module hdf5_file
   private
   public :: hdf5_file_t, files_left_open
 
-  !> Bytes reserved on the disk while data are written, and freed before the file is closed, for the metadata of HDF5.
-  !> It crashes or hangs when it can't close a file.
+  !> Bytes reserved on the disk while data are written, and freed before the file is closed, for the metadata of HDF5,
+  !> which crashes or hangs if it cannot close a file.
   integer, parameter :: reserved_bytes = 1048576
 
   !> An open file.
@@ -40,8 +40,8 @@ module hdf5_file
   contains
     procedure :: create
     procedure :: open
-    procedure, private :: hold_reserve
-    procedure, private :: give_up_reserve
+    procedure, private :: write_reserve
+    procedure, private :: remove_reserve
     procedure :: close
     procedure :: check_status
     procedure :: succeeded
@@ -68,7 +68,7 @@ contains
     integer :: status, closed
 
     call start_over(self, communicator)
-    call self%hold_reserve(path)
+    call self%write_reserve(path)
     if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5pcreate_f(h5p_file_create_f, creation_list, status)
@@ -94,7 +94,7 @@ contains
     integer :: status, closed
 
     call start_over(self, communicator)
-    if (writable) call self%hold_reserve(path)
+    if (writable) call self%write_reserve(path)
     if (allocated(self%failure)) return
     call prepare(self, access_list)
     call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
@@ -103,7 +103,7 @@ contains
     call self%check_status(status, 'the file could not be opened')
   end subroutine open
 
-  !> Forgets the file before.
+  !> Resets the error and the file.
   subroutine start_over(self, communicator)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -114,8 +114,8 @@ contains
     self%communicator = communicator
   end subroutine start_over
 
-  !> Writes the reserve beside the file; if there is no space for it the error comes before HDF5 opens the file.
-  subroutine hold_reserve(self, path)
+  !> Writes the reserve file; without space for it the error is set before HDF5 opens the file.
+  subroutine write_reserve(self, path)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path of the file
@@ -129,11 +129,11 @@ contains
       call stream%close()
     end if
     call self%check_status(merge(-1, 0, stream%failed), 'the folder cannot be written to or the disk is full')
-    if (allocated(self%failure)) call self%give_up_reserve()
-  end subroutine hold_reserve
+    if (allocated(self%failure)) call self%remove_reserve()
+  end subroutine write_reserve
 
   !> Removes the reserve.
-  subroutine give_up_reserve(self)
+  subroutine remove_reserve(self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: unit, status
@@ -144,7 +144,7 @@ contains
       deallocate (self%reserve)
     end if
     call self%communicator%barrier()
-  end subroutine give_up_reserve
+  end subroutine remove_reserve
 
   !> Starts the library if need be, silences its own messages and makes the property lists.
   subroutine prepare(self, access_list)
@@ -173,8 +173,8 @@ contains
     call h5pset_obj_track_times_f(self%undated, .false., status)
   end subroutine prepare
 
-  !> Keeps the library from locking the file, as it does on several ranks: a program that reads results while they are
-  !> written would end the run.
+  !> Disables locking of the file, as on several ranks: otherwise a program that reads results while they are written
+  !> would end the run.
   subroutine leave_unlocked(access_list)
     use, intrinsic :: iso_c_binding, only: c_bool, c_int, c_int64_t
     !> Property list for opening the file
@@ -185,7 +185,7 @@ contains
         import :: c_bool, c_int, c_int64_t
         !> Property list for opening the file
         integer(c_int64_t), value :: list
-        !> Whether files are locked, and whether a file system that cannot lock is borne with
+        !> True: files are locked; true: file systems without locking are accepted
         logical(c_bool), value :: use_locks, ignore_when_disabled
       end function set_locking
     end interface
@@ -194,14 +194,14 @@ contains
     ignored = set_locking(int(access_list, c_int64_t), .false._c_bool, .true._c_bool)
   end subroutine leave_unlocked
 
-  !> Closes the file, if it was opened or that was tried.
+  !> Closes the file, also after a failure to open it.
   subroutine close (self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: status, closed
 
     if (self%together < 0) return
-    call self%give_up_reserve()
+    call self%remove_reserve()
     status = 0
     if (self%is_open) call h5fclose_f(self%id, status)
     self%is_open = .false.
@@ -212,15 +212,15 @@ contains
     call self%check_status(status, 'the file could not be closed')
   end subroutine close
 
-  !> Whether the library still has a file open on this rank: it could not close it, and crashes when it tries again at
-  !> its end, which is part of MPI's.
+  !> True if the library has failed to close a file on this rank; it would crash in a second attempt during the
+  !> finalization of MPI.
   logical function files_left_open()
     use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_size_t
     interface
-      !> HDF5 in C; the Fortran one takes the objects off that the library began with, of whatever kind is counted.
+      !> HDF5 in C; the Fortran interface subtracts the initial objects of the library, of any kind.
       integer(c_size_t) function count_objects(file, kinds) bind(c, name='H5Fget_obj_count')
         import :: c_int, c_int64_t, c_size_t
-        !> Which file, or all
+        !> A file, or all
         integer(c_int64_t), value :: file
         !> Kinds of objects to count
         integer(c_int), value :: kinds
@@ -245,7 +245,7 @@ contains
     if (self%communicator%any(status < 0)) self%failure = failure
   end subroutine check_status
 
-  !> Whether nothing has failed so far.
+  !> True if there was no error so far.
   pure logical function succeeded(self)
     !> The file
     class(hdf5_file_t), intent(in) :: self
@@ -253,7 +253,7 @@ contains
     succeeded = self%is_open .and. .not. allocated(self%failure)
   end function succeeded
 
-  !> Whether there is a group or dataset of that path.
+  !> True if there is a group or dataset of that path.
   logical function exists(self, path)
     !> The file
     class(hdf5_file_t), intent(in) :: self
@@ -282,7 +282,7 @@ contains
     call self%check_status(status, 'group '//path//' could not be made')
   end subroutine make_group
 
-  !> Removes a group with all that is in it, or a dataset.
+  !> Removes a group with its content, or a dataset.
   subroutine remove(self, path)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -303,7 +303,7 @@ contains
     character(len=*), intent(in) :: path
     integer :: status
 
-    call self%give_up_reserve()
+    call self%remove_reserve()
     if (self%is_open) call h5ldelete_f(self%id, path, status)
   end subroutine discard
 

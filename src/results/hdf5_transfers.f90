@@ -1,5 +1,5 @@
-!> Transfers between memory and a shared HDF5 file, whatever the kind of number: each rank brings or
-!> takes some of the columns (along the last extent) of an array. Every routine is collective.
+!> Transfers of any type of numbers between memory and a shared HDF5 file: each rank writes or reads some of the columns
+!> (along the last extent) of an array. Every routine is collective.
 module hdf5_transfers
   use hdf5, only: h5dclose_f, h5dcreate_f, h5dget_space_f, h5dopen_f, h5dread_f, h5dwrite_f, h5s_scalar_f, &
     h5s_select_set_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5sget_simple_extent_dims_f, &
@@ -47,7 +47,7 @@ contains
     integer(hid_t), intent(in) :: stored_type
     !> Type of the numbers in memory
     integer(hid_t), intent(in) :: native_type
-    !> Where this rank's columns lie in memory, one after the other
+    !> Address of this rank's columns in memory, contiguous
     type(c_ptr), intent(in) :: address
     !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
@@ -77,7 +77,7 @@ contains
     character(len=*), intent(in) :: name
     !> Type of the numbers in memory
     integer(hid_t), intent(in) :: native_type
-    !> Where this rank's columns are to lie in memory, one after the other
+    !> Address for this rank's columns in memory, contiguous
     type(c_ptr), intent(in) :: address
     !> Required extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
@@ -150,7 +150,7 @@ contains
     integer(hid_t), intent(in) :: space
     !> 1: a list, 2: a table
     integer, intent(in) :: rank
-    !> Numbers a column
+    !> Numbers per column
     integer, intent(in) :: height
     !> Columns of this rank (from 1, ascending)
     integer, intent(in) :: columns(:)

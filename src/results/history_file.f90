@@ -1,5 +1,5 @@
-!> NAME_history.csv: a row an accepted step, in columns of fixed width, numbers exact to the last bit. Only the first
-!> rank writes, yet every routine is collective, so that all ranks agree on errors.
+!> NAME_history.csv: a row per accepted step, in columns of fixed width, numbers exact to the last bit. Only the first
+!> rank writes, but every routine is collective, so that all ranks agree on errors.
 module history_file
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, exit_internal, fail
@@ -89,7 +89,7 @@ contains
     logical, intent(in) :: whole(:)
     !> Rows written when the checkpoint was
     integer, intent(in) :: rows_to_keep
-    !> Values of the last of them, those of the first rank count; none if there were no rows
+    !> Values of the last of them, of the first rank; empty without rows
     real(wp), intent(in) :: last_row(:)
     !> Raised if the file can't be written or is the history of another run
     type(error_t), allocatable, intent(inout) :: error
@@ -124,7 +124,7 @@ contains
   subroutine write_row(self, values, error)
     !> The history
     class(history_file_t), intent(inout) :: self
-    !> One number a column; those of the first rank count
+    !> One number per column, of the first rank
     real(wp), intent(in) :: values(:)
     !> Raised if the row can't be written
     type(error_t), allocatable, intent(inout) :: error
@@ -147,7 +147,7 @@ contains
     call self%check(error)
   end subroutine write_row
 
-  !> Hands all rows to the operating system, as is due before a checkpoint.
+  !> Flushes all rows, as required before a checkpoint.
   subroutine flush(self, error)
     !> The history
     class(history_file_t), intent(inout) :: self
@@ -174,7 +174,7 @@ contains
   subroutine check(self, error)
     !> The history
     class(history_file_t), intent(in) :: self
-    !> Raised if so
+    !> Set if so
     type(error_t), allocatable, intent(inout) :: error
 
     if (self%file%failed) call fail(error, exit_files, "Can't write the history "//self%path &
@@ -183,7 +183,7 @@ contains
   end subroutine check
 
   !> Copies the header and the first rows of a history.
-  subroutine keep_rows(from, to, expected, wanted, last, kept, error)
+  subroutine keep_rows(from, to, expected, rows_to_keep, last, kept, error)
     !> Path of the history
     character(len=*), intent(in) :: from
     !> Path of the copy
@@ -191,7 +191,7 @@ contains
     !> Header the history must have
     character(len=*), intent(in) :: expected
     !> Rows to keep
-    integer, intent(in) :: wanted
+    integer, intent(in) :: rows_to_keep
     !> The last of them; empty: none
     character(len=*), intent(in) :: last
     !> Rows kept: fewer if there are not that many
@@ -214,12 +214,12 @@ contains
     if (status /= 0 .or. found /= expected//new_line('a')) then
       call fail(error, exit_files, 'The history '//from//' has other columns than this run writes; move it away.')
     else
-      call measure_rows(unit, len(found, long), wanted, bytes, kept)
-      same = kept < wanted
+      call measure_rows(unit, len(found, long), rows_to_keep, bytes, kept)
+      same = kept < rows_to_keep
       if (.not. same) same = ends_with(unit, bytes, last)
       if (.not. same) then
         call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
-                  to_text(wanted)//' differs; move it away, or take the checkpoint of that run.')
+                  to_text(rows_to_keep)//' differs; move it away, or take the checkpoint of that run.')
       else
         call copy%open(to, 'w')
         call copy_bytes(unit, bytes, copy)
@@ -230,11 +230,11 @@ contains
     close (unit, iostat=status)
   end subroutine keep_rows
 
-  !> Whether the beginning of a file ends with a certain line.
+  !> True if the first part of a file ends with a given line.
   logical function ends_with(unit, bytes, line)
     !> Unit of the file
     integer, intent(in) :: unit
-    !> Length of the beginning
+    !> Length of the first part
     integer(long), intent(in) :: bytes
     !> The line, without its end; empty: any
     character(len=*), intent(in) :: line
@@ -247,14 +247,14 @@ contains
     ends_with = status == 0 .and. found == new_line('a')//line//new_line('a')
   end function ends_with
 
-  !> Finds where the last row to keep ends. A row without its line end was cut by a kill and does not count.
-  subroutine measure_rows(unit, header_bytes, wanted, bytes, kept)
+  !> Finds the end of the last row to keep. A row without line end was truncated by a kill and is ignored.
+  subroutine measure_rows(unit, header_bytes, rows_to_keep, bytes, kept)
     !> Unit of the history
     integer, intent(in) :: unit
     !> Length of the header
     integer(long), intent(in) :: header_bytes
     !> Rows to keep
-    integer, intent(in) :: wanted
+    integer, intent(in) :: rows_to_keep
     !> Length of the header and the rows to keep
     integer(long), intent(out) :: bytes
     !> Number of these rows
@@ -267,24 +267,24 @@ contains
     bytes = header_bytes
     place = header_bytes
     inquire (unit, size=length)
-    do while (place < length .and. kept < wanted)
+    do while (place < length .and. kept < rows_to_keep)
       block = ''
       read (unit, pos=place + 1, iostat=status) block(:min(length - place, len(block, long)))
       do i = 1, block_length
         if (block(i:i) /= new_line('a')) cycle
         kept = kept + 1
         bytes = place + i
-        if (kept == wanted) exit
+        if (kept == rows_to_keep) exit
       end do
       place = place + block_length
     end do
   end subroutine measure_rows
 
-  !> Copies the beginning of a file.
+  !> Copies the first part of a file.
   subroutine copy_bytes(unit, bytes, copy)
     !> Unit of the file
     integer, intent(in) :: unit
-    !> How much to copy
+    !> Length to copy
     integer(long), intent(in) :: bytes
     !> Where to
     type(output_stream_t), intent(inout) :: copy

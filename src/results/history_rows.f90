@@ -1,5 +1,5 @@
-!> Header and rows of a history as text. Cells of a row are filled with blanks in front, so that columns stand below
-!> each other and every reader of CSV takes them for numbers. Names have none: many readers would keep them.
+!> Header and rows of a history as text. Cells of a row are right-aligned by blanks, which all readers of CSV accept
+!> before numbers. Names have no blanks, which many readers would keep.
 module history_rows
   use kinds, only: long, wp
   use text, only: to_text
@@ -7,7 +7,7 @@ module history_rows
   private
   public :: header, row, widths_of
 
-  !> Characters of the longest text of a double, -1.2345678901234567e-100, and of a count read at a glance.
+  !> Characters of the longest text of a double, -1.2345678901234567e-100, and of a count.
   integer, parameter :: longest_real = 24, longest_count = 10
 
 contains

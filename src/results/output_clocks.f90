@@ -7,19 +7,19 @@ module output_clocks
   private
   public :: clock_t, next_event, shown_time
 
-  !> Distance of two events, relative to their time, that rounding may bring about.
+  !> Relative round-off of the time of events.
   real(wp), parameter :: rounding = 1.0e-12_wp
 
-  !> A clock that strikes at every multiple of an interval.
+  !> A clock with events at multiples of an interval.
   type :: clock_t
-    !> Interval; 0: the clock never strikes
+    !> Interval; 0: no events
     real(wp) :: interval = 0
-    !> Strikes so far
+    !> Events so far
     integer :: strikes = 0
   contains
-    !> Time of the next strike.
+    !> Time of the next event.
     procedure :: next
-    !> True, once, when the event has been reached that the next strike is part of.
+    !> True, once, when the next event of this clock has been reached.
     procedure :: strikes_at
     !> Saves or loads the clock.
     procedure :: visit
@@ -28,13 +28,13 @@ module output_clocks
 
 contains
 
-  !> Time of the next event: the earliest strike of some clocks, or the end if that is one event with it.
+  !> Time of the next event: the earliest of some clocks, or the end if it coincides with it.
   pure real(wp) function next_event(clocks, end, closest) result(event)
     !> The clocks
     type(clock_t), intent(in) :: clocks(:)
     !> End of the run
     real(wp), intent(in) :: end
-    !> Distance up to which events are one, >= 0
+    !> Distance up to which events coincide, >= 0
     real(wp), intent(in) :: closest
     integer :: i
 
@@ -54,7 +54,7 @@ contains
     read (digits, *) shown_time
   end function shown_time
 
-  !> Time of the next strike; huge if there is none.
+  !> Time of the next event; huge without one.
   pure real(wp) function next(self)
     !> The clock
     class(clock_t), intent(in) :: self
@@ -63,25 +63,25 @@ contains
     if (self%interval > 0) next = self%interval*(self%strikes + 1)
   end function next
 
-  !> Distance of an event up to which the next strike is part of it. Half an interval at most, or strikes of the clock
-  !> itself would be lost.
+  !> Distance up to which the next event of the clock coincides with another one; at most half an interval, so that no
+  !> event is lost.
   pure real(wp) function margin(self, closest)
     !> The clock
     class(clock_t), intent(in) :: self
-    !> Distance up to which events are one, >= 0
+    !> Distance up to which events coincide, >= 0
     real(wp), intent(in) :: closest
 
     margin = 0
     if (self%interval > 0) margin = max(min(closest, self%interval/2), rounding*self%next())
   end function margin
 
-  !> True if the next strike is part of the event that has been reached; it is then past.
+  !> True if the next event of the clock coincides with the event reached; the clock then advances.
   logical function strikes_at(self, event, closest)
     !> The clock
     class(clock_t), intent(inout) :: self
     !> Time of the event, from `next_event`
     real(wp), intent(in) :: event
-    !> Distance up to which events are one, >= 0
+    !> Distance up to which events coincide, >= 0
     real(wp), intent(in) :: closest
 
     strikes_at = self%next() <= event + self%margin(closest)

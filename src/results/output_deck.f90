@@ -36,21 +36,21 @@ module output_deck
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
       &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, separated by commas.']
 
-  !> Fields written unless the deck chooses: all but the stresses, which are many, and the onset.
+  !> Default fields: all but the stresses, which are many, and the onset index.
   character(len=*), parameter :: usual_fields = &
     field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
     field_delamination//','//field_energy_release//','//field_ply_damage
 
-  !> Most events of a run: more pass the range of default integers.
+  !> Largest number of events of a run, within the range of default integers.
   real(wp), parameter :: max_events = 1.0e8_wp
   !> Fraction of a step below which an interval is reported.
   real(wp), parameter :: short = 0.5_wp
 
 contains
 
-  !> What is written.
+  !> The output.
   subroutine fill_output(settings, output)
-    !> Keys in effect; gets the fields that are usual
+    !> Keys in effect; receives the default fields
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(output_t), intent(inout) :: output
@@ -65,7 +65,7 @@ contains
     output%fields = lower_case(joined(words_of(joined(settings%texts_of(group, 'fields'), ','), ','), ','))
   end subroutine fill_output
 
-  !> Intervals far below the step, which shorten every step.
+  !> Reports intervals far below the step, which would shorten every step.
   subroutine check_intervals(settings, step, end, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -90,11 +90,11 @@ contains
     end do
   end subroutine check_intervals
 
-  !> Requested fields of physics that isn't modelled.
+  !> Remarks on requested fields of physics that is not modelled.
   subroutine remark_idle_fields(settings, output, has_interfaces, has_ply_damage, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> What is written
+    !> The output
     type(output_t), intent(in) :: output
     !> True: there are interfaces that may delaminate
     logical, intent(in) :: has_interfaces

@@ -18,28 +18,28 @@ module output_parameters
     character(len=:), allocatable :: directory
     !> Time between rows of the history; 0: every accepted step
     real(wp) :: history_every = 0
-    !> Accepted steps between rows if no time is given
+    !> Accepted steps between rows without a time interval
     integer :: steps_between_rows = 1
     !> Time between fields written; 0: only the last
     real(wp) :: fields_every = 0
     !> Time between checkpoints; 0: none but at a queue's signal
     real(wp) :: checkpoint_every = 0
-    !> True: the end of the run is kept as a checkpoint, from which another deck may begin
+    !> True: a checkpoint is written at the end of the run, from which another deck may start
     logical :: checkpoint_at_end = .true.
     !> Corner frequency of the low pass for the contact force; 0: none
     real(wp) :: force_filter = 0
-    !> Names of the fields wanted, in lower case, separated by commas without blanks
+    !> Names of the requested fields, in lower case, separated by commas without blanks
     character(len=:), allocatable :: fields
   contains
-    !> True if a field is wanted.
+    !> True if a field is requested.
     procedure :: requests
   end type output_t
 
 contains
 
-  !> True if a field is wanted.
+  !> True if a field is requested.
   pure logical function requests(self, field)
-    !> What is written
+    !> The output
     class(output_t), intent(in) :: self
     !> Name of the field
     character(len=*), intent(in) :: field

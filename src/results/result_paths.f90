@@ -6,14 +6,14 @@ module result_paths
   private
   public :: refuse_pipes
 
-  !> Endings of all files that a run opens, those written aside included.
+  !> Suffixes of all files that a run opens, including temporary ones.
   character(len=*), parameter :: endings(*) = [character(len=24) :: '.log', '_history.csv', '_history.csv.tmp', '.h5', &
     '.h5.reserve', '.xdmf', '.xdmf.tmp', '_summary.json', '_summary.json.tmp', '_restart.h5', '_restart.h5.tmp', &
     '_restart.h5.tmp.reserve']
 
 contains
 
-  !> Makes sure that none of the files is a pipe: to open one waits until another program reads it, perhaps for ever.
+  !> Checks that none of the files is a pipe: opening one would wait until another program reads it.
   subroutine refuse_pipes(base, error)
     !> Folder and name that all results share
     character(len=*), intent(in) :: base

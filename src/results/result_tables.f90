@@ -36,11 +36,11 @@ contains
     character(len=*), intent(in) :: row
     !> Number of the cell, from 1
     integer, intent(in) :: number
-    !> Without blanks around it; empty if the row has fewer cells
+    !> Its content without blanks; empty if the row has fewer cells
     character(len=:), allocatable :: content
     integer :: start, length, k
 
-    ! Not by a list of texts, which gfortran 12 leaks: fields are looked up at every time written.
+    ! Without a list of texts, which gfortran 12 leaks, as fields are looked up at every output time.
     start = 1
     do k = 2, number
       start = start + length_to_bar(row(start:)) + 1
@@ -49,7 +49,7 @@ contains
     content = trim(adjustl(row(start:start + length - 1)))
   end function cell
 
-  !> Characters before the next bar, or all there are.
+  !> Number of characters before the next bar, or of all.
   pure integer function length_to_bar(rest) result(length)
     !> Rest of a row
     character(len=*), intent(in) :: rest
@@ -58,8 +58,8 @@ contains
     if (length < 0) length = len(rest)
   end function length_to_bar
 
-  !> Row of the field of that name; numbers between underscores stand for N if there is no row of the name as it is.
-  !> 0 if there is none.
+  !> Row of the field of that name, with numbers between underscores replaced by N if there is no row of the name
+  !> itself; 0: none.
   pure integer function field_row(rows, name) result(place)
     !> The table
     character(len=*), intent(in) :: rows(:)

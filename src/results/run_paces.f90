@@ -6,20 +6,21 @@ module run_paces
   private
   public :: run_pace_t
 
-  !> Seconds over which the pace is taken at least, and twice that at most: long beside the scatter of single steps.
+  !> Shortest time in seconds over which the speed is measured, at most twice: long compared with the scatter of single
+  !> steps.
   real(wp), parameter :: window = 10
 
   !> Two marks of progress; the older one is the reference of the present speed.
   type :: run_pace_t
     private
-    !> Clock in seconds, and what of the run is done, steps or time: at the older mark, and at the newer
+    !> Clock in seconds and completed steps or time, at the older and at the newer mark
     real(wp) :: older(2) = 0, newer(2) = 0
   contains
     !> Starts, also after a restart.
     procedure :: start
-    !> Notes how far the run is.
+    !> Stores the progress of the run.
     procedure :: note
-    !> Seconds left.
+    !> Remaining seconds.
     procedure :: left
   end type run_pace_t
 
@@ -36,7 +37,7 @@ contains
     self%newer = self%older
   end subroutine start
 
-  !> Notes how far the run is.
+  !> Stores the progress of the run.
   pure subroutine note(self, clock, done)
     !> The pace
     class(run_pace_t), intent(inout) :: self

@@ -1,4 +1,4 @@
-!> How far the run is: a bar on a terminal, an occasional line elsewhere, with the time left.
+!> Progress of the run: a bar on a terminal, lines at intervals elsewhere, with the remaining time.
 module run_progress
   use kinds, only: long, wp
   use logger, only: log_t
@@ -10,9 +10,9 @@ module run_progress
 
   !> Seconds between two drawings of the bar.
   real(wp), parameter :: between_bars = 0.2_wp
-  !> Seconds between two lines, if not enough was done meanwhile.
+  !> Seconds between two lines, unless the next fraction is completed earlier.
   real(wp), parameter :: between_lines = 10
-  !> Part of the run between two lines, if it took less time.
+  !> Fraction of the run between two lines, if completed earlier.
   real(wp), parameter :: part_between_lines = 0.1_wp
   !> Characters of the bar.
   integer, parameter :: bar_length = 30
@@ -20,13 +20,13 @@ module run_progress
   !> Progress of one run.
   type :: progress_t
     private
-    !> How fast it goes
+    !> Its speed
     type(run_pace_t) :: pace
-    !> Part done when it was last shown
+    !> Completed fraction at the last output
     real(wp) :: shown = 0
-    !> Clock when this process took the run up
+    !> Clock at the start of this process
     integer(long) :: started = 0
-    !> Clock when progress was last shown
+    !> Clock at the last output
     integer(long) :: shown_at = 0
   contains
     procedure :: start
@@ -41,7 +41,7 @@ contains
   subroutine start(self, fraction, done)
     !> The progress
     class(progress_t), intent(inout) :: self
-    !> Part of the run done already: 0, or more after a restart
+    !> Completed fraction of the run: 0, or more after a restart
     real(wp), intent(in) :: fraction
     !> The same in the unit of the run: steps, or time
     real(wp), intent(in) :: done
@@ -53,13 +53,13 @@ contains
     call self%pace%start(0.0_wp, done)
   end subroutine start
 
-  !> True: it is time to show how far the run is.
+  !> True: progress is due for output.
   logical function is_due(self, log, fraction)
     !> The progress
     class(progress_t), intent(in) :: self
-    !> Where it is shown
+    !> The log
     type(log_t), intent(in) :: log
-    !> Part of the run done
+    !> Completed fraction of the run
     real(wp), intent(in) :: fraction
     integer(long) :: now, rate
     real(wp) :: since
@@ -73,13 +73,13 @@ contains
     end if
   end function is_due
 
-  !> Shows how far the run is.
+  !> Prints the progress.
   subroutine update(self, log, fraction, done, left, text)
     !> The progress
     class(progress_t), intent(inout) :: self
-    !> Where it is shown
+    !> The log
     type(log_t), intent(inout) :: log
-    !> Part of the run done
+    !> Completed fraction of the run
     real(wp), intent(in) :: fraction
     !> Completed and remaining part, in one unit: steps, or time
     real(wp), intent(in) :: done, left
@@ -107,7 +107,7 @@ contains
   subroutine finish(self, log, text)
     !> The progress
     class(progress_t), intent(in) :: self
-    !> Where it is said
+    !> The log
     type(log_t), intent(inout) :: log
     !> How the run ended
     character(len=*), intent(in) :: text
@@ -117,9 +117,9 @@ contains
     call log%note(text//' after '//duration(real(now - self%started, wp)/rate))
   end subroutine finish
 
-  !> Time left in words.
+  !> Remaining time in words.
   pure function time_left(seconds) result(left)
-    !> Seconds left; negative: not known
+    !> Remaining seconds; negative: not known
     real(wp), intent(in) :: seconds
     !> The time, or a question mark
     character(len=:), allocatable :: left

@@ -1,4 +1,4 @@
-!> Where a result comes from: every output carries it, so that it can be traced and repeated.
+!> Provenance of a result, stored in every output, so that it can be traced and repeated.
 module run_provenance
   use logger, only: log_t
   use text, only: to_text
@@ -18,15 +18,15 @@ module run_provenance
     character(len=:), allocatable :: petsc_version
   end type build_t
 
-  !> What a run is made of.
+  !> Provenance of a run.
   type, extends(build_t) :: provenance_t
-    !> Text of the deck, as the user wrote it
+    !> Text of the deck
     character(len=:), allocatable :: deck
     !> Name of the case, by default that of the deck's file; empty: not given
     character(len=:), allocatable :: case_name
     !> Units of the deck; empty: any consistent ones
     character(len=:), allocatable :: units
-    !> Values in effect that are from a table which the deck refers to; empty: none
+    !> Values in effect from the table of published materials; empty: none
     character(len=:), allocatable :: library
     !> Date and time the run started, local time with its distance from UTC, ISO 8601
     character(len=:), allocatable :: started

@@ -5,44 +5,44 @@ module wall_limits
   private
   public :: wall_limit_t
 
-  !> Longest steps so far that are kept in reserve: the next one may take twice as long as any before, and the
-  !> checkpoint takes its time too.
+  !> Reserve, in durations of the longest step so far: two for the next step, which may take longer, and one for the
+  !> checkpoint.
   real(wp), parameter :: reserve = 3
   !> Seconds for the start and end of the process.
   real(wp), parameter :: outside = 2
 
-  !> A limit, and what its reserve is measured by.
+  !> A limit with the data of its reserve.
   type :: wall_limit_t
-    !> Seconds granted; 0: as many as it takes
+    !> Permitted seconds; 0: no limit
     real(wp) :: granted = 0
-    !> Clock when they began
+    !> Clock at their start
     real(wp) :: begun = 0
-    !> Seconds of the longest step so far, its results included
+    !> Duration of the longest step so far in seconds, including output
     real(wp), private :: longest = 0
   contains
-    !> Learns how long a step took.
+    !> Stores the duration of a step.
     procedure :: note_step
-    !> True if another step might take too long.
+    !> True if another step might exceed the limit.
     procedure :: is_up
   end type wall_limit_t
 
 contains
 
-  !> Learns how long a step took.
+  !> Stores the duration of a step.
   pure subroutine note_step(self, seconds)
     !> The limit
     class(wall_limit_t), intent(inout) :: self
-    !> Seconds that a step took, its results included
+    !> Duration of a step in seconds, including output
     real(wp), intent(in) :: seconds
 
     self%longest = max(self%longest, seconds)
   end subroutine note_step
 
-  !> True if another step might take too long.
+  !> True if another step might exceed the limit.
   pure logical function is_up(self, now)
     !> The limit
     class(wall_limit_t), intent(in) :: self
-    !> Clock now
+    !> Present clock
     real(wp), intent(in) :: now
 
     is_up = self%granted > 0 .and. now - self%begun + reserve*self%longest + outside > &

@@ -52,7 +52,7 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> Step
     real(wp), intent(in) :: step
-    !> Steps taken at most
+    !> Largest number of steps
     integer, intent(in) :: max_steps
     !> True: all steps are taken; false: the calculation ends once the contact is over
     logical, intent(in) :: to_the_end

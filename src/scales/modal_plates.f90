@@ -28,9 +28,9 @@ module modal_plates
   !> free end at 3.516 instead of 9.870, and 15.42 for the first bending of one that turns about its support.
   real(wp), parameter :: shortened_clamped = 0.719_wp, shortened_one_clamped = 0.846_wp, &
                          lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
-  !> Most modes along one direction; the deflection by higher ones is below what an estimate needs.
+  !> Largest number of modes along one direction; the deflection by higher ones is negligible for an estimate.
   integer, parameter :: max_modes = 300
-  !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up.
+  !> Shortest half wave of the modes in the sum along one direction, as a fraction of the patch.
   real(wp), parameter :: part_of_patch = 0.25_wp
 
 contains

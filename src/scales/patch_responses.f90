@@ -33,7 +33,7 @@ module patch_responses
     real(wp) :: step = 0
     !> Deflection per force at the end of the same step
     real(wp) :: immediate = 0
-    !> Deflection so many steps after a force of one at the end of a step
+    !> Deflection at a number of steps after a unit force at the end of a step
     real(wp), allocatable :: later(:)
     !> Deflection at the ends of all steps by the forces that have been looked ahead with
     real(wp), allocatable :: predicted(:)
@@ -51,7 +51,7 @@ contains
     type(modal_plate_t), intent(in) :: plate
     !> Step
     real(wp), intent(in) :: step
-    !> Steps at most
+    !> Largest number of steps
     integer, intent(in) :: steps
     !> True: all of them will be taken
     logical, intent(in) :: to_the_end

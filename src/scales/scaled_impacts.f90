@@ -1,4 +1,4 @@
-!> How far inertia may be scaled: what scaled rotary inertia changes of a preliminary elastic impact.
+!> Permitted scaling of inertia, by the effect of scaled rotary inertia on a preliminary elastic impact.
 module scaled_impacts
   use elastic_impacts, only: difference, elastic_impact_t
   use kinds, only: wp

@@ -60,13 +60,13 @@ module setup_elastic_impacts
   real(wp), parameter :: max_fine = 128
   !> Most steps of an elastic impact: they take a tenth of a second, and a run of as many hours.
   integer, parameter :: max_steps = 262144
-  !> Steps that a contact takes at least.
+  !> Smallest number of steps per contact.
   integer, parameter :: min_steps = 24
   !> Elements in a wave of first contact with an error of 1 %, and the power of the error that their side grows with.
   !> With 3.1 and 3.5 the peak of two random setups was 1.33 and 1.09 % off; the history's error falls with the power
   !> 3.6 of their number.
   real(wp), parameter :: wave_elements = 4.5_wp, wave_power = 1/3.6_wp
-  !> The fewest elements in a wave that this holds for.
+  !> Smallest number of elements per wave for which this is valid.
   real(wp), parameter :: fewest_elements = 3.1_wp
   !> Relative error of a mode's frequency on elements of side e is (kappa e)**4 times this, kappa its wave number.
   !> Calibrated by `tests/bench/elastic_models.py`.
@@ -217,7 +217,7 @@ contains
     error = (wave_elements*min(edge/scales%wave_length, 1/fewest_elements))**(1/wave_power)/200
   end function error_with
 
-  !> The largest step whose errors stay within bounds.
+  !> The largest step with errors within bounds.
   pure subroutine largest_step(self, end, bounds, step, error)
     !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
@@ -262,7 +262,7 @@ contains
     end if
   end subroutine largest_step
 
-  !> The largest elements whose errors stay within bounds.
+  !> The largest elements with errors within bounds.
   pure function largest_cell(self, step, end, bounds, follows) result(cell)
     !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self

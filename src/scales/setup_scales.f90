@@ -1,4 +1,4 @@
-!> Scales of a setup from its parameters alone: what its mesh and its steps have to resolve.
+!> Scales of a setup that its mesh and steps have to resolve, from its parameters alone.
 module setup_scales
   use delamination_parameters, only: toughnesses
   use interface_strengths, only: interlaminar_strengths
@@ -43,7 +43,7 @@ module setup_scales
 
   !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
   real(wp), parameter :: hertz_duration = 2.943_wp
-  !> A frequency that no mode has and whose square is finite.
+  !> A frequency above all modes with a finite square.
   real(wp), parameter :: all_modes = 1.0e100_wp
 
 contains
@@ -115,9 +115,9 @@ contains
                            loaded_side(setup), cutoff)
   end function plate_modes
 
-  !> Lengths of what bends of the plate: all of it, or the window of its frame. A circular window counts as the square
-  !> with the same first frequency, simply supported: 4.977/(radius)**2 for nu = .3 (Leissa, Vibration of Plates, NASA
-  !> SP-160, 1969, table 2.4) and 2 pi**2/side**2.
+  !> Lengths of the free span of the plate: the full plate, or the window of its frame. A circular window counts as the
+  !> square with the same first frequency, simply supported: 4.977/(radius)**2 for nu = .3 (Leissa, Vibration of Plates,
+  !> NASA SP-160, 1969, table 2.4) and 2 pi**2/side**2.
   pure function free_span(setup) result(length)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -173,7 +173,7 @@ contains
     side = sqrt(pi*radius*indentation) + sum(setup%laminate%thickness)
   end function contact_side
 
-  !> Force at the middle under which the least tough of the setup's interfaces begin to grow.
+  !> Delamination threshold force of the interfaces with the smallest toughness.
   pure real(wp) function growth_threshold(setup, bending) result(force)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -191,8 +191,8 @@ contains
     if (size(setup%delaminations) > 0) force = threshold_force(bending, least, size(setup%delaminations))
   end function growth_threshold
 
-  !> Force at which stresses between two plies reach the strength just beside the loaded patch. The shear force is
-  !> spread evenly over the patch's four sides, and decreases from there on as round a circle of that circumference.
+  !> Force at which interlaminar stresses reach the strength next to the loaded patch. The shear force is distributed
+  !> uniformly over the four sides of the patch, and decreases outside as around a circle of this circumference.
   pure real(wp) function onset_force(setup) result(force)
     !> The setup
     type(setup_t), intent(in) :: setup

@@ -1,4 +1,4 @@
-!> Systems of units that decks are written in, and values whose size does not fit the system.
+!> Systems of units of decks, and recognition of values that do not fit the system.
 module unit_systems
   use kinds, only: wp
   use text, only: lower_case
@@ -48,8 +48,8 @@ module unit_systems
     'MPa', 't/mm^3', 'mm', 'mm', 'mm', 't', 'mm/s', 'N/mm', 's', &
     'GPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'm/s', 'kN/mm', 'ms', &
     'kPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'mm/s', 'mN/mm', 's'], [9, 4])
-  !> Least and largest that plates, impactors and their materials have, SI. Moduli reach from foam to diamond, densities
-  !> from foam to platinum, velocities from a tool that slips to a fragment, strengths from glue to fibres.
+  !> Smallest and largest usual values of plates, impactors and their materials, SI. Moduli reach from foam to diamond,
+  !> densities from foam to platinum, velocities from a tool that slips to a fragment, strengths from glue to fibres.
   real(wp), parameter :: least(quantities) = &
     [1.0e7_wp, 10.0_wp, 1.0e-3_wp, 2.0e-5_wp, 1.0e-4_wp, 1.0e-6_wp, 0.05_wp, 5.0_wp, 1.0e-8_wp, 1.0e5_wp]
   real(wp), parameter :: largest(quantities) = &

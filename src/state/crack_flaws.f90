@@ -1,4 +1,4 @@
-!> Cracks of plies next to an interface, and the flaws that they leave there.
+!> Flaws of interfaces by cracks of adjacent plies.
 module crack_flaws
   use delamination_parameters, only: law_cohesive
   use element_stresses, only: element_strains, has_ply, stress_of_ply
@@ -18,8 +18,7 @@ module crack_flaws
 
 contains
 
-  !> Reduces the strength of interfaces within a block's thickness of where the ply above or below has cracked across
-  !> its fibres.
+  !> Reduces the strength of interfaces within the thickness of a block from matrix cracks of the ply above or below.
   !> Collective.
   subroutine note_flaws(model, plies, displacement, interfaces)
     type(model_t), intent(in) :: model
@@ -50,9 +49,8 @@ contains
     end do
   end subroutine note_flaws
 
-  !> Reduces the strength of an interface beside cracks of transverse shear in a ply: what bears no more shear cannot
-  !> hand it on, so its
-  !> strength is that of the ply to transverse shear. Collective.
+  !> Reduces the strength of an interface beside cracks by transverse shear in a ply: a cracked ply transmits no more
+  !> than its own shear strength. Collective.
   subroutine weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
     type(model_t), intent(in) :: model
     !> Failures of the plies in the accepted state
@@ -61,7 +59,7 @@ contains
     real(wp), intent(in) :: strains(:, :)
     !> Index of the zone, and ply of the laminate
     integer, intent(in) :: zone, ply
-    !> Distance from a crack that is weakened, length
+    !> Distance from a crack within which strengths are reduced
     real(wp), intent(in) :: reach
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
@@ -77,7 +75,7 @@ contains
                                      reach, part)
   end subroutine weaken_by_shear
 
-  !> Cells in which a ply has begun to crack or bears no more of its stresses, transverse shear counted, on any rank.
+  !> Cells in which a ply has started to crack or reaches its strength with transverse shear included, on all ranks.
   !> Collective.
   function sheared_cells(model, plies, strains, zone, ply, reach, strengths) result(cracked)
     type(model_t), intent(in) :: model
@@ -87,7 +85,7 @@ contains
     real(wp), intent(in) :: strains(:, :)
     !> Index of the zone, and ply of the laminate
     integer, intent(in) :: zone, ply
-    !> Distance from a crack that is weakened, length
+    !> Distance from a crack within which strengths are reduced
     real(wp), intent(in) :: reach
     !> The ply's strengths
     type(matrix_strengths_t), intent(in) :: strengths
@@ -110,7 +108,7 @@ contains
     cracked = cells_of(model, cracks)
   end function sheared_cells
 
-  !> Cells in which a ply has cracked across its fibres, on any rank. Collective.
+  !> Cells with matrix cracks in a ply, on all ranks. Collective.
   function cracked_cells(model, plies, ply) result(cracked)
     type(model_t), intent(in) :: model
     !> Failures of the plies
@@ -125,7 +123,7 @@ contains
     cracked = cells_of(model, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
   end function cracked_cells
 
-  !> Cells of elements, on any rank. Collective.
+  !> Cells of elements, on all ranks. Collective.
   function cells_of(model, elements) result(cells)
     type(model_t), intent(in) :: model
     !> True for elements of this rank, (elements)

@@ -1,5 +1,5 @@
-!> The dent that an impact leaves, as a depth gauge measures it on the struck face: from the plane of the surface around
-!> it to the deepest point (ASTM D7136).
+!> Dent depth of an impact as measured by a depth gauge on the struck face: from the plane of the surrounding surface to
+!> the deepest point (ASTM D7136).
 module dent_depths
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
@@ -16,14 +16,14 @@ module dent_depths
       &radii of the nose away, with dent_indentation; meant for a plate at rest.', &
     'dent_indentation | real | length | Part of dent_depth that the indentation law keeps.']
 
-  !> Distances from the struck point, in radii of the nose, between which the surface gives the plane: 24 and 32 mm for
-  !> the nose of 16 mm in diameter, about where a gauge stands on the panel and within the frame's window.
+  !> Distances from the struck point, in radii of the nose, between which the plane is fitted: 24 and 32 mm for a nose
+  !> of 16 mm in diameter, the position of a gauge, within the window of the frame.
   real(wp), parameter, public :: nearest = 3, farthest = 4
 
 contains
 
-  !> Depth of the struck face below the plane of the surface around it; 0 where no nose strikes or the mesh has no cells
-  !> there. What the indentation law keeps comes on top. Collective.
+  !> Depth of the struck face below the plane of the surface around it; 0 without a nose, or without cells of the mesh
+  !> there. The permanent indentation of the law is added separately. Collective.
   real(wp) function dent_depth(model, displacement) result(depth)
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
@@ -48,8 +48,8 @@ contains
     call model%communicator%maximum(depth)
   end function dent_depth
 
-  !> Plane that lies closest to the surface around the dent, by least squares over the middles of cells, each with its
-  !> area. Symmetry leaves no slope along the directions in which it repeats the model. Collective.
+  !> Least-squares plane of the surface around the dent, through the centres of cells weighted by area. Slopes are zero
+  !> along directions of symmetry. Collective.
   subroutine find_plane(model, displacement, plane, is_known)
     type(model_t), intent(in) :: model
     !> Displacement, (5, points)
@@ -82,7 +82,7 @@ contains
       plane = 0
       if (.not. is_known) return
       totals(2:) = totals(2:)/totals(1)
-      ! Moments about the middle of the cells.
+      ! Moments about the centroid of the cells.
       centred = [totals(4) - totals(2)**2, totals(5) - totals(2)*totals(3), totals(6) - totals(3)**2, &
                  totals(8) - totals(2)*totals(7), totals(9) - totals(3)*totals(7)]
       if (any(mesh%halved .and. .not. mesh%mirrored) .or. all(mesh%mirrored)) then

@@ -1,4 +1,4 @@
-!> Where the energy is. Every entry is of the full plate, also under symmetry.
+!> The energy ledger. All entries are those of the full plate, also under symmetry.
 module energy_ledgers
   use kinds, only: wp
   use archives, only: archive_t
@@ -8,30 +8,30 @@ module energy_ledgers
 
   !> The energy ledger.
   type :: ledger_t
-    !> Kinetic energy of the impactor and its height's potential
+    !> Kinetic energy of the impactor and its potential of gravity
     real(wp) :: impactor = 0
     !> Kinetic and strain energy of the plate
     real(wp) :: kinetic = 0, strain = 0
-    !> Work done on the indentation, stored and lost
+    !> Work on the indentation, stored and dissipated
     real(wp) :: indentation = 0
-    !> Energy that new delaminated faces have taken, and that plies lost by damage
+    !> Energy dissipated by delamination, and by damage of plies
     real(wp) :: delamination = 0, ply_damage = 0
-    !> Energy lost where faces meet, and held by penalty ties; energy that friction has turned into heat
+    !> Energy dissipated by contact, and stored in penalty ties; frictional heat
     real(wp) :: contact = 0, friction = 0
-    !> Energy that the time integrators have taken out of the motion
+    !> Algorithmic dissipation
     real(wp) :: algorithmic = 0
-    !> Kinetic energy that damping has taken from the plate
+    !> Energy dissipated by damping
     real(wp) :: damping = 0
-    !> Strain and kinetic energy that the plate had and its layers, where they have appeared, have not
+    !> Strain and kinetic energy lost at insertions of layers
     real(wp) :: layers = 0
-    !> Work of pressure and lines, and of what moves the impactor of a static analysis
+    !> Work of pressure and lines, and of the force that drives the impactor of a static analysis
     real(wp) :: external_work = 0
-    !> Energy at the start, and of it that of residual stresses
+    !> Energy at the start, and its part of residual stresses
     real(wp) :: initial = 0, residual = 0
-    !> Part of the kinetic energy in motions whose inertia is scaled
+    !> Part of the kinetic energy in motions with scaled inertia
     real(wp) :: scaled = 0
   contains
-    !> Energy that no entry accounts for.
+    !> Energy error.
     procedure :: error
     !> Saves or loads the ledger.
     procedure :: visit
@@ -39,7 +39,7 @@ module energy_ledgers
 
 contains
 
-  !> Energy that no entry accounts for: zero up to the residual of equilibrium.
+  !> Energy error: sum of the entries minus initial energy and external work.
   pure real(wp) function error(self)
     !> The ledger
     class(ledger_t), intent(in) :: self

@@ -1,5 +1,5 @@
-!> What a run takes over from the end of another: the shape of the plate, its motion, and all that plies and interfaces
-!> remember. Loads, impactor and steps begin anew.
+!> State inherited from another run: displacement and velocity of the plate, history variables of plies and interfaces.
+!> Loads, impactor and steps start anew.
 module inherited_states
   use archives, only: archive_t
   use cohesive_sliding, only: visit_friction
@@ -12,7 +12,7 @@ module inherited_states
 
 contains
 
-  !> Saves or loads what is taken, under the names that it has in a checkpoint.
+  !> Saves or loads the inherited state, by its names in a checkpoint.
   subroutine visit_inheritance(state, archive, model)
     !> The state
     type(state_t), intent(inout) :: state

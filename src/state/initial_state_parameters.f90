@@ -1,15 +1,15 @@
-!> The state that a run begins from, as the deck gives it.
+!> Initial state of a run in the deck.
 module initial_state_parameters
   implicit none
   private
   public :: initial_state_t
 
-  !> What of the plate's motion is taken: nothing, or its velocities.
+  !> Initial velocities of the plate: zero, or those of the other run.
   integer, parameter, public :: motion_rest = 1, motion_kept = 2
 
-  !> The state that another run has left.
+  !> The initial state.
   type :: initial_state_t
-    !> Checkpoint of that run; unallocated: the plate begins undamaged, flat and at rest
+    !> Checkpoint of the other run; unallocated: the plate is undamaged, flat and at rest
     character(len=:), allocatable :: from
     !> motion_rest or motion_kept
     integer :: motion = motion_rest

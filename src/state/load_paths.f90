@@ -1,5 +1,5 @@
-!> How a static analysis has come along its path of loads: what the next step, taken by load or by the energy that it
-!> dissipates, begins with.
+!> Last step on the equilibrium path of a static analysis, from which the next step under control of load or dissipation
+!> starts.
 module load_paths
   use kinds, only: wp
   use archives, only: archive_t
@@ -8,15 +8,15 @@ module load_paths
   private
   public :: load_path_t
 
-  !> The last step of a path.
+  !> Last step of a path.
   type :: load_path_t
-    !> True: the next step is taken by the energy that it dissipates
+    !> True: the next step is controlled by the dissipated energy
     logical :: by_dissipation = .false.
-    !> Change of the load factor in the last step, and energy that it dissipated
+    !> Change of the load factor in the last step, and its dissipated energy
     real(wp) :: factor_change = 0, dissipated = 0
     !> Change of the impactor's force in the last step
     real(wp) :: force_change = 0
-    !> Change of the unknowns in the last step, (5, points); unallocated: no step is taken by dissipation
+    !> Change of the unknowns in the last step, (5, points); unallocated: load control throughout
     real(wp), allocatable :: change(:, :)
   contains
     !> Saves or loads.
@@ -38,8 +38,8 @@ contains
     call archive%item('path/dissipated', self%dissipated)
     call archive%item('path/force_change', self%force_change)
     if (.not. allocated(self%change)) return
-    associate (share => model%distribution)
-      call archive%field('path/change', share%points(:share%owned), model%mesh%points(), self%change)
+    associate (partition => model%distribution)
+      call archive%field('path/change', partition%points(:partition%owned), model%mesh%points(), self%change)
     end associate
     if (archive%loading) call model%halo%update(self%change)
   end subroutine visit

@@ -1,5 +1,5 @@
-!> All that evolves with an accepted step. A step is computed into a second state of this type, which
-!> then replaces the first or is dropped: a step that is tried again leaves no trace.
+!> State of a run. A step is computed in a second state of this type, which replaces the first if it is accepted: a
+!> rejected step has no effect.
 module states
   use kinds, only: wp
   use archives, only: archive_t
@@ -15,8 +15,8 @@ module states
   private
   public :: state_t, new_state
 
-  !> All of a state but the plate's motion and its plies, which are large. It has many components because a step that
-  !> fails must leave none of them changed.
+  !> State without the large arrays of the plate's motion and plies. It has many components because a rejected step must
+  !> change none of them.
   type :: small_state_t
     !> Time, or load factor of a static analysis
     real(wp) :: time = 0
@@ -24,7 +24,7 @@ module states
     integer :: step = 0
     !> Ramps of lines over their full values; in a static analysis all loads
     real(wp) :: load_factor = 0
-    !> How a static analysis got here
+    !> Last step on the path of a static analysis
     type(load_path_t) :: path
     !> The impactor
     type(impactor_t) :: impactor
@@ -34,11 +34,11 @@ module states
     type(interface_state_t) :: interfaces
     !> Impact force at this time
     real(wp) :: force = 0
-    !> How the impactor's force is spread if that follows its nose, (local points)
+    !> Weights of the impactor's force if the distribution follows the nose, (local points)
     real(wp), allocatable :: patch(:)
-    !> What the mean deflection of the patch had more when the patch was another
+    !> Offset of the mean deflection by earlier changes of the patch
     real(wp) :: patch_offset = 0
-    !> Reactions of lines that prescribe motion, where they are no springs, of the full plate, (lines)
+    !> Reactions of prescribed lines of the full plate in explicit steps, (lines)
     real(wp), allocatable :: line_reactions(:)
     !> Mean deflection of the patch, and deflection of the struck point
     real(wp) :: patch_mean = 0, deflection = 0
@@ -58,18 +58,18 @@ module states
   type, extends(small_state_t) :: state_t
     !> Motion of the plate
     type(motion_t) :: motion
-    !> Failures of the plies and the stiffness they have left
+    !> Failures of the plies and the reduced stiffness
     type(ply_failure_t) :: plies
   contains
-    !> Becomes the state from which a step starts, but for what the step computes again.
+    !> Copies the state from which a step starts, except for quantities that the step computes.
     procedure :: start_from
-    !> Internal forces and the energy that goes with them.
+    !> Internal forces and strain energy.
     procedure :: find_internal
     !> True once plies have failed or delaminations have grown.
     procedure :: has_failures
     !> Counts a step and its iterations.
     procedure :: count_step
-    !> Notes how a load step went.
+    !> Stores the changes of a load step.
     procedure :: note_path
     !> Saves or loads the state.
     procedure :: visit
@@ -91,7 +91,7 @@ contains
               self%motion%inertia(5, points), self%motion%momentum(5, points), source=0.0_wp)
     self%plies = new_ply_failure(model)
     self%interfaces = new_interface_state(model)
-    ! Clamps that press are in equilibrium with the frame from the start.
+    ! Clamps with a force are in equilibrium with the frame from the start.
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     if (allocated(model%contact%nose)) self%patch = model%contact%weights
@@ -101,13 +101,13 @@ contains
     self%ledger%initial = self%ledger%impactor
   end function new_state
 
-  !> Becomes the state from which a step starts. Of the motion that is the displacement: velocity, acceleration and
-  !> forces are computed again.
+  !> Copies the state from which a step starts; of the motion only the displacement, as velocity, acceleration and
+  !> forces are computed by the step.
   pure subroutine start_from(self, model, old)
     !> The state
     class(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state that is taken
+    !> The state copied
     type(state_t), intent(in) :: old
 
     self%small_state_t = old%small_state_t
@@ -115,13 +115,13 @@ contains
     self%force_iterations = 0
     self%contact_iterations = 0
     self%motion%displacement = old%motion%displacement
-    ! Without damage no step changes them.
+    ! Without damage they are constant.
     if (model%setup%has_ply_damage) self%plies = old%plies
   end subroutine start_from
 
-  !> Internal forces of layers and cohesive interfaces, and this rank's share of the energy that they store.
+  !> Internal forces of layers and cohesive interfaces, and their stored energy on this rank.
   subroutine find_internal(self, model, old, energy)
-    !> The state, whose displacement is known; receives the forces
+    !> The state with its displacement; receives the forces
     class(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The last accepted state
@@ -160,8 +160,8 @@ contains
     self%all_contact_iterations = old%all_contact_iterations + self%contact_iterations
   end subroutine count_step
 
-  !> Notes how a load step went, and by what the next is taken: the load or the energy dissipated, whichever went on
-  !> by a larger part of all that the deck requires.
+  !> Stores the changes of a load step, and chooses the control of the next one: load or dissipated energy, whichever
+  !> advanced by the larger fraction of its total.
   pure subroutine note_path(self, old, dissipation)
     !> State at the end of the step
     class(state_t), intent(inout) :: self
@@ -211,7 +211,7 @@ contains
     call archive%item('largest_forces/rotation', self%largest_forces(2))
   end subroutine visit
 
-  !> Saves or loads how the impactor's force is spread.
+  !> Saves or loads the distribution of the impactor's force.
   subroutine visit_patch(self, archive, model)
     !> The state
     type(state_t), intent(inout) :: self
@@ -223,8 +223,8 @@ contains
     if (.not. allocated(self%patch)) return
     call archive%item('contact/offset', self%patch_offset)
     weights = reshape(self%patch, [1, size(self%patch)])
-    associate (share => model%distribution)
-      call archive%field('contact/weights', share%points(:share%owned), model%mesh%points(), weights)
+    associate (partition => model%distribution)
+      call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)
     end associate
     self%patch = weights(1, :)
   end subroutine visit_patch

@@ -1,4 +1,4 @@
-!> The bending stress at the struck point, by whose rate the time step is chosen (section 3.4).
+!> Bending stress at the struck point, for the paper's control of the time step by its rate (section 3.4).
 module struck_stresses
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
@@ -12,7 +12,7 @@ module struck_stresses
 
 contains
 
-  !> Size of the surface stress 6 M / h**2 around the struck point, the same on every rank.
+  !> Magnitude of the surface stress 6 M / h**2 around the struck point, the same on every rank.
   real(wp) function struck_stress(model, displacement) result(stress)
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)

@@ -17,11 +17,12 @@ module dissipation_steps
   private
   public :: dissipation_step_t, new_dissipation_step
 
-  !> A step that dissipates a given energy.
+  !> A step that dissipates a prescribed energy.
   type, extends(static_step_t) :: dissipation_step_t
     !> Energy that the step is to dissipate
     real(wp) :: target_dissipation = 0
-    !> Largest change of the load factor; farther away lie other branches of equilibrium, which no path connects
+    !> Largest change of the load factor; beyond it lie other branches of equilibrium, not connected with the present
+    !> one
     real(wp) :: max_load_change = 0
   contains
     procedure :: begin
@@ -32,7 +33,7 @@ module dissipation_steps
 
 contains
 
-  !> The step to a time that dissipates an energy.
+  !> Step to a time, with the energy to be dissipated.
   pure function new_dissipation_step(model, time, target_dissipation, max_load_change) result(self)
     type(model_t), intent(in) :: model
     !> Time at its end

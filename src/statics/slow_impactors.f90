@@ -1,5 +1,5 @@
-!> An impactor that moves slowly, as under a testing machine: load steps by its travel. Its force presses on the patch
-!> as the indentation law has it.
+!> Quasi-static indentation: load steps by the travel of the impactor. Its force on the patch follows the indentation
+!> law.
 module slow_impactors
   use kinds, only: wp
   use errors, only: error_t
@@ -18,7 +18,7 @@ contains
   !> Adds the impactor's force to loads.
   pure subroutine add_impactor_force(model, force, loads)
     type(model_t), intent(in) :: model
-    !> The force, of the whole impactor
+    !> The force of the impactor on the full plate
     real(wp), intent(in) :: force
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
@@ -26,18 +26,18 @@ contains
     if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%contact%weights
   end subroutine add_impactor_force
 
-  !> Finds the force that goes with the travel and with the plate's response to it, and adds this response to a
-  !> correction.
+  !> Finds the impactor's force for the travel and the deflection of the plate, and adds the unit-load solution times
+  !> its change to a correction.
   subroutine find_force_change(model, operator, part, new, correction, error)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
     !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator
-    !> Part of the correction that will be taken
+    !> Factor of the correction that will be applied
     real(wp), intent(in) :: part
     !> State at this load, before the correction; receives the force
     type(state_t), intent(inout) :: new
-    !> Correction with the force as it is on entry, (5, points)
+    !> Correction for the force on entry, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
@@ -53,7 +53,7 @@ contains
     if (allocated(error)) return
     compliance = model%patch_mean(response)
     mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
-    ! A plate that gives way backwards would pull at the impactor: this step is for a shorter one.
+    ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
     call solve_impact_force(model%setup%indentation, new%indentation, new%indentation%alpha, &
                             new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, compliance, &
                             .false., force, alpha, force_end, iterations, error)
@@ -63,7 +63,7 @@ contains
     new%force = new%force + part*(force - new%force)
   end subroutine find_force_change
 
-  !> How far the force is from that of the indentation, over the larger of them.
+  !> Difference between the force and that of the indentation law, relative to the larger of them.
   real(wp) function force_mismatch(model, new) result(mismatch)
     type(model_t), intent(in) :: model
     !> State at this load
@@ -75,7 +75,7 @@ contains
     mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
   end function force_mismatch
 
-  !> Travel at which the impactor presses with the force of a state.
+  !> Travel of the impactor for the force and the deflection of a state.
   real(wp) function travel_for(model, new) result(travel)
     type(model_t), intent(in) :: model
     !> The state
@@ -85,12 +85,12 @@ contains
              model%contact_deflection(new%motion%displacement)
   end function travel_for
 
-  !> Completes an accepted load step: the impactor's place, the indentation, and the work of what moves it.
+  !> Completes an accepted load step: position of the impactor, indentation, and work of the force that drives it.
   subroutine move_slow_impactor(model, old, new)
     type(model_t), intent(in) :: model
     !> State at the load before
     type(state_t), intent(in) :: old
-    !> State at this load, its deflections known
+    !> State at this load, with its deflections
     type(state_t), intent(inout) :: new
 
     new%impactor%displacement = new%load_factor*model%setup%impactor%travel

@@ -19,7 +19,7 @@ module static_steps
   type, extends(step_problem_t) :: static_step_t
     !> Time at the end of the step: the progress of the run
     real(wp) :: time = 0
-    !> Load over the full load
+    !> Load relative to the full load
     real(wp) :: load_factor = 0
   contains
     procedure :: begin
@@ -37,12 +37,12 @@ module static_steps
 
 contains
 
-  !> The step to a load.
+  !> Step to a load.
   pure function new_static_step(model, time, load_factor) result(self)
     type(model_t), intent(in) :: model
     !> Time at the end of the step
     real(wp), intent(in) :: time
-    !> Load over the full load
+    !> Load relative to the full load
     real(wp), intent(in) :: load_factor
     !> The problem
     type(static_step_t) :: self
@@ -112,7 +112,7 @@ contains
     may_stop = .not. at%pressures_new
   end function may_stop
 
-  !> Solves for a correction, by a new tangent if it may have changed.
+  !> Solves for a correction, with a new factorization if the tangent may have changed.
   subroutine find_correction(self, at, tolerance, error)
     !> The problem
     class(static_step_t), intent(inout) :: self
@@ -179,7 +179,7 @@ contains
     if (iterations >= self%controls%alternating_iterations .and. modulo(iterations, 2) == 0) part = 0.5_wp
   end function correction_factor
 
-  !> Nothing moves.
+  !> Load steps have no velocity to be completed.
   subroutine complete(self, at)
     !> The problem
     class(static_step_t), intent(in) :: self
@@ -211,8 +211,8 @@ contains
         sums(5) = faces/2
       end if
       sums(6) = model%product(change, loads - loads_before)/2
-      ! Failed plies and a changed contact area leave the previous state out of equilibrium; the energy released would
-      ! become kinetic.
+      ! After failures of plies or a change of the contact area the previous state is not in equilibrium; the energy
+      ! released would become kinetic.
       call add_impactor_force(model, old%force, loads_before)
       sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
       if (.not. (model%setup%has_ply_damage .or. allocated(model%contact%nose))) sums(5) = 0
@@ -239,12 +239,13 @@ contains
     end associate
   end subroutine finish
 
-  !> Where nothing dissipates, the strain energy is the work of the loads along the equilibrium path, which the
-  !> trapezoidal rule over a step only approximates. A load that grows or falls steadily does work between those of its
-  !> values before and after the step. Outside these bounds the plate has jumped to another equilibrium, and the energy
-  !> that it would have as kinetic energy stays dissipated by the load step.
+  !> Without dissipation the strain energy is the work of the loads along the equilibrium path, which the trapezoidal
+  !> rule over a step approximates. For a monotonic load the work lies between the products of displacement increment
+  !> and load before and after the step. Outside these bounds the plate has jumped to another equilibrium, and the
+  !> energy that would become kinetic remains dissipated by the load step.
   pure subroutine correct_work(excess, margin, work)
-    !> Change of the strain energy less its trapezoidal rule; on return what the work does not account for
+    !> Change of the strain energy less the work by the trapezoidal rule; on return the part outside the bounds of the
+    !> work
     real(wp), intent(inout) :: excess
     !> Half the product of the changes of load and displacement
     real(wp), intent(in) :: margin
@@ -256,7 +257,7 @@ contains
     excess = 0
   end subroutine correct_work
 
-  !> Loads of an accepted state without the impactor's force. Before the first step only lines that hold the plate act.
+  !> Loads of an accepted state without the impactor's force. Before the first step only prescribed lines act.
   subroutine loads_carried(model, state, loads)
     type(model_t), intent(in) :: model
     !> The state

@@ -36,7 +36,7 @@ contains
 
   !> Adaptivity; without the group the step stays as it is.
   subroutine fill_adapt(settings, adapt)
-    !> Keys in effect; gets what holds without the group
+    !> Keys in effect; receives the default without the group
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(adapt_t), intent(inout) :: adapt

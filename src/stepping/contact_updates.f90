@@ -1,8 +1,8 @@
-!> The impactor's force spreads as the plate bends about its nose.
+!> Updates the distribution of the impactor's force as the plate bends about the nose.
 !>
-!> How it is spread is found from the last accepted state and holds through the next step, so force and deflection
-!> under the impactor do the same work. As the spreading changes, the deflection and with it the indentation go on from
-!> what they were: no energy appears.
+!> The distribution is found from the last accepted state and kept constant in the next step, so that force and mean
+!> deflection under the impactor are work-conjugate. An offset keeps that deflection, and the indentation, continuous
+!> when the distribution changes: no energy is created.
 module contact_updates
   use errors, only: error_t
   use kinds, only: wp
@@ -14,21 +14,21 @@ module contact_updates
   private
   public :: update_contact_area, set_contact_area
 
-  !> Part of the way to what the last state asks for that a step goes: the plate responds to the change, and a whole
-  !> way would overshoot where it gives way more than the nose is indented. doc/theory/impact.md has figures.
+  !> Relaxation factor of the weights per step: the plate responds to the change, and without relaxation the update
+  !> overshoots where the plate is more compliant than the contact. doc/theory/impact.md has figures.
   real(wp), parameter :: relaxation = 0.2_wp
-  !> Sum of the changes of weights, of one, that are not worth a solve.
+  !> Sum of the changes of the weights, whose sum is 1, below which they are not updated.
   real(wp), parameter :: negligible = 1.0e-6_wp
 
 contains
 
-  !> Spreads the force as a new state asks for. Collective.
+  !> Updates the distribution of the force from the state reached. Collective.
   subroutine update_contact_area(model, now, operator, error)
-    !> The model; receives how the force is spread
+    !> The model; receives the distribution of the force
     type(model_t), intent(inout) :: model
-    !> The state reached; remembers it
+    !> The state reached; receives the weights and the offset
     type(state_t), intent(inout) :: now
-    !> The factored operator; receives its response to the force
+    !> The factored operator; receives its unit-load solution
     type(tangent_operator_t), intent(inout) :: operator
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
@@ -44,13 +44,13 @@ contains
     call set_contact_area(model, now, operator, error)
   end subroutine update_contact_area
 
-  !> Spreads the force as a state has it. Collective.
+  !> Sets the distribution of the force to that of a state. Collective.
   subroutine set_contact_area(model, now, operator, error)
-    !> The model; receives how the force is spread
+    !> The model; receives the distribution of the force
     type(model_t), intent(inout) :: model
     !> The state
     type(state_t), intent(in) :: now
-    !> The factored operator; receives its response to the force
+    !> The factored operator; receives its unit-load solution
     type(tangent_operator_t), intent(inout) :: operator
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error

@@ -1,5 +1,5 @@
-!> Steps by central differences with what belongs to them: an equilibrium before the first, failures of plies, flaws of
-!> interfaces, and the ledger when output or a check is due.
+!> Steps by central differences: equilibrium before the first step, failures of plies, flaws of interfaces, and the
+!> ledger when output or a check is due.
 module explicit_steps
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
@@ -19,15 +19,15 @@ module explicit_steps
   private
   public :: advance_explicit, complete_step, equilibrate_initial_stresses
 
-  !> Steps between two looks for cracks that are flaws of interfaces. Cracks run at about the speed of shear waves, a
-  !> third of that of the fibres' waves, which pass at most a cell in two steps; so none passes more than a cell or two
-  !> meanwhile.
+  !> Steps between two updates of flaws at interfaces by matrix cracks. Cracks grow at up to the speed of shear waves, a
+  !> third of that of waves along the fibres, which pass at most one cell in two steps; so a crack grows by at most two
+  !> cells between updates.
   integer, parameter :: between_flaws = 8
 
 contains
 
-  !> Brings a plate into equilibrium with its residual stresses and with lines that have moved it before the run, so
-  !> that nothing rings. Collective.
+  !> Finds the equilibrium of a plate with residual stresses and with displacements prescribed before the run, so that
+  !> the run starts without vibration. Collective.
   subroutine equilibrate_initial_stresses(operator, model, linear_solver, now, error)
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
@@ -69,8 +69,8 @@ contains
     call model%profile%leave()
   end subroutine advance_explicit
 
-  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left, moves
-  !> away and presses no more.
+  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left the plate
+  !> and moves away.
   pure logical function comes_to_rest(method, model, now)
     !> Central differences
     type(central_difference_t), intent(in) :: method
@@ -87,11 +87,11 @@ contains
     end if
   end function comes_to_rest
 
-  !> Completes what a step leaves until output or a check is due: energies, reactions and stress. Collective.
+  !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.
   subroutine complete_step(method, model, now, error)
     !> Central differences
     type(central_difference_t), intent(in) :: method
-    !> Receives how the impactor's force is spread
+    !> Receives the distribution of the impactor's force
     type(model_t), intent(inout) :: model
     !> The state
     type(state_t), intent(inout) :: now

@@ -1,5 +1,5 @@
-!> The start of a run from the end of another, by central differences: what was taken finds its forces, supports
-!> and lines begin from where the plate is, and the ledger from the energies that it has.
+!> Start of a run by central differences from the final state of another run: internal forces are computed from that
+!> state, supports and lines start from the present displacement, the ledger from the present energies.
 module inherited_starts
   use central_difference_energies, only: book_energies
   use errors, only: error_t
@@ -14,15 +14,15 @@ module inherited_starts
 
 contains
 
-  !> Begins from a state that was taken. Collective.
+  !> Starts from a loaded state. Collective.
   subroutine begin_inherited(model, transfer, motion, stepper, error)
-    !> The model; receives how an impactor's force would be spread
+    !> The model; receives the distribution of an impactor's force
     type(model_t), intent(inout) :: model
-    !> Where points and elements come from
+    !> Map of points and elements from the former mesh
     class(layer_transfer_t), intent(in) :: transfer
     !> motion_rest or motion_kept
     integer, intent(in) :: motion
-    !> What evolves, the state loaded
+    !> The stepper with the loaded state
     type(time_stepper_t), intent(inout) :: stepper
     !> Set if the motion is unstable
     type(error_t), allocatable, intent(out) :: error

@@ -1,9 +1,8 @@
-!> Layers appear where a plate was one: the model is built again with larger zones, and all that evolves is carried
-!> over.
+!> Insertion of layers: the model is built again with larger layered zones, and the state is transferred to it.
 !>
-!> The new layers move as the plate did, without jumps and with its rotations, so that displacement, velocity and
-!> acceleration of every ply stay what they are, and with them strains and energies. What the energies differ by is
-!> booked: rounding, or with an energy-consistent shear correction that of the sections.
+!> The new layers take over the motion of the single plate, with its rotations and without jumps, so that displacement,
+!> velocity and acceleration of every ply, strains and energies are unchanged. The remaining difference of energy is
+!> booked: round-off, or, with the energy-consistent shear correction, that of the sections.
 module layer_switches
   use contact_updates, only: update_contact_area, set_contact_area
   use errors, only: error_t
@@ -25,23 +24,23 @@ module layer_switches
   private
   public :: advance_with_layers, move_with_plate
 
-  !> Steps of central differences between two checks of the layers that damage asks for.
+  !> Steps of central differences between two checks whether damage requires more layers.
   integer, parameter :: steps_between_zone_checks = 16
 
 contains
 
-  !> Takes a step, and gives the plate the layers that its damage then needs. A step in which damage has come to the
-  !> border of a zone that could be larger is taken again with more layers. Collective.
+  !> Takes a step and inserts the layers that the damage requires. A step in which damage has reached the border of an
+  !> extensible zone is repeated with more layers. Collective.
   subroutine advance_with_layers(model, stepper, linear_solver, event, switched, error)
     !> The model; receives larger zones
     type(model_t), intent(inout) :: model
-    !> What evolves
+    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Time, or load factor, not to be passed
     real(wp), intent(in) :: event
-    !> True if layers have appeared
+    !> True if layers were inserted
     logical, intent(out) :: switched
     !> Set if the smallest step fails or the model cannot be built
     type(error_t), allocatable, intent(out) :: error
@@ -75,18 +74,18 @@ contains
     if (.not. allocated(error)) call update_contact_area(model, stepper%now, stepper%operator, error)
   end subroutine advance_with_layers
 
-  !> Takes a step by central differences, and looks from time to time whether the plate needs more layers. Damage
-  !> moves on by less than a cell in a step, so that it does not cross the cells ahead of it meanwhile. Collective.
+  !> Takes a step by central differences, and checks at intervals whether damage requires more layers. Damage grows by
+  !> less than a cell per step, so that it does not pass the layered cells ahead of it between checks. Collective.
   subroutine advance_explicit(model, stepper, linear_solver, event, switched, error)
     !> The model; receives larger zones
     type(model_t), intent(inout) :: model
-    !> What evolves
+    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Time not to be passed
     real(wp), intent(in) :: event
-    !> True if layers have appeared
+    !> True if layers were inserted
     logical, intent(out) :: switched
     !> Set if the model cannot be built
     type(error_t), allocatable, intent(out) :: error
@@ -126,11 +125,11 @@ contains
     end do
   end function present_extents
 
-  !> Builds the model with larger zones and carries all that evolves over to it.
+  !> Builds the model with larger zones and transfers the state to it.
   subroutine switch(model, stepper, linear_solver, extents, error)
     !> The model
     type(model_t), intent(inout) :: model
-    !> What evolves
+    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
@@ -180,12 +179,12 @@ contains
     if (allocated(stepper%now%path%change)) call move_with_plate(model, transfer, stepper%now%path%change)
   end subroutine switch
 
-  !> Lets the new layers move with the plate that they were, and finds forces and energies anew.
+  !> Gives the new layers the motion of the single plate, and computes forces and energies.
   subroutine transfer_state(model, transfer, now)
     type(model_t), intent(in) :: model
-    !> Where points and elements come from
+    !> Map of points and elements from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
-    !> The state, loaded
+    !> The loaded state
     type(state_t), intent(inout) :: now
     type(state_t), allocatable :: before
     real(wp) :: energies(2)
@@ -213,13 +212,13 @@ contains
     end associate
   end subroutine transfer_state
 
-  !> Lets the new layers move with the plate that they were, and finds their forces. Collective.
+  !> Gives the new layers the motion of the single plate, and computes their forces. Collective.
   subroutine transfer_explicit_state(model, transfer, stepper, error)
     !> The model; receives how the impactor's force is spread
     type(model_t), intent(inout) :: model
-    !> Where points and elements come from
+    !> Map of points and elements from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
-    !> What evolves, loaded
+    !> The stepper with the loaded state
     type(time_stepper_t), intent(inout) :: stepper
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
@@ -237,10 +236,10 @@ contains
     end associate
   end subroutine transfer_explicit_state
 
-  !> Gives the new layers the rotations of the layer above, and no jumps.
+  !> Gives the new layers the rotations of the layer above, and zero jumps.
   subroutine move_with_plate(model, transfer, field)
     type(model_t), intent(in) :: model
-    !> Where points come from
+    !> Map of points from the former mesh
     class(layer_transfer_t), intent(in) :: transfer
     !> Displacement or a rate of it, (5, points)
     real(wp), intent(inout) :: field(:, :)
@@ -254,12 +253,12 @@ contains
     call model%halo%update(field)
   end subroutine move_with_plate
 
-  !> Adds to the internal forces those that held the new layers together: the plate was in equilibrium with them. They
-  !> are gone at the end of the next step, and without a blow: with the internal forces alone, an integrator that weighs
-  !> the old ones would throw the jumps to 1 + alpha_f/(1 - alpha_f) of what they settle at.
+  !> Adds the interlaminar forces of the undelaminated plate to the internal forces of the new layers, so that the state
+  !> stays in equilibrium. The forces vanish at the end of the next step. Without them, an integrator that weights the
+  !> old internal forces would overshoot the equilibrium jumps by the factor 1 + alpha_f/(1 - alpha_f).
   pure subroutine balance_new_layers(model, transfer, now)
     type(model_t), intent(in) :: model
-    !> Where points come from
+    !> Map of points from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
     !> The state
     type(state_t), intent(inout) :: now

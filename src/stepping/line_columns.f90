@@ -1,4 +1,4 @@
-!> What the history reports of lines that hold, move or press on the plate.
+!> Columns of the history for lines that support, displace or load the plate.
 module line_columns
   use kinds, only: wp
   use line_loads, only: line_load_t
@@ -11,7 +11,7 @@ module line_columns
   private
   public :: line_values, end_values, has_ends, pressed_axis
 
-  !> Columns that a deck with lines has, the latter two once a line: N is its number in the deck.
+  !> Columns of decks with lines, the last two once per line: N is its number in the deck.
   character(len=result_row_length), parameter, public :: line_column_rows(*) = [character(len=result_row_length) :: &
     'load_factor | real | - | Ramps of lines, and the pressure of a static analysis, over their full values; only with &
       &&line.', &
@@ -19,7 +19,7 @@ module line_columns
       &rotation the moment.', &
     'line_displacement_N | real | length | Mean displacement or rotation of the N-th &line along its component.']
 
-  !> Columns of a plate whose ends are pressed together or drawn apart by lines.
+  !> Columns of a plate whose ends are compressed or pulled by lines.
   character(len=result_row_length), parameter, public :: end_rows(*) = [character(len=result_row_length) :: &
     'far_field_stress | real | pressure | Load over the width and thickness of the plate, positive in compression, the &
       &mean of the ends that lines move; only with lines that move ends of the plate in its plane.', &
@@ -43,7 +43,7 @@ contains
     totals = totals_of(model%communicator, [(model%lines(i)%totals(now%motion%displacement, now%load_factor), &
                                              i=1, size(model%lines))])
     do i = 1, size(totals), 3
-      ! Supports that hold the entire line hold its mean, too.
+      ! Supports that fix the entire line fix its mean, too.
       values = [values, totals(i), totals(i + 1)/max(1 - totals(i + 2), tiny(1.0_wp))]
     end do
     if (allocated(now%line_reactions)) then
@@ -54,7 +54,7 @@ contains
     values = [now%load_factor, values]
   end function line_values
 
-  !> True: lines move ends of the plate in its plane.
+  !> True: lines displace ends of the plate in its plane.
   pure logical function has_ends(plate, lines)
     !> The plate
     type(plate_t), intent(in) :: plate
@@ -64,7 +64,7 @@ contains
     has_ends = count(on_ends(plate, lines)) > 0
   end function has_ends
 
-  !> Lines on the ends that are moved: on both of them, also where one stays.
+  !> Lines on the two ends of the displaced axis, also on a fixed end.
   pure function on_ends(plate, lines) result(on)
     !> The plate
     type(plate_t), intent(in) :: plate
@@ -83,7 +83,7 @@ contains
     end if
   end function on_ends
 
-  !> Axis along which lines move ends of the plate; 0: none do.
+  !> Axis along which lines displace ends of the plate; 0: none do.
   pure integer function pressed_axis(model) result(along)
     type(model_t), intent(in) :: model
     logical :: on(size(model%lines))
@@ -93,7 +93,7 @@ contains
     if (any(on)) along = model%lines(findloc(on, .true., dim=1))%load%component
   end function pressed_axis
 
-  !> Stress far from the damage and shortening, from the values of the lines.
+  !> Far-field stress and shortening, from forces and displacements of the lines.
   pure function end_values(model, values) result(ends)
     type(model_t), intent(in) :: model
     !> Load factor, then force and displacement of every line

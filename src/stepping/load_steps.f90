@@ -1,4 +1,4 @@
-!> Load steps: by the load, or by the energy that each is to dissipate.
+!> Load steps: by load control, or by control of the energy that each dissipates.
 module load_steps
   use dissipation_steps, only: dissipation_step_t, new_dissipation_step
   use errors, only: error_t, fail, exit_convergence
@@ -26,7 +26,7 @@ module load_steps
 
 contains
 
-  !> The first step is one of those that the deck asks for.
+  !> The first step has the length given in the deck.
   subroutine start(self, stepper, model, error)
     !> The kind
     class(load_steps_t), intent(in) :: self
@@ -92,7 +92,7 @@ contains
                                             1.0_wp/stepper%stepping%static_steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
                       converged, error)
-      ! Farther away there are other branches of equilibrium, which no path leads to.
+      ! Beyond this change of the load other branches of equilibrium may be found, which the path does not lead to.
       if (converged) converged = abs(stepper%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
     end associate
   end subroutine try_dissipation
@@ -110,7 +110,7 @@ contains
     end associate
   end subroutine note_state
 
-  !> Each step is tried with the length that the deck asks for.
+  !> Each step is first tried with the length given in the deck.
   subroutine choose_next(self, stepper, model, step, change, extended)
     !> The kind
     class(load_steps_t), intent(in) :: self
@@ -127,14 +127,14 @@ contains
     stepper%controller%target = 1.0_wp/stepper%stepping%static_steps
   end subroutine choose_next
 
-  !> Brings a plate whose plies have failed under a load back into equilibrium with it, until no more of them fail.
+  !> Restores equilibrium at constant load after failures of plies, until no more plies fail.
   subroutine equilibrate(self, stepper, model, error)
     !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Set if what is left of the plate does not bear the load
+    !> Set if the damaged plate cannot carry the load
     type(error_t), allocatable, intent(inout) :: error
     type(static_step_t) :: problem
     logical :: converged
@@ -145,7 +145,7 @@ contains
                       converged, error)
       if (.not. (allocated(error) .or. converged)) &
         call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(stepper%now%time)// &
-                  ' of the load: what is left of the plate after failures of plies does not bear it.')
+                  'of the load: the plate with its failed plies cannot carry it.')
       if (allocated(error)) return
       stepper%trial%step = stepper%now%step
       call accept_step(stepper, model, 0.0_wp)

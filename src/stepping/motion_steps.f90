@@ -27,7 +27,7 @@ module motion_steps
 
 contains
 
-  !> Integrator, first step, and the acceleration under loads that are there from the start.
+  !> Integrator, first step, and the acceleration under the initial loads.
   subroutine start(self, stepper, model, error)
     !> The kind
     class(motion_steps_t), intent(in) :: self
@@ -80,14 +80,14 @@ contains
     end associate
   end subroutine try
 
-  !> Factors the operator again where that is due.
+  !> Factorizes the operator again where that is due.
   subroutine renew_if_due(stepper, model, mass_factor, error)
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Factor of the mass in the step
     real(wp), intent(in) :: mass_factor
-    !> Set if there is no factor
+    !> Set if the factorization fails
     type(error_t), allocatable, intent(inout) :: error
     logical :: due
 
@@ -144,7 +144,7 @@ contains
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
           .not. model%setup%has_impactor .or. stepper%step_error%impact_is_over(stepping%expected, now), &
                                        has_gear(model), now%has_failures())
-      ! What a step took until it renewed the operator itself does not speak against the new one.
+      ! Iterations of a step before it renewed the operator itself do not count for the new factorization.
       if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
     end associate

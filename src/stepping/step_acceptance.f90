@@ -1,4 +1,4 @@
-!> Accepts a step tried, or rejects it; the length of the next one.
+!> Accepts or rejects a trial step, and sets the length of the next one.
 module step_acceptance
   use kinds, only: wp
   use crack_flaws, only: note_flaws
@@ -15,7 +15,7 @@ module step_acceptance
 
 contains
 
-  !> Makes the state tried the state reached.
+  !> Makes the trial state the accepted state.
   subroutine accept_step(self, model, step)
     !> The time stepper
     class(stepper_t), intent(inout) :: self
@@ -43,7 +43,7 @@ contains
     call self%kind%choose_next(self, model, step, change, extended)
   end subroutine accept_step
 
-  !> Plies that fail and interfaces that have changed in the step tried.
+  !> Updates failures of plies and flaws of interfaces in the trial state.
   subroutine note_damage(self, model)
     !> The time stepper
     class(stepper_t), intent(inout) :: self
@@ -60,14 +60,14 @@ contains
     end associate
   end subroutine note_damage
 
-  !> Estimates the error of the step tried; one too large is to be tried again shorter.
+  !> Estimates the error of the trial step and whether it has to be repeated with a shorter length.
   subroutine assess_error(self, model, step, shortest, accurate)
     !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step tried
     real(wp), intent(in) :: step
-    !> Shortest step that the error may ask for
+    !> Shortest step allowed under error control
     real(wp), intent(out) :: shortest
     !> False: the step is too long
     logical, intent(out) :: accurate
@@ -88,7 +88,7 @@ contains
     type(model_t), intent(in) :: model
     !> Step tried
     real(wp), intent(in) :: step
-    !> Set if it was the smallest one
+    !> Set if it had the smallest length
     type(error_t), allocatable, intent(inout) :: error
 
     self%rejected = self%rejected + 1

@@ -1,4 +1,4 @@
-!> What the history reports of an accepted step: motion, energies, the step itself and its iterations. The energies are
+!> Columns of the history for an accepted step: motion, energies, length and iterations of the step. The energies are
 !> defined in doc/manual/energy_ledger.md.
 module step_columns
   use kinds, only: wp
@@ -38,7 +38,7 @@ module step_columns
     'energy_error | real | energy | Energy imbalance: the sum of the eight energies before, &
       &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
 
-  !> The rest of the state and the length of the step.
+  !> Other quantities of the state, and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
     'patch_deflection | real | length | Mean deflection of the patch, positive along the impact.', &
     'work_external | real | energy | Work so far of pressure and lines, and of what moves an impactor whose travel &
@@ -60,7 +60,7 @@ module step_columns
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
     'rejected | integer | - | Rejected steps so far; each was repeated with half its length.']
 
-  !> What joined the ledger later.
+  !> Further entries of the ledger.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
     'energy_friction | real | energy | Energy that friction between faces has turned into heat.', &
     'energy_layers | real | energy | Strain and kinetic energy that the plate had more than the layers that took its &
@@ -99,7 +99,7 @@ contains
               ledger%ply_damage, ledger%contact, ledger%algorithmic, ledger%error()]
   end function ledger_values
 
-  !> What joined the ledger later.
+  !> Further entries of the ledger.
   pure function heat_values(ledger) result(values)
     !> The ledger
     type(ledger_t), intent(in) :: ledger
@@ -109,7 +109,7 @@ contains
     values = [ledger%friction, ledger%layers]
   end function heat_values
 
-  !> The rest of the state and the length of the step.
+  !> Other quantities of the state, and the length of the step.
   pure function step_values(now, length) result(values)
     !> The state reached
     type(state_t), intent(in) :: now

@@ -176,7 +176,7 @@ contains
     real(wp), intent(in) :: remaining
     !> True: there is no impact, or it is over
     logical, intent(in) :: is_over
-    !> True: Gear's method moves the impactor
+    !> True: Gear's method integrates the impactor's motion
     logical, intent(in) :: gear
     !> True once plies have failed or delaminations have grown
     logical, intent(in) :: damaged
@@ -224,7 +224,7 @@ contains
     class(step_controller_t), intent(inout) :: self
     !> Constants of the control of steps
     type(step_controls_t), intent(in) :: controls
-    !> Step taken or tried in vain, and its error over the tolerance
+    !> Step accepted or rejected, and its error over the tolerance
     real(wp), intent(in) :: step, error
     !> Shortest step under error control
     real(wp), intent(in) :: shortest

@@ -1,5 +1,5 @@
-!> How often what is around a step is looked at. Steps by central differences are many and cheap: what need not be done
-!> in each of them is done after some.
+!> Intervals, in steps, of checks of a run: steps by central differences are many and cheap, so that checks are made at
+!> intervals.
 module step_intervals
   use kinds, only: wp
   use stepping_parameters, only: is_explicit, stepping_t
@@ -7,21 +7,22 @@ module step_intervals
   private
   public :: steps_between_checks, steps_between_stages
 
-  !> Seconds that central differences take of one processor for an element of one layer in one step. Measured on panels
-  !> with cohesive interfaces and crack bands, gfortran 12 with -O3 on one core of an AMD EPYC; the elastic Sun-Chen
-  !> plate takes .2e-6.
+  !> Processor time of central differences, in seconds per element of one layer and step. Measured on panels with
+  !> cohesive interfaces and crack bands, gfortran 12 with -O3 on one core of an AMD EPYC; the elastic Sun-Chen plate
+  !> takes .2e-6.
   real(wp), parameter, public :: seconds_per_element = 0.55e-6_wp
-  !> Seconds of one processor in which a run looks at its ledger, its limits, at signals and at elapsed time.
+  !> Processor time in seconds between two checks of ledger, limits, signals and elapsed time.
   real(wp), parameter :: seconds_between_checks = 1
-  !> Most steps between two looks. With these their costs, those of about one step, do not count.
+  !> Largest number of steps between two checks: a check costs about one step.
   integer, parameter :: max_between_checks = 64
-  !> Steps of central differences between two checks of what of the interfaces is damaged. A look costs a twentieth of a
-  !> step, and damage is found as late as a hundredth of the time in which the force of a blow rises.
+  !> Steps of central differences between two updates of the damaged state of interfaces. An update costs a twentieth of
+  !> a step, and the delay is a hundredth of the rise time of the contact force.
   integer, parameter :: between_stages = 8
 
 contains
 
-  !> Steps between two looks. The same on any number of ranks and after a restart, as warnings are given then.
+  !> Steps between two checks. It is the same on any number of ranks and after a restart, as warnings are given at
+  !> checks.
   pure integer function steps_between_checks(stepping, elements) result(steps)
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping
@@ -33,7 +34,7 @@ contains
       (seconds_per_element*elements))))
   end function steps_between_checks
 
-  !> Steps between two checks of what of the interfaces is damaged.
+  !> Steps between two updates of the damaged state of interfaces.
   pure integer function steps_between_stages(stepping) result(steps)
     !> How steps are taken
     type(stepping_t), intent(in) :: stepping

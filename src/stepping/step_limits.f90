@@ -1,4 +1,4 @@
-!> How long a step the integrators bear, and how much longer than the one before.
+!> Limits of the step length by the integrators: largest step, and largest ratio to the previous step.
 module step_limits
   use gear_integrator, only: largest_growth_ratio
   use impact_parameters, only: integrator_gear4
@@ -14,13 +14,13 @@ module step_limits
 
 contains
 
-  !> Longest step that the impactor's integrator bears now, as a binary fraction of the step wanted so that
-  !> the factored operator need not follow every small change.
+  !> Longest step allowed by the impactor's integrator, as a binary fraction of the target step, so that small changes
+  !> require no factorization.
   pure real(wp) function impactor_limit(model, now, wanted) result(limit)
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
-    !> Step wanted
+    !> Target step
     real(wp), intent(in) :: wanted
 
     limit = huge(limit)
@@ -30,7 +30,7 @@ contains
     if (limit < wanted) limit = wanted*2.0_wp**floor(log(limit/wanted)/log(2.0_wp))
   end function impactor_limit
 
-  !> Largest ratio of a step to the one before that the integrators bear.
+  !> Largest ratio of a step to the previous one allowed by the integrators.
   pure real(wp) function growth_limit(model, stepping, controller) result(ratio)
     type(model_t), intent(in) :: model
     !> How steps are taken
@@ -45,7 +45,7 @@ contains
     if (has_gear(model)) ratio = merge(2, 1, controller%equal_steps >= stepping%controls%equal_of_gear)
   end function growth_limit
 
-  !> True: Gear's method moves the impactor.
+  !> True: Gear's method integrates the impactor's motion.
   pure logical function has_gear(model)
     type(model_t), intent(in) :: model
 

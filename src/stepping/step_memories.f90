@@ -1,4 +1,4 @@
-!> What a step changes besides the factored operator, kept so that the step can be taken again.
+!> Saved state of a stepper before a step, without the factored operator, so that the step can be repeated.
 module step_memories
   use states, only: state_t
   use step_controllers, only: step_controller_t
@@ -18,17 +18,17 @@ module step_memories
     !> The estimate of the error
     type(step_error_t) :: step_error
   contains
-    !> Takes an accepted step back.
+    !> Restores the state before an accepted step.
     procedure :: restore_state
   end type step_memory_t
 
 contains
 
-  !> Keeps what the next step will change.
+  !> Saves the stepper before a step.
   pure function save_state(stepper) result(self)
     !> The stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Its memory
+    !> The saved state
     type(step_memory_t) :: self
 
     self%now = stepper%now
@@ -36,9 +36,9 @@ contains
     self%step_error = stepper%step_error
   end function save_state
 
-  !> Takes an accepted step back; it counts as rejected.
+  !> Restores the state before an accepted step, which counts as rejected.
   subroutine restore_state(self, stepper)
-    !> The memory of the stepper before the step
+    !> The state saved before the step
     class(step_memory_t), intent(in) :: self
     !> The stepper
     type(time_stepper_t), intent(inout) :: stepper

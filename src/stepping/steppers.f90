@@ -1,4 +1,4 @@
-!> What a stepper through time or load keeps from step to step, and what kinds of stepping have in common.
+!> Data of a stepper in time or load, and the interface of its kinds of steps.
 module steppers
   use central_differences, only: central_difference_t
   use errors, only: error_t
@@ -14,7 +14,7 @@ module steppers
   private
   public :: stepper_t, step_kind_t
 
-  !> A kind of implicit steps: in time or by load. It has no data of its own; all that evolves is the stepper's.
+  !> A kind of implicit steps: in time or by load. It has no data; all variables are in the stepper.
   type, abstract :: step_kind_t
   contains
     !> Prepares the first step.
@@ -29,8 +29,8 @@ module steppers
     procedure :: equilibrate
   end type step_kind_t
 
-  !> All that evolves during a run, and how steps are taken. It has many components because each part of the control of
-  !> steps stores its own.
+  !> Evolving state of a run, and parameters of steps. It has many components because each part of the step control
+  !> stores its own.
   type :: stepper_t
     !> The state reached
     type(state_t), allocatable :: now
@@ -54,7 +54,7 @@ module steppers
     type(stepping_t) :: stepping
     !> Steps in time or by load; unallocated: central differences
     class(step_kind_t), allocatable :: kind
-    !> Factorizations and solves when the present step was begun
+    !> Factorizations and solves before the present step
     integer :: factorizations_at_start = 0, solves_at_start = 0
     !> Rejected steps
     integer :: rejected = 0
@@ -67,7 +67,7 @@ module steppers
   contains
     !> Energy to be dissipated per time.
     procedure :: energy_rate
-    !> Time of a step by dissipation over that of one by load.
+    !> Pseudo-time of a step under control of dissipation over that under load control.
     procedure :: step_scale
   end type stepper_t
 
@@ -80,7 +80,7 @@ module steppers
       !> The stepper, its state in equilibrium
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
-      !> Set if there is no factor
+      !> Set if the factorization fails
       type(error_t), allocatable, intent(inout) :: error
     end subroutine start_steps
 
@@ -107,7 +107,7 @@ module steppers
       import :: step_kind_t, stepper_t, model_t
       !> The kind
       class(step_kind_t), intent(in) :: self
-      !> The stepper, the failures of the step tried noted
+      !> The stepper, with the failures of the trial step
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
     end subroutine note_state_tried
@@ -142,7 +142,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
   end subroutine equilibrate
 
-  !> Energy that is to be dissipated per time from now on, so that at the end it is what the deck asks for.
+  !> Energy to be dissipated per unit of pseudo-time in the remaining steps, so that the total is that of the deck.
   pure real(wp) function energy_rate(self)
     !> The stepper
     class(stepper_t), intent(in) :: self
@@ -150,7 +150,7 @@ contains
     energy_rate = max(0.0_wp, self%stepping%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
   end function energy_rate
 
-  !> Time of a step that dissipates its part of the energy asked for, over that of a step taken by load; 1 for these.
+  !> Pseudo-time of a step under control of dissipation over that of a step under load control; 1 for the latter.
   pure real(wp) function step_scale(self)
     !> The stepper
     class(stepper_t), intent(in) :: self

@@ -24,9 +24,9 @@ module time_stepping
     procedure :: start
     !> One accepted step.
     procedure :: advance
-    !> Completes what a step by central differences leaves until output or a check is due.
+    !> Computes energies, reactions and stress of a step by central differences when output or a check is due.
     procedure :: complete_state
-    !> Saves or loads all that evolves.
+    !> Saves or loads the evolving state.
     procedure :: visit
   end type time_stepper_t
 
@@ -41,7 +41,7 @@ contains
     type(stepping_t), intent(in) :: stepping
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> True: a state will be loaded, so that none has to be found
+    !> True: a state will be loaded, so that no initial state is computed
     logical, intent(in) :: resumed
     !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
@@ -106,7 +106,7 @@ contains
     real(wp), intent(in) :: event
     !> Step found
     real(wp), intent(out) :: step
-    !> Shortest step that the error may ask for, where the length follows it
+    !> Shortest step allowed under error control, where the length follows it
     real(wp), intent(out) :: shortest
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(inout) :: error
@@ -127,11 +127,11 @@ contains
     end do
   end subroutine find_step
 
-  !> Completes what a step by central differences leaves until output or a check is due. Collective.
+  !> Computes energies, reactions and stress of a step by central differences when output or a check is due. Collective.
   subroutine complete_state(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> Receives how the impactor's force is spread
+    !> Receives the distribution of the impactor's force
     type(model_t), intent(inout) :: model
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
@@ -139,14 +139,14 @@ contains
     if (allocated(self%explicit)) call complete_step(self%explicit, model, self%now, error)
   end subroutine complete_state
 
-  !> Saves or loads all that evolves.
+  !> Saves or loads the evolving state.
   subroutine visit(self, archive, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    !> Set if the operator cannot be made again
+    !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
 
     call self%now%visit(archive, model)

@@ -18,10 +18,10 @@ contains
     !> Norm of the residual, and of that before the last correction; 0: there was none
     real(wp), intent(in) :: norm, before
 
-    ! After a correction that closes contacts their forces may be a thousand times the reference force.
+    ! A correction that closes contacts can raise the residual to a thousand times the reference force.
     left = controls%max_forcing_term/max(1.0_wp, norm)
     if (norm < before) left = min(left, controls%forcing_factor*(norm/before)**2)
-    ! A residual within the tolerance may be left whole; it can be zero.
+    ! A residual within the tolerance needs no reduction; it may be zero.
     associate (enough => controls%forcing_margin*tolerance)
       left = min(max(left, enough/max(norm, enough)), controls%forcing_factor)
     end associate

@@ -75,7 +75,7 @@ contains
     self%on = self%first > 0
   end subroutine begin
 
-  !> Accepts the fraction by the directional derivative, or chooses another one. Collective.
+  !> Accepts the fraction if the directional derivative is small enough, otherwise chooses another one. Collective.
   subroutine assess(self, model, smooth, ends)
     !> The search
     class(line_search_t), intent(inout) :: self

@@ -1,5 +1,4 @@
-!> What Newton's method of a step works on, as one object: model, operator, the states at the start and at the end,
-!> residual and correction.
+!> Data of Newton's method for a step: model, operator, states at the start and end of the step, residual, correction.
 module newton_iterations
   use kinds, only: wp
   use models, only: model_t
@@ -38,7 +37,7 @@ module newton_iterations
 
 contains
 
-  !> The iteration of a step before its first residual; it points to what it is given.
+  !> Iteration of a step before its first residual, with pointers to the model, the operator and both states.
   function new_newton_iteration(model, equilibrium, operator, old, new) result(self)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model

@@ -27,17 +27,16 @@ contains
     real(wp), contiguous, intent(in) :: residual(:, :)
     !> Two kinds of reference forces, (5, points)
     real(wp), contiguous, intent(in) :: first(:, :), second(:, :)
-    !> This rank's share of the square of a further load on w
+    !> This rank's part of the squared norm of a further load on w
     real(wp), intent(in) :: load
-    !> Diagonal of the operator, and the unknowns: the residual cannot fall below the last digit of their products,
-    !> however exact the solution, (5, points): a thin plate's shear forces are small differences of large numbers
+    !> Diagonal of the operator, and the unknowns, (5, points). Round-off of their products is a lower bound of the
+    !> residual: shear forces of a thin plate are small differences of large numbers
     real(wp), intent(in) :: diagonal(:, :), displacement(:, :)
-    !> False: the iteration continues for any residual, so that limit is not needed
+    !> False: the iteration continues for any residual, so that the bound by round-off is not needed
     logical, intent(in) :: may_end
     !> Tolerance of the relative residual
     real(wp), intent(in) :: tolerance
-    !> Lever arm that makes moments of forces, the laminate's thickness: moments balance among themselves, so
-    !> those left over say nothing of the reference moments
+    !> Lever arm that converts reference forces to moments: the thickness of the laminate
     real(wp), intent(in) :: length
     !> Constants of Newton's method
     type(newton_controls_t), intent(in) :: controls
@@ -63,9 +62,10 @@ contains
     norm = maxval(squares(1:2)/max(scale, controls%last_digits*epsilon(norm)/tolerance*sqrt(limits)))
   end function relative_residual
 
-  !> Forces whose last digit a residual can't fall below. A moment is a sum of what rotation and deflection give, and
-  !> the stiffness between the two is at most the root of the product of their own, as the operator is positive: long
-  !> elements of thin plates have moments that are small differences of what the deflection gives.
+  !> Magnitude of the nodal forces whose round-off bounds the residual from below: diagonal times unknown. For moments
+  !> the term of the deflection is added, with the largest coupling stiffness of a positive definite operator, the root
+  !> of the product of both diagonal entries: moments in long elements of thin plates are small differences of such
+  !> terms.
   pure function forces_to_round(diagonal, displacement) result(forces)
     !> Diagonal of the operator, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
@@ -101,8 +101,8 @@ contains
     end if
   end function sums_of_squares
 
-  !> The same of points that give no other one its motion. Eight points at a time, each with its own sums, which the
-  !> processor takes together.
+  !> The same for points that no other point is tied to, eight points at a time, so that the compiler vectorises the
+  !> sums.
   pure function plain_sums(numbering, force) result(squares)
     !> Knows which unknowns are constrained
     type(numbering_t), intent(in) :: numbering
@@ -117,11 +117,11 @@ contains
     squares = [sum(sums(1:3, :)), sum(sums(4:5, :))]
   end function plain_sums
 
-  !> Adds squares of a row of numbers in turn to so many sums.
+  !> Adds the squares of a row of numbers to as many sums.
   pure subroutine add_squares(number, equation, values, sums)
-    !> How many
+    !> Number of values
     integer, intent(in) :: number
-    !> Negative where a number does not count
+    !> Equation of each value; negative: constrained, not added
     integer, intent(in) :: equation(number)
     !> The numbers
     real(wp), intent(in) :: values(number)

@@ -1,13 +1,13 @@
-!> Constants that steer Newton's method and the length of steps. They change the cost of a run and, with its sequence of
-!> steps, figures within the error of the steps; doc/studies/solution_controls.md has what each changes. The group
-!> &controls of a deck sets them for studies, so that none edits sources.
+!> Constants of Newton's method and of the step control. They affect the cost of a run, and its results within the error
+!> of the steps; doc/studies/solution_controls.md gives the effect of each. The group &controls of a deck sets them for
+!> studies.
 module solution_controls
   use kinds, only: wp
   implicit none
   private
   public :: newton_controls_t, step_controls_t
 
-  !> Constants of Newton's method, because each is one decision of its iteration.
+  !> Constants of Newton's method. They are many because each one belongs to one decision of the iteration.
   type :: newton_controls_t
     !> Largest forcing term, and the factor of the squared ratio of the last residuals that gives the next one
     !> (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2). Used in `forcing_terms`
@@ -18,7 +18,7 @@ module solution_controls
     !> fifth of a solve (`step_problems`)
     real(wp) :: element_reduction = 1.0e-2_wp
     !> Complementarity of pressures and gaps, relative to the largest pressure, over the tolerance of the residual: both
-    !> are errors of forces, and the two together are to stay near the tolerance (`step_problems`)
+    !> are errors of forces, and their sum should be near the tolerance (`step_problems`)
     real(wp) :: contact_share = 0.5_wp
     !> Directional derivative over its initial value at which a line search ends (H. Matthies, G. Strang, Int. J. Numer.
     !> Methods Eng. 14 (1979) 1613-1626). Used in `line_searches`

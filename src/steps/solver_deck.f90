@@ -29,7 +29,7 @@ module solver_deck
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options passed to PETSc.']
 
-  !> What options for PETSc begin with in a deck.
+  !> Prefixes of the options for PETSc allowed in a deck.
   character(len=*), parameter :: beginnings(*) = [character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', &
                                                   '-indefinite_pc_', '-indefinite_mat_', &
                                                   '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_', &
@@ -60,7 +60,8 @@ contains
     solver%petsc_options = settings%text_of(solver_group, 'petsc_options')
   end subroutine fill_linear_solver
 
-  !> Options for PETSc: those of the solver, none that could write files. A deck may come from anywhere.
+  !> Checks options for PETSc: those of the solver are allowed, but none that writes files, as a deck may come from an
+  !> unknown source.
   subroutine check_petsc_options(settings, solver, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -81,13 +82,13 @@ contains
     end do
   end subroutine check_petsc_options
 
-  !> Whether a word is one of the options for a deck, or a value that names no file.
+  !> True if a word is an allowed option, or a value that is not the name of a file.
   pure logical function is_allowed(word)
     !> The word
     character(len=*), intent(in) :: word
     integer :: i
 
-    ! A tab would part what is one word here into two for PETSc.
+    ! PETSc would separate words at a tab.
     is_allowed = scan(word, ':/'//achar(9)) == 0
     if (.not. is_allowed .or. word == '-log_view' .or. index(word, '-') /= 1) return
     if (len(word) > 1) is_allowed = scan(word(2:2), '0123456789.') == 1

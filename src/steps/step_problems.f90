@@ -1,4 +1,4 @@
-!> Equilibrium of a step: one nonlinear iteration for every kind of step, be it a step in time or a load step.
+!> Equilibrium of a step: one nonlinear iteration for all kinds of steps, in time and by load.
 !>
 !> A kind of step defines predictor, residual, operator and energy balance. The iteration around them is the paper's
 !> Fig. 7: residual, ties and contact, correction with a lagged operator; at equilibrium the contact pressures become

@@ -1,4 +1,4 @@
-!> Time integration of the plate, load steps, adaptivity and convergence of equilibrium, as the deck gives them.
+!> Parameters of steps as given in the deck: time integration, load steps, adaptivity, convergence of equilibrium.
 module stepping_parameters
   use central_difference_parameters, only: central_difference_parameters_t
   use kinds, only: wp
@@ -13,12 +13,13 @@ module stepping_parameters
                                 integrator_central_difference = 3
   !> Rules for renewing the factored operator.
   integer, parameter, public :: refactor_deflection = 1, refactor_iterations = 2
-  !> What an adaptive step follows: the stress at the struck point (the paper's), or the error of each step.
+  !> Control of the step length: by the stress rate at the struck point (the paper's rule), or by the error of each
+  !> step.
   integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
 
-  !> Time from touch to the end of a run over that to the end of the contact.
+  !> Duration of a run over the time from first contact to the end of the contact.
   real(wp), parameter, public :: past_contact = 1.25_wp
-  !> Longest run that follows the contact, over the end that was chosen for it: an impactor that is not gone by then
+  !> Longest extension of a run by its contact, over the end first chosen: an impactor still in contact by then
   !> perforates the plate or rests on it.
   real(wp), parameter :: max_followed = 4
 
@@ -26,7 +27,7 @@ module stepping_parameters
   type :: time_t
     !> End of the run
     real(wp) :: end = 0
-    !> True: the run goes on beyond its end until the impactor has left
+    !> True: the run is extended until the impactor has left
     logical :: follows_contact = .false.
     !> First time step
     real(wp) :: step = 0
@@ -42,23 +43,24 @@ module stepping_parameters
     real(wp) :: rho_infinity = 1
   end type time_t
 
-  !> Adaptive rules of the paper's section 3.4, and one that follows the error.
+  !> Adaptive rules: those of the paper's section 3.4, and control by the error of each step.
   type :: adapt_t
     !> True: the time step adapts
     logical :: on = .false.
     !> rule_stress_rate or rule_local_error
     integer :: rule = rule_local_error
-    !> Error of a step aimed at, fraction of the largest force and of the largest deflection (rule_local_error)
+    !> Tolerance of the error of a step, as a fraction of the largest force and deflection (rule_local_error)
     real(wp) :: tolerance = 1.0e-3_wp
     !> refactor_deflection (the paper's) or refactor_iterations
     integer :: refactor = refactor_iterations
-    !> Growth of the struck point's deflection that renews the operator, fraction of the thickness
+    !> Increase of the struck point's deflection after which the operator is factorized again, as a fraction of the
+    !> thickness
     real(wp) :: stiffness_update = 0.003_wp
-    !> Change of the stress at the struck point wanted in one step, fraction of its largest value so far
+    !> Required change of the stress at the struck point per step, as a fraction of its largest value so far
     real(wp) :: stress_change = 0.05_wp
-    !> Iterations of a step above which the operator is renewed (refactor_iterations)
+    !> Iterations of a step above which the operator is factorized again (refactor_iterations)
     integer :: iterations = 16
-    !> Smallest part of the step left to a delamination that grows one cell a step; 1: it takes whole steps
+    !> Smallest factor by which fronts that grow one cell per step shorten it; 1: not at all
     real(wp) :: growth_step = 0.25_wp
   end type adapt_t
 
@@ -72,7 +74,7 @@ module stepping_parameters
     type(newton_controls_t) :: controls
   end type equilibrium_t
 
-  !> What a run is expected to show, by a pilot calculation; 0: not known.
+  !> Expected response of a run, from a preliminary calculation; 0: not known.
   type :: expected_response_t
     !> Time in which the force of first contact rises
     real(wp) :: rise = 0
@@ -82,7 +84,7 @@ module stepping_parameters
     real(wp) :: last_contact = 0
   end type expected_response_t
 
-  !> All that steps are taken by.
+  !> All parameters of steps.
   type :: stepping_t
     !> Time integration
     type(time_t) :: time
@@ -90,11 +92,11 @@ module stepping_parameters
     type(central_difference_parameters_t) :: central
     !> Load steps of a static analysis
     integer :: static_steps = 1
-    !> Energy dissipated at which a static analysis ends; 0: it is taken by load alone
+    !> Dissipated energy at which a static analysis ends; 0: load control throughout
     real(wp) :: dissipation = 0
     !> Adaptivity
     type(adapt_t) :: adapt
-    !> What the run is expected to show
+    !> Expected response of the run
     type(expected_response_t) :: expected
     !> Convergence of equilibrium
     type(equilibrium_t) :: equilibrium
@@ -104,31 +106,31 @@ module stepping_parameters
 
 contains
 
-  !> True: central differences move the plate.
+  !> True: the plate is integrated by central differences.
   elemental logical function is_explicit(stepping)
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
 
     is_explicit = stepping%time%integrator == integrator_central_difference
   end function is_explicit
 
-  !> When a run ends whose contact, as far as it has come, ended or still went on at some time.
+  !> End of a run, from the time of last contact so far.
   elemental real(wp) function end_of_run(stepping, contact_end)
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
-    !> When there was contact last
+    !> Time of last contact
     real(wp), intent(in) :: contact_end
 
     associate (time => stepping%time, central => stepping%central)
       end_of_run = time%end
       if (time%follows_contact) end_of_run = min(max_followed*time%end, max(time%end, past_contact*contact_end))
-      ! The plate comes to rest from the end of the contact on.
+      ! Damping brings the plate to rest from the end of the contact on.
       if (contact_end > 0 .and. central%settle > 0) &
         end_of_run = max(end_of_run, min(contact_end, max_followed*time%end) + central%settle)
     end associate
   end function end_of_run
 
-  !> True: steps follow the error that each makes.
+  !> True: the step length is controlled by the error of each step.
   elemental logical function is_error_controlled(adapt)
     !> Adaptive rules
     type(adapt_t), intent(in) :: adapt

@@ -2,10 +2,10 @@
 !> preconditioner. A factorization older than the present contacts, ties, damage or deflection costs iterations, not
 !> accuracy.
 !>
-!> Flexible GMRES takes fewer solves than conjugate gradients (input/li2002.nml: 7864 against 10182). These are used
-!> where cohesive points soften: they stop before a direction of negative curvature, and what they have found by then
-!> descends (Newton's method with conjugate gradients, J. Nocedal, S. J. Wright, Numerical Optimization, 2006,
-!> algorithm 7.1).
+!> Flexible GMRES takes fewer solves than conjugate gradients (input/li2002.nml: 7864 against 10182). Conjugate
+!> gradients are used where cohesive points soften: they stop before a direction of negative curvature, and their last
+!> iterate is a direction of descent (Newton's method with conjugate gradients, J. Nocedal, S. J. Wright, Numerical
+!> Optimization, 2006, algorithm 7.1).
 module krylov_corrections
   use cohesive_interfaces, only: cohesive_interfaces_t
   use errors, only: error_t
@@ -18,8 +18,9 @@ module krylov_corrections
   private
   public :: find_krylov_correction, solve_load_tangent
 
-  !> Part of a solution that may be left wrong. Beside a limit two large solutions make a small correction: with 1e-3
-  !> its error was 1.5 times what there was to correct, and no step however short converged (input/verify/dcb_ubm.nml).
+  !> Relative tolerance of solutions of a load step. Near a limit point a small correction is the difference of two
+  !> large solutions: with 1e-3 its error is 1.5 times the correction, and no step converges however short
+  !> (input/verify/dcb_ubm.nml).
   real(wp), parameter :: left_over = 1.0e-6_wp
 
 contains

@@ -16,8 +16,8 @@ module operator_assembly
 
 contains
 
-  !> True if all operators of a model are positive definite: in time, with secant stiffness of its laws, or without
-  !> buckling and softening.
+  !> True if all operators of a model are positive definite: in steps in time, with secant stiffness of the laws, or
+  !> without buckling and softening.
   pure logical function is_positive_definite(model) result(positive)
     type(model_t), intent(in) :: model
 

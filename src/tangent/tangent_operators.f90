@@ -1,6 +1,6 @@
-!> The factored operator that turns a residual of equilibrium into a correction of the displacement.
-!> It is a preconditioner that may lag behind the state: with the exact internal force in the residual
-!> its age changes the number of iterations, never the converged solution.
+!> The factored operator that gives a correction of the displacement for a residual of equilibrium. It is a
+!> preconditioner that may lag behind the state: as the residual has the exact internal force, its age affects the
+!> number of iterations, not the converged solution.
 module tangent_operators
   use kinds, only: wp
   use archives, only: archive_t
@@ -17,15 +17,16 @@ module tangent_operators
   private
   public :: tangent_operator_t
 
-  !> A factor of `stiffness_factor*tangent + mass_factor*mass`, with many components because it keeps what made it.
+  !> Factorization of `stiffness_factor*tangent + mass_factor*mass`. It has many components because it stores the data
+  !> it was computed from.
   type :: tangent_operator_t
     !> Equations of the unconstrained unknowns
     type(numbering_t) :: numbering
     !> The linear solver that holds the factor
     type(linear_solver_t), allocatable :: solver
-    !> Solve with the current tangent
+    !> Solvers with the current tangent
     type(krylov_solver_t) :: minimal_residuals, conjugate_gradients
-    !> True once there is a factor
+    !> True after a factorization
     logical :: ready = .false.
     !> Factors of stiffness and mass in the factored operator
     real(wp) :: stiffness_factor = 0, mass_factor = 0
@@ -35,51 +36,51 @@ module tangent_operators
     real(wp), allocatable :: stiffness(:, :, :)
     !> Diagonal of the operator, (5, points)
     real(wp), allocatable :: diagonal(:, :)
-    !> Displacement under a unit force of the impactor, (5, points), and its rows of this rank
+    !> Unit-load solution: displacement under a unit force of the impactor, (5, points), and its rows on this rank
     real(wp), allocatable :: response(:, :), response_rows(:)
     !> Stiffness added to the three jumps of each point, (3, points)
     real(wp), allocatable :: added(:, :)
     !> Deflection of the struck point at which the tangent was taken
     real(wp) :: deflection = 0
-    !> Mean deflection of the patch under that force
+    !> Mean deflection of the patch per unit force
     real(wp) :: compliance = 0
     !> Factorizations, and corrections solved for, so far
     integer :: factorizations = 0, solves = 0
     !> Time spent in the parts of a step
     type(timer_set_t) :: timers
   contains
-    !> Numbers the equations and sets the solver up.
+    !> Numbers the equations and creates the solver.
     procedure :: create
-    !> Assembles and factors the operator at a displacement.
+    !> Assembles and factorizes the operator at a displacement.
     procedure :: renew
     !> Correction of the displacement for a residual.
     procedure :: correct
-    !> Displacement under a unit force of the impactor.
+    !> Unit-load solution of the impactor's force.
     procedure :: find_response
-    !> Rows of this rank under forces.
+    !> Solution on this rank's rows.
     procedure :: solve_rows
-    !> Rows of this rank from a field.
+    !> This rank's rows of a field.
     procedure :: rows_of
     !> True if ties and contacts have changed too much.
     procedure :: has_outdated_constraints
-    !> Factors what has been assembled.
+    !> Factorizes the assembled matrix.
     procedure :: factorize
-    !> Saves or loads what the factor was computed from.
+    !> Saves or loads the data that the factorization was computed from.
     procedure :: visit
-    !> Frees the factors.
+    !> Deallocates the factors.
     procedure :: release
   end type tangent_operator_t
 
 contains
 
-  !> Numbers the equations of a model and sets the solver up.
+  !> Numbers the equations of a model and creates the solver.
   subroutine create(self, model, factorization, error)
     !> The operator
     class(tangent_operator_t), intent(out) :: self
     type(model_t), intent(in) :: model
     !> One of the factorization_* choices
     integer, intent(in) :: factorization
-    !> Set if the solver cannot be set up
+    !> Set if the solver cannot be created
     type(error_t), allocatable, intent(out) :: error
 
     allocate (self%displacement(5, size(model%distribution%points)), source=0.0_wp)
@@ -101,7 +102,7 @@ contains
     allocate (self%response_rows(self%numbering%rows), source=0.0_wp)
   end subroutine create
 
-  !> Assembles and factors the operator at a displacement, and finds the response to a unit force.
+  !> Assembles and factorizes the operator at a displacement, and computes the unit-load solution.
   subroutine renew(self, model, stiffness, interfaces, displacement, stiffness_factor, mass_factor, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
@@ -130,8 +131,7 @@ contains
     call self%factorize(model, error)
   end subroutine renew
 
-  !> Factors what has been assembled, the stiffness added to the jumps included, and finds the response
-  !> to a unit force.
+  !> Factorizes the assembled matrix with the stiffness added to the jumps, and computes the unit-load solution.
   subroutine factorize(self, model, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
@@ -152,7 +152,7 @@ contains
     if (model%setup%has_impactor) call self%find_response(model, error)
   end subroutine factorize
 
-  !> Finds the response to a unit force of the impactor.
+  !> Computes the unit-load solution of the impactor's force.
   subroutine find_response(self, model, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
@@ -170,13 +170,13 @@ contains
     self%compliance = model%patch_mean(self%response)
   end subroutine find_response
 
-  !> Rows of this rank under forces, by the factor as it is.
+  !> Solution on this rank's rows with the present factorization.
   subroutine solve_rows(self, forces, motion, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> Forces on the rows
     real(wp), intent(in) :: forces(:)
-    !> Their motion
+    !> Displacement under them
     real(wp), intent(out) :: motion(:)
     !> Set if the solution is not finite
     type(error_t), allocatable, intent(inout) :: error
@@ -186,7 +186,7 @@ contains
     call self%timers%stop('solve')
   end subroutine solve_rows
 
-  !> Rows of this rank from a field of motions, or of the leading points' values.
+  !> This rank's rows of a displacement field, or of a field of forces at the points that define the unknowns.
   pure function rows_of(self, field) result(rows)
     !> The operator
     class(tangent_operator_t), intent(in) :: self
@@ -202,15 +202,15 @@ contains
     end do
   end function rows_of
 
-  !> True if ties and contacts have changed at more equations than a factorization takes solves: each takes a direction
-  !> of its own in a Krylov space. Collective.
+  !> True if ties and contacts have changed at more equations than the number of solves that cost one factorization:
+  !> each change adds a dimension to the Krylov space. Collective.
   logical function has_outdated_constraints(self, model, current, max_changes)
     !> The operator
     class(tangent_operator_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Stiffness added to the jumps now, (3, points)
+    !> Present stiffness added to the jumps, (3, points)
     real(wp), intent(in) :: current(:, :)
-    !> Changes that may be left to the iteration
+    !> Number of changes that the iteration may account for
     integer, intent(in) :: max_changes
     real(wp) :: changed
 
@@ -242,7 +242,8 @@ contains
     call model%halo%update(correction)
   end subroutine correct
 
-  !> Saves the data that the factor was computed from, or loads them and factorizes: the factor affects the iterations.
+  !> Saves the data that the factorization was computed from, or loads them and factorizes: the factorization affects
+  !> the iterations.
   subroutine visit(self, archive, model, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
@@ -282,7 +283,7 @@ contains
                            self%mass_factor, self%solver, self%diagonal)
   end subroutine assemble
 
-  !> Frees the factors.
+  !> Deallocates the factors.
   subroutine release(self)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self

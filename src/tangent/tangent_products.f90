@@ -138,7 +138,7 @@ contains
     real(wp), intent(in) :: factored(:, :), now(:, :)
     !> True at points with a cohesive law; unallocated: none
     logical, allocatable, intent(in) :: cohesive(:)
-    !> Their tangents times the factor of stiffness, (3, 3, points); read with `cohesive` only
+    !> Their tangents times the factor of stiffness, (3, 3, points); used with `cohesive` only
     real(wp), intent(in) :: tangents(:, :, :)
     real(wp) :: some
     integer :: i, k

@@ -161,7 +161,7 @@ def check_once(topics, wrong):
                 continue
             with open(path, encoding="utf-8") as page:
                 if re.search(r"^\| (?:key \| type|name \| (?:type|on)) \|", page.read(), re.MULTILINE):
-                    wrong.append(f"{path}: a table of keys, columns or fields stands on its own page only")
+                    wrong.append(f"{path}: a table of keys, columns or fields is on the page of its group only")
 
 
 def main():

@@ -36,7 +36,7 @@ OTHERS = (
     ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("linalg/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
-    ("mesh/support_deck.f90", "face", "what bears the plate, a choice of its bearing"),
+    ("mesh/support_deck.f90", "face", "bearing of the plate, a choice of its bearing"),
     ("model/load_cases.f90", "time", "what grows from step to step, in messages"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),

@@ -84,7 +84,7 @@ exec {HERE}/held.sh "${{!#}}/swept_restart.h5" {implam} "$@" """)
     ended = [slurm.end_of(f"{number}_{task}", 300) for task in (1, 2, 3, 4)]
     states, again = [job["JobState"] for job in ended], [int(job["Restarts"]) for job in ended]
     print(f"array: {', '.join(states)}, requeued {again} times")
-    # scancel sends once more where Slurm asks it to, so that the task may be stopped twice.
+    # scancel sends again where Slurm requires it, so that the task may be stopped twice.
     require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks haven't ended so.")
     run([*sweep, "--output", "queued", "--program", implam, "--table"], folder=folder)
     require(table_of(folder / "queued") == table_of(folder / "plain"), "The table isn't that without a queue.")

@@ -43,7 +43,7 @@ contains
     failures = failures//new_line('a')
   end subroutine add_failure
 
-  !> Hands over the failures of the test that ended, and forgets them.
+  !> Returns the failures of the test that ended, and resets them.
   subroutine take_failures(text)
     !> One line a failure; empty if there was none
     character(len=:), allocatable, intent(out) :: text

@@ -115,7 +115,7 @@ def processes_of(session):
     for status in Path("/proc").glob("[0-9]*/stat"):
         try:
             state, _, _, its_session = status.read_text().rpartition(")")[2].split()[:4]
-        except OSError:  # ended meanwhile
+        except OSError:  # it has ended
             continue
         if int(its_session) == session and state != "Z":
             found.append(int(status.parent.name))

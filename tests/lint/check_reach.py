@@ -14,7 +14,7 @@ import check_style
 from fortran_units import read_modules
 
 # What only tests reach, and why it stays in the program.
-CLOSED_LIST = "tests hold every row of results against a closed list, which stands beside the meaning of the cells"
+CLOSED_LIST = "tests compare every row of results with a closed list, which is next to the meaning of the cells"
 LINEAR_ALGEBRA = "a folder of procedures that stand for themselves, each with its test"
 EXCEPTIONS = {
     "numberings: numbering_t%owns": LINEAR_ALGEBRA,
@@ -128,7 +128,7 @@ class Walk:
         return found
 
     def type_named(self, name, procedure):
-        """Type of a name in a procedure; UNKNOWN if several types bear it."""
+        """Type of a name in a procedure; UNKNOWN if several types have it."""
         if not name:
             return INTRINSIC
         host = procedure

@@ -52,6 +52,16 @@ WORDS = {
     r"go(?:es)? through the plate": "perforates",
     r"follow(?:s|ed)? (?:its|their) damage": "adaptive, grow with the damage",
     r"ask(?:s|ed)? for more": "require",
+    r"bears?|borne": "carry, support; of a name: have",
+    r"held against": "compared with, tested by",
+    r"remembers?|remembered": "history variables; store, save",
+    r"gives? way": "deflect, compliance",
+    r"pressed together|drawn apart": "in compression, in tension",
+    r"how near": "exposure, index, ratio, tolerance",
+    r"counts? as none": "tolerance of what",
+    r"followers?": "dependent points, next case",
+    r"stands? beside|lawful|astray|tales?|meanwhile|in vain": "next to; allowed; wrong; note; until then; rejected",
+    r"begins? anew": "start again, start from zero",
 }
 # Parts of names in code.
 NAMES = {

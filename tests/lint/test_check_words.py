@@ -42,6 +42,11 @@ class CheckWords(unittest.TestCase):
         self.assertEqual(found("Lengths Of The Whole Plate.\nSeconds on the wall", "page.md"),
                          [(1, "Whole Plate"), (2, "on the wall")])  # fmt: skip
 
+    def test_words_of_loads_and_histories_are_found(self):
+        """They stand for carrying, comparing and history variables."""
+        self.assertEqual(found("! What the point remembers\n! A plate bears it, held against tests", "a.f90"),
+                         [(1, "remembers"), (2, "bears"), (2, "held against")])  # fmt: skip
+
     def test_names_of_python_are_checked_outside_docstrings(self):
         """Prose in docstrings may use everyday words that are no names."""
         self.assertEqual(found('"""A fall\nof much."""\nmuch = 1  # much\nrounds = "much"\n', "a.py"),

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Tries every command of the pages: decks are checked, quick commands run, options and files of the others must exist.
-Usage: check_commands.py IMPLAM ROOT BUILD
+"""Tries the commands of the pages that no test runs: decks are checked, quick commands run, options and files of the
+others must exist. Usage: check_commands.py IMPLAM ROOT BUILD
 
-A command is an indented line of a page that begins with one of the programs below. Commands that take longer are run by
-other tests: the tutorial by docs_tutorial, examples of the manual by postproc_runs, exchange by exchange_manual.
+These are the lines of blocks marked `sh long` and `sh elsewhere` (page_commands.py), indented lines that begin with one
+of the programs below, and commands of the program within sentences and tables. Those of blocks marked `sh` are run by
+docs_commands and docs_tutorial.
 """
 
+import os
 import re
 import shlex
 import subprocess
@@ -13,7 +15,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-LINE = re.compile(r"^ {4,}((?:build/|\.venv/bin/)?implam\S*|tests/\S+\.py|mpirun) (.*)$")
+from page_commands import FENCE, INLINE, Command, parts_of
+
+PROGRAM = r"((?:build/|\.venv/bin/)?implam\S*|tests/\S+\.py|mpirun) (.*)$"
+LINE, FENCED = re.compile(r"^ {4,}" + PROGRAM), re.compile(PROGRAM, re.DOTALL)
 CTEST = re.compile(r"`?ctest [^`|]*?-([RL]) +'?([^\s`']+)")
 # Commands of the program that only read decks, and run at once.
 QUICK = ("check", "explain", "help", "version", "man", "completion")
@@ -23,18 +28,37 @@ LATER = ("restart", "queue")
 PLACEHOLDERS = re.compile(r"^(?:deck|panel|plate|DECK)\.nml$")
 
 
-def commands(page):
-    """Programs and words of a page's commands, lines that go on joined, with their numbers."""
-    lines = page.read_text(encoding="utf-8").splitlines()
+def words_of(text):
+    """The words of a command up to a comment or a second command."""
+    return shlex.split(re.split(r" +# | & | && ", text)[0])
+
+
+def indented(lines):
+    """Programs and words of indented commands, lines that go on joined, with their numbers."""
     inside = False
     for number, line in enumerate(lines, 1):
-        inside ^= line.lstrip().startswith("```")
+        inside ^= bool(FENCE.match(line))
         match = None if inside else LINE.match(line)
         if match:
             words, following = match[2], number
             while words.endswith("\\"):
                 words, following = words[:-1] + lines[following].strip(), following + 1
-            yield number, match[1], shlex.split(re.split(r" +# | & | && ", words)[0])
+            yield number, match[1], words_of(words)
+
+
+def commands(page):
+    """Programs and words of a page's commands that no test runs, with their numbers of lines."""
+    text = page.read_text(encoding="utf-8")
+    yield from indented(text.splitlines())
+    for part in parts_of(text):
+        match = FENCED.match(part.text) if isinstance(part, Command) and not part.is_run else None
+        if match:
+            yield part.line, match[1], words_of(match[2])
+    for number, line in enumerate(text.splitlines(), 1):
+        # Capital letters stand for what the reader fills in, dots for what is left out.
+        for command in INLINE.findall(line):
+            if not re.search(r"\b[A-Z]{2,}\b|\.\.\.|[|<]|\[", command):
+                yield number, "implam", words_of(command.removeprefix("implam "))
 
 
 class Checker:
@@ -65,7 +89,13 @@ class Checker:
         if verb in LATER:
             return ""
         decks = [word for word in words if word.endswith(".nml")]
-        if verb == "new" or any(PLACEHOLDERS.match(deck) for deck in decks):
+        if verb == "new":
+            code, printed = self.run(self.program, *words)
+            return printed.strip() if code else ""
+        if any(PLACEHOLDERS.match(deck) for deck in decks):
+            return ""
+        # A command that is only named, as `implam check` is, or that reads the deck of the folder.
+        if not decks and (verb not in QUICK or verb == "check"):
             return ""
         missing = [deck for deck in decks if not (self.root / deck).exists()]
         if missing:
@@ -87,7 +117,9 @@ class Checker:
         options = [word for word in words if word.startswith("--")]
         if program.startswith("tests/"):
             script = self.root / program
-            return self.fault_of_options(options, script.read_text()) if script.exists() else f"there is no {program}"
+            if not os.access(script, os.X_OK):
+                return f"there is no {program} that can be executed"
+            return self.fault_of_options(options, script.read_text())
         if name == "mpirun":
             place = next((n for n, word in enumerate(words) if Path(word).name == "implam"), None)
             return "" if place is None else self.fault_of_program(words[place + 1:])
@@ -121,8 +153,9 @@ class Checker:
 
 def main(program, root, build):
     """Check all pages; return the exit code."""
-    checker = Checker(program, Path(root), Path(build))
-    pages = [Path(root, "README.md"), *sorted(Path(root, "doc").rglob("*.md"))]
+    program, root, build = (Path(word).resolve() for word in (program, root, build))
+    checker = Checker(str(program), root, build)
+    pages = [root / "README.md", *(page for page in sorted((root / "doc").rglob("*.md")) if "news" not in page.parts)]
     wrong = [breach for page in pages for breach in checker.check(page)]
     tried = sum(1 for page in pages for _ in commands(page))
     print("\n".join(wrong) or f"{tried} commands of {len(pages)} pages can be given")

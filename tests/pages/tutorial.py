@@ -12,14 +12,15 @@ import sys
 import time
 from pathlib import Path
 
+from page_commands import Command, parts_of
+
 SKIPPED = 77
-BLOCK = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)")
 
 
 def commands_of(page):
-    """The commands of a page; a line that ends with a backslash goes on."""
-    return [line for block in BLOCK.findall(page) for line in block.replace("\\\n", " ").splitlines() if line.strip()]
+    """The commands of a page that are run."""
+    return [part.text for part in parts_of(page) if isinstance(part, Command) and part.is_run]
 
 
 def main(arguments):

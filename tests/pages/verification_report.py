@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Writes doc/verification.md from what the tests check: the expectations of tests/regress/expect and the scripts that
 tests/regress/CMakeLists.txt registers. Usage: verification_report.py [ROOT] [--check]
 

@@ -21,7 +21,7 @@ DECK = """&case name='frame' kinematics='linear' /
 """
 WINDOW = "window=0.125,0.075"
 PANEL, WINDOW_ALONE = ("0.150,0.100", "12,16"), ("0.125,0.075", "10,14")
-# Support, plate, thin, stiffness in N/mm and how near to it: Kirchhoff's closed form; two as found on twice the cells,
+# Support, plate, thin, stiffness in N/mm and its tolerance: Kirchhoff's closed form; two as found on twice the cells,
 # between the simple and the clamped window; the panel as tested, 2380 after its indentation is taken off; the same with
 # four clamps, as found on twice the cells.
 TRIALS = {

@@ -40,7 +40,7 @@ MODELS = {
                                                               "&time end=1e-3  step=10e-6 /\n",
     "kinetic energy is more than 5 %": "&line at=0 displacement=2e-4 rise=1e-5 /\n"
                                        "&time integrator='central_difference' end=1e-4 /\n",
-    "Motions with scaled inertia": "&impactor mass=0.05 velocity=10 radius=10e-3 /\n"
+    "Kinetic energy of motions with scaled inertia": "&impactor mass=0.05 velocity=10 radius=10e-3 /\n"
         "&time integrator='central_difference' end=2e-4 mass_scaling=1000 /\n",
     "error of steps exceeds the tolerance": ZONE + "&impactor mass=2  velocity=5  radius=10e-3 /\n"
                                             "&time end=0.1e-3  step=10e-6 /\n&adapt /\n",

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Runs that are killed or stopped at any moment, again and again, must end as the run that was left alone.
 Usage: moments.py TRIAL IMPLAM FOLDER COUNT LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
 

@@ -53,7 +53,7 @@ def bent(lines):
 
 
 def write_input(path, lines):
-    """Write the panel in its frame, pressed together in increments."""
+    """Write the panel in its frame, compressed in increments."""
     lines, nodes = bent(lines)
     half_x, half_y = (side / 2 for side in WINDOW)
     sets = {"FRAME": lambda x, y: abs(x) > half_x - ROUNDING or abs(abs(y) - half_y) < ROUNDING,
@@ -95,7 +95,7 @@ def main(implam, folder):
     print(f"stress within {100 * error:.2f} %, {own[-1] / 1e6:.2f} and {stress[-1] / 1e6:.2f} MPa at the end; slope "
           f"beyond buckling {slopes[0] / 1e9:.3f} and {slopes[1] / 1e9:.3f} GPa, {100 * slope_error:+.2f} %")
     require(slopes[1] < 0.7 * stress[0] / shortening[0] * LENGTH, "CalculiX' panel does not buckle.")
-    require(error < STRESS_ERROR, "The panel bears another stress.")
+    require(error < STRESS_ERROR, "The panel carries another stress.")
     require(abs(slope_error) < SLOPE_ERROR, "The stress rises otherwise beyond buckling.")
     return 0
 

@@ -268,7 +268,7 @@ def ranks_of(process, implam):
 
 
 def signal_twice(process, implam):
-    """Send TERM to every rank, and once more."""
+    """Send TERM to every rank, twice."""
     ranks = ranks_of(process, implam)
     require(len(ranks) == 2, f"mpirun has started {len(ranks)} ranks.")
     for _ in range(2):

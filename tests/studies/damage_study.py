@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """What mesh, step, damping, numerical keys and material figures make of input/peanut.nml: one row of a table each.
 
 Those are by implicit steps of 16 us; `integrators` holds them against central differences.

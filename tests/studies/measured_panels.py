@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drops on measured panels of T700/M21, held against the measurement (doc/studies/measured_panels.md).
+"""Drops on measured panels of T700/M21, compared with the measurement (doc/studies/measured_panels.md).
 Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...] [+'GROUP' ...]
        measured_panels.py FOLDER 6.5J|25J
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""What transverse shear bears of the force on the 25 J panel (doc/studies/measured_panels.md).
+"""Part of the force that transverse shear carries on the 25 J panel (doc/studies/measured_panels.md).
 Usage: panel_shear.py FOLDER
 
 Reads what measured_panels.py has left there of a run of 25J with output%fields='stress','ply_damage' and
 output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the struck point
 
-- the force that transverse shear bears there, in kN: plies add up their stresses on a circle. Slowly, the force is
+- the force that transverse shear carries there, in kN: plies add up their stresses on a circle. Slowly, the force is
   this and the part of membrane forces along the slope;
 - the radial membrane force, in N/mm;
 - root mean square and largest size of s23 over all plies, in MPa.
@@ -38,7 +38,7 @@ def ply_forces(stresses, angle, away):
 
 
 def ring_figures(mesh, cells, ring):
-    """Force borne by shear, radial membrane force, root mean square and largest s23."""
+    """Force carried by shear, radial membrane force, root mean square and largest s23."""
     places = mesh["coordinates"][()][mesh["connectivity"][()].reshape(len(mesh["cells/first_ply"]), -1)]
     middles = places.mean(axis=1)[:, :2]
     distances = np.hypot(*middles.T)

@@ -1,8 +1,9 @@
+#!/usr/bin/env python3
 """Runs whose ledger leaves more than 1 % of the energy open although nothing was warned of.
 Usage: unwarned_energies.py FOLDER...
 
 Reads every NAME_summary.json below the folders, such as build/tests/regress after ctest, or the results of a sweep.
-What integrators or load steps created or took, and what no entry accounts for, is held against the largest energy at
+What integrators or load steps created or took, and what no entry accounts for, is compared with the largest energy at
 the end. Fronts book fracture before the motion has lost it: what they book is left out of what counts as created."""
 
 import json

@@ -11,7 +11,7 @@ module deck_groups
 
 contains
 
-  !> Keys in effect of a text that is held against the rows of one group.
+  !> Keys in effect of a text that is checked with the rows of one group.
   subroutine read_group(content, group_row, key_rows, settings, problems)
     character(len=*), intent(in) :: content, group_row, key_rows(:)
     type(settings_t), intent(out) :: settings

@@ -107,7 +107,7 @@ def _only_ply(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float 
 
 def _with_nonstructural_mass(bulk: BulkData, card: BulkCard, plies: list[Ply], thickness: float, remarks: Remarks,
                              field: int = 3) -> list[Ply]:
-    """Return plies whose densities have NSM, the mass per area of what doesn't bear, spread over the thickness."""
+    """Return plies whose densities have NSM, the non-structural mass per area, distributed over the thickness."""
     extra = (bulk.real(card, field) or 0.0) * bulk.mass_factor / thickness
     if extra == 0:
         return plies

@@ -1,4 +1,4 @@
-"""Figures of a plate whose ends are pressed together, as after an impact, from its summary and its history."""
+"""Figures of a plate under compression, as after an impact, from its summary and its history."""
 
 from collections.abc import Mapping
 from pathlib import Path

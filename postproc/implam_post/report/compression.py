@@ -1,4 +1,4 @@
-"""The section of a run's page on the strength of a plate whose ends were pressed together."""
+"""The section of a run's page on the strength of a plate under compression."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ def compression_rows(run: Run, style: PictureStyle, undamaged: float | None = No
     summary = run.summary
     if "residual_strength" not in summary:
         return []
-    remark = "" if summary["has_failed"] else "the plate has not failed: it bears at least this"
+    remark = "" if summary["has_failed"] else "a lower bound: the plate has not failed"
     rows = [("residual strength", style.shown("stress", summary["residual_strength"], 4), remark)]
     if undamaged:
         rows.append(("share of the undamaged plate's", f"{summary['residual_strength'] / undamaged:.3f}",

@@ -65,8 +65,8 @@ def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
     by_number = {case.number: case for case in second.plan.cases}
     rows = []
     for case in first.plan.cases:
-        follower = by_number.get(case.number)
-        rows.append((_summary(first, case), {} if follower is None else _summary(second, follower)))
+        continuation = by_number.get(case.number)
+        rows.append((_summary(first, case), {} if continuation is None else _summary(second, continuation)))
     for name, (which, dimension, _) in FIGURES.items():
         missing: object = math.nan if dimension else ""
         table.columns[name] = [_cell(row[which].get(name), missing) for row in rows]

@@ -299,7 +299,7 @@ class ShellTest(ImportTest):
     METAL: ClassVar = [("MAT1", 2, 70e9, None, 0.33, 2700.0)]
 
     def test_one_ply(self) -> None:
-        """Material, thickness and the mass that doesn't bear."""
+        """Material, thickness and non-structural mass."""
         texts = []
         for laminate in (("PSHELL", 1, 2, 2e-3, 2, None, 2, None, 0.4),
                          ("PCOMP", 1, None, 0.4, None, None, None, None, None, 2, 2e-3, 0.0)):
@@ -395,7 +395,7 @@ class RefusedTest(ImportTest):
         self.refused(Bulk(cells=(1, 1)), "no grid between its corners")
 
     def test_corners(self) -> None:
-        """They have to be held against what their edges are; their rotation is a remark only."""
+        """They are compared with the kind of their edges; their rotation is a remark only."""
         inner = Bulk().on_edge(0)[1:-1]
         bulk = Bulk(edges=("", "34", "35", "35"), more=[("SPC1", 1, "34", *inner)])
         code, printed = self.run_command(bulk.text())

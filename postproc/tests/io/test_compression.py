@@ -1,4 +1,4 @@
-"""Tests of the figures of plates whose ends are pressed together."""
+"""Tests of the figures of plates under compression."""
 
 import json
 import tempfile

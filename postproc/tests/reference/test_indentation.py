@@ -33,8 +33,8 @@ class IndentationTest(unittest.TestCase):
         law.commit(1.0)
         self.assertAlmostEqual(law.permanent, 1 - 0.5**0.4, delta=1e-15)
 
-    def test_hertz_remembers_nothing(self) -> None:
-        """Elastic both ways."""
+    def test_hertz_has_no_history(self) -> None:
+        """Loading and unloading are equal."""
         law = IndentationLaw(2.0, hertz=True)
         law.commit(4.0)
         self.assertEqual(law.force(1.0), 2.0)

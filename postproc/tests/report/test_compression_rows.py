@@ -35,7 +35,7 @@ class CompressionRowsTest(unittest.TestCase):
         self.assertEqual(rows["effective modulus"], "-")
 
     def test_without_compression_or_failure(self) -> None:
-        """There is no section without lines, and no failure of a plate that bears the load."""
+        """There is no section without lines, and no failure of a plate that carries the load."""
         self.assertEqual(self._rows({}), {})
         rows = self._rows(_SUMMARY | {"has_failed": False, "failure_code": None})
         self.assertNotIn("failure code of ASTM D7137", rows)

@@ -17,7 +17,7 @@ module yigit_christoforou
     real(wp) :: yield = 0
   end type plastic_law_t
 
-  !> What the contact remembers; changes only when a step is accepted.
+  !> History variables of the contact; changed only when a step is accepted.
   type :: plastic_contact_t
     !> Indentation of the last accepted step, and the largest so far
     real(wp) :: alpha = 0, alpha_max = 0

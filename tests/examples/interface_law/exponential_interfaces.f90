@@ -22,7 +22,7 @@ module exponential_interfaces
     real(wp) :: shear_weight = 1
   end type exponential_law_t
 
-  !> What a point remembers; changes only when a step is accepted.
+  !> History variables of a point; changed only when a step is accepted.
   type :: interface_point_t
     !> Largest effective jump so far over the jump at the strength
     real(wp) :: reach = 0
@@ -30,7 +30,7 @@ module exponential_interfaces
 
 contains
 
-  !> Traction of trial jumps, what the point remembers if they are accepted, and the derivative of the traction.
+  !> Traction of trial jumps, the trial history variables of the point, and the derivative of the traction.
   pure subroutine traction_of(law, jumps, old, traction, new, tangent)
     !> The law
     type(exponential_law_t), intent(in) :: law

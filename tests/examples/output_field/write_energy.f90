@@ -1,4 +1,4 @@
-!> The field of a bent plate, held against the strain energy of the full plate, written by the writer of the results
+!> The field of a bent plate, compared with the strain energy of the full plate, written by the writer of the results
 !> and read back: `write_energy DECK`.
 program write_energy
   use communicators, only: communicator_t, start_mpi, finish_mpi

@@ -1,0 +1,83 @@
+"""Commands and files of pages, as the tests of this folder read them.
+
+A block of code marked `sh` holds commands that a test runs, in the order of the page. `sh long` holds commands that
+take longer than about 20 s, `sh elsewhere` those that need a queue, a screen, a network or files of the reader's own:
+they are checked without being run. A block after <!-- file PATH --> is the content of a file that the reader saves.
+"""
+
+import re
+import shlex
+import textwrap
+from dataclasses import dataclass
+
+FENCE = re.compile(r"^( *)```(.*)$")
+SAVED = re.compile(r"^ *<!-- file (\S+) -->$")
+# Marks of blocks with commands, and what a test does with them.
+KINDS = {"sh": "run", "sh long": "check", "sh elsewhere": "check"}
+# A command given within a sentence or a table.
+INLINE = re.compile(r"`(implam (?!FILE|queue)[^`\n]*)`")
+
+
+@dataclass
+class Command:
+    """A command of a page."""
+
+    line: int
+    text: str
+    is_run: bool
+
+
+@dataclass
+class SavedFile:
+    """A file that the reader saves before the commands that follow."""
+
+    line: int
+    name: str
+    text: str
+
+
+def blocks(page):
+    """Blocks of code of a page: number of the first line, mark, name of a file to save, content."""
+    lines, start, name = page.splitlines(), None, ""
+    for number, line in enumerate(lines, 1):
+        fence = FENCE.match(line)
+        if start is None and not fence:
+            saved = SAVED.match(line)
+            name = saved[1] if saved else name if not line.strip() else ""
+        elif start is None:
+            start, mark = number + 1, fence[2].strip()
+        elif fence and not fence[2]:
+            yield start, mark, name, textwrap.dedent("\n".join(lines[start - 1 : number - 1])) + "\n"
+            start, name = None, ""
+
+
+def is_complete(text):
+    """True if a command does not go on in the next line: quotes are closed, no backslash at the end."""
+    try:
+        shlex.split(text, comments=True)
+    except ValueError:
+        return False
+    return not text.endswith("\\")
+
+
+def commands_of(block, first):
+    """The commands of a block with their numbers of lines; one may extend over several lines."""
+    begun, text = first, ""
+    for number, line in enumerate(block.splitlines(), first):
+        if not text:
+            begun = number
+        text = f"{text}\n{line}" if text else line
+        if text.strip() and is_complete(text):
+            yield begun, text.replace("\\\n", " ").strip()
+            text = ""
+        elif not text.strip():
+            text = ""
+
+
+def parts_of(page):
+    """Commands and files of a page, in its order."""
+    for first, mark, name, block in blocks(page):
+        if name:
+            yield SavedFile(first, name, block)
+        elif mark in KINDS:
+            yield from (Command(number, text, KINDS[mark] == "run") for number, text in commands_of(block, first))

@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""Runs the commands of the manual as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
+a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
+ends with code 0, unless it reports a Python package that is not installed.
+Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
+
+Blocks marked `sh long` and `sh elsewhere` are left to check_commands.py, the tutorial to tutorial.py. Ends with code 77
+where the Python commands are not installed."""
+
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from page_commands import Command, SavedFile, parts_of
+
+SKIPPED = 77
+# What commands read of a clone, besides the decks, which they may add files to.
+LINKED = (".venv", "doc", "postproc", "tests")
+# Seconds of one processor that a command of the manual may take; longer ones belong into `sh long`.
+LONGEST = 30
+
+
+def processor_time():
+    """Seconds of the processor that commands have taken so far."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+class Clone:
+    """A folder like a clone in which the program has been built."""
+
+    def __init__(self, implam, root, folder):
+        """Make it."""
+        self.folder = folder
+        shutil.rmtree(folder, ignore_errors=True)
+        (folder / "build").mkdir(parents=True)
+        (folder / "build" / "implam").symlink_to(implam)
+        for name in LINKED:
+            if (root / name).exists():
+                (folder / name).symlink_to(root / name)
+        shutil.copytree(root / "input", folder / "input")
+        path = f"{folder / 'build'}:{folder / '.venv' / 'bin'}:{os.environ['PATH']}"
+        self.environment = os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg"}
+
+    def save(self, file):
+        """Save a file of the page."""
+        path = self.folder / file.name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(file.text, encoding="utf-8")
+
+    def run(self, command):
+        """Run a command; return what is wrong and the time of the processor."""
+        begun = processor_time()
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)  # fmt: skip
+        taken = processor_time() - begun
+        if done.returncode and "isn't installed" in done.stdout:
+            print(f"skipped: {done.stdout.strip()}")
+            return "", taken
+        fault = f"code {done.returncode}\n{done.stdout[-2000:]}" if done.returncode else ""
+        return fault or (f"takes {taken:.0f} s, more than {LONGEST}" if taken > LONGEST else ""), taken
+
+
+def run_page(page, clone):
+    """Run the commands of a page; return what is wrong. After a fault the rest of the page is left out."""
+    for part in parts_of(page.read_text(encoding="utf-8")):
+        if isinstance(part, SavedFile):
+            clone.save(part)
+        elif isinstance(part, Command) and part.is_run:
+            fault, taken = clone.run(part.text)
+            print(f"{page.name}:{part.line}: {taken:.1f} s: {part.text}", flush=True)
+            if fault:
+                return [f"{page.name}:{part.line}: {part.text}: {fault}"]
+    return []
+
+
+def main(arguments):
+    """Run the pages; return the exit code."""
+    implam, root, folder = (Path(word).absolute() for word in arguments[:3])
+    if not (root / ".venv" / "bin" / "implam-plot").exists():
+        print("skipped: the Python commands are not installed")
+        return SKIPPED
+    wrong, begun = [], processor_time()
+    for page in sorted((root / "doc" / "manual").glob("*.md")):
+        if arguments[3:] and page.stem not in arguments[3:]:
+            continue
+        if any(isinstance(part, Command) and part.is_run for part in parts_of(page.read_text(encoding="utf-8"))):
+            wrong += run_page(page, Clone(implam, root, folder / page.stem))
+    print("\n".join(wrong) or f"All commands of the manual run, in {processor_time() - begun:.0f} s of one processor.")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
