@@ -26,9 +26,11 @@ module krylov_solvers
     logical :: defined = .false.
     !> Iterations of the last solve
     integer :: iterations = 0
-    !> Ranks, rows and method it was defined for
+    !> Ranks it was defined for
     type(communicator_t), private :: communicator
+    !> Rows of this rank
     integer, private :: rows = 0
+    !> PETSc's name of the method
     character(len=:), allocatable, private :: method
     !> PETSc's solver
     type(tKSP), private :: solver
