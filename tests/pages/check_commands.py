@@ -3,7 +3,8 @@
 Usage: check_commands.py IMPLAM ROOT BUILD
 
 A command is an indented line of a page that begins with one of the programs below. Commands that take longer are run by
-other tests: the tutorial by docs_tutorial, examples of the manual by postproc_runs, exchange by exchange_manual.
+other tests: the tutorial by docs_tutorial, examples of the manual by postproc_runs, exchange by exchange_manual. Lines
+of Python given to an interpreter by -c are compiled.
 """
 
 import re
@@ -14,6 +15,7 @@ import tempfile
 from pathlib import Path
 
 LINE = re.compile(r"^ {4,}((?:build/|\.venv/bin/)?implam\S*|tests/\S+\.py|mpirun) (.*)$")
+PYTHON = re.compile(r'^( {4,})\S*python3? -c "(.*?)"$', re.MULTILINE | re.DOTALL)
 CTEST = re.compile(r"`?ctest [^`|]*?-([RL]) +'?([^\s`']+)")
 # Commands of the program that only read decks, and run at once.
 QUICK = ("check", "explain", "help", "version", "man", "completion")
@@ -35,6 +37,15 @@ def commands(page):
             while words.endswith("\\"):
                 words, following = words[:-1] + lines[following].strip(), following + 1
             yield number, match[1], shlex.split(re.split(r" +# | & | && ", words)[0])
+
+
+def fault_of_python(code, indentation):
+    """What the compiler says of lines given to Python, as they are copied from a page."""
+    try:
+        compile(code.replace(f"\n{indentation}", "\n"), "page", "exec")
+    except SyntaxError as error:
+        return f"Python: {error.msg} in line {error.lineno} of its code"
+    return ""
 
 
 class Checker:
@@ -111,7 +122,12 @@ class Checker:
             fault = self.fault(program, words)
             if fault:
                 yield f"{name}:{number}: {program} {' '.join(words)}: {fault}"
-        for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        text = page.read_text(encoding="utf-8")
+        for match in PYTHON.finditer(text):
+            fault = fault_of_python(match[2], match[1])
+            if fault:
+                yield f"{name}:{text[:match.start()].count(chr(10)) + 1}: {fault}"
+        for number, line in enumerate(text.splitlines(), 1):
             # Other builds have other tests.
             chosen = [] if re.search(r"--preset (?!release)|--test-dir build-", line) else CTEST.findall(line)
             for option, pattern in chosen:
