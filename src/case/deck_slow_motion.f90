@@ -1,5 +1,5 @@
-!> Load steps of a softening plate may find no equilibrium beyond the limit load; slow motion in time passes it. Remarks
-!> where that is expected, with the keys to write.
+!> Load steps of a softening plate may find no equilibrium beyond the limit load; slow motion in time passes it, and so
+!> do steps by the energy dissipated. Remarks where that is expected, with the keys to write.
 module deck_slow_motion
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -7,7 +7,7 @@ module deck_slow_motion
   use delamination_parameters, only: law_cohesive
   use kinds, only: wp
   use short_numbers, only: short_text
-  use static_deck, only: static_group
+  use static_deck, only: key_dissipation, static_group
   implicit none
   private
   public :: check_softening_steps, slow_motion_advice
@@ -39,7 +39,13 @@ contains
     character(len=:), allocatable :: clause
 
     clause = ''
-    if (is_pressed(deck)) clause = ' Softening may leave none'//slow_motion(deck)//'.'
+    if (is_pressed(deck)) then
+      clause = ' Softening may leave none'//slow_motion(deck)//'.'
+    else if (deck%is_static() .and. .not. deck%stepping%dissipation > 0 .and. &
+             any(deck%delaminations%law == law_cohesive)) then
+      clause = ' A softening interface may leave none at this load: &'//static_group//' '//key_dissipation// &
+               ' follows its growth.'
+    end if
   end function slow_motion_advice
 
   !> True: load steps of an impactor's travel, on plies whose density is known.

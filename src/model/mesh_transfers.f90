@@ -80,13 +80,14 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    integer :: i
+    integer :: item, i
 
     if (.not. self%loading) then
       call self%keep_field(name, columns, global_columns, value)
       return
     end if
-    associate (saved => self%kept(self%find(name))%values)
+    item = self%find(name)
+    associate (saved => self%kept(item)%values)
       do i = 1, size(columns)
         if (global_columns /= self%new%points()) then
           call find_in_cells(self, saved, columns(i), name, value(:, i))

@@ -100,15 +100,24 @@ contains
   subroutine build_pressure(self)
     type(model_t), intent(inout) :: self
     real(wp), allocatable :: x(:, :, :), pressure(:, :), forces(:, :)
-    integer :: element
+    integer :: element, point
 
     allocate (forces(5, self%borders%columns), source=0.0_wp)
     allocate (x(2, 9, self%elements%elements), pressure(9, self%elements%elements))
     associate (mesh => self%mesh, partition => self%distribution, value => self%setup%pressure%value)
       call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(partition%points)), x)
       pressure = value
-      if (self%setup%pressure%distribution == distribution_sine) &
-        pressure = value*cos(pi*x(1, :, :)/self%setup%plate%length(1))*cos(pi*x(2, :, :)/self%setup%plate%length(2))
+      if (self%setup%pressure%distribution == distribution_sine) then
+        ! A vector of cosines differs from single ones in the last digit: which elements are in it depends on the rank.
+        !GCC$ NOVECTOR
+        do element = 1, size(pressure, 2)
+          !GCC$ NOVECTOR
+          do point = 1, size(pressure, 1)
+            pressure(point, element) = value*cos(pi*x(1, point, element)/self%setup%plate%length(1))* &
+                                       cos(pi*x(2, point, element)/self%setup%plate%length(2))
+          end do
+        end do
+      end if
       do element = 1, size(partition%elements)
         if (mesh%element_plies(1, partition%elements(element)) /= 1) pressure(:, element) = 0
       end do

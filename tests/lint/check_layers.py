@@ -4,9 +4,11 @@ check_layers.py COMPILER MODULES LAYERS TIER...
 TIERs are names of folders with a slash before each new tier. LAYERS is a file with a line NAME=FOLDER;FOLDER for each
 folder of the program: where its compiler looks for modules. Modules of the program are in folders of MODULES. For each
 folder a module of every other is used in a probe, which must compile only if that is of an earlier tier.
+README.md and doc/architecture.md list the same folders in the same tiers.
 Prints one line a breach and ends with code 1 if there is any.
 """
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -42,6 +44,16 @@ def breaches(compiler, modules, searched, tiers):
                 yield f"{name} {'sees none' if allowed else 'can use'} of the modules of {other}"
 
 
+def listed(root):
+    """Tiers of the folders by the pages that list them: page, and folder to number."""
+    text = Path(root, "README.md").read_text(encoding="utf-8")
+    row = re.search(r"Tiers: (.*?) \(", text)
+    yield "README.md", {name: number for number, tier in enumerate(row[1].split("; "), 1) for name in tier.split(", ")}
+    text = Path(root, "doc", "architecture.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d+) \| (\w+) \|", text, re.M)
+    yield "doc/architecture.md", {name: int(number) for number, name in rows}
+
+
 def main(arguments):
     """Check the folders; return the exit code."""
     compiler, modules, layers, *words = arguments
@@ -50,6 +62,9 @@ def main(arguments):
     tiers = tiers_of(words)
     found = list(breaches(compiler, modules, searched, tiers))
     found += [f"{name} has no tier" for name in searched.keys() ^ tiers.keys()]
+    for page, places in listed(Path(__file__).resolve().parents[2]):
+        found += [f"{page}: {name} has another tier, or none"
+                  for name in tiers.keys() | places.keys() if places.get(name) != tiers.get(name, -1) + 1]
     print("\n".join(found) if found else f"{len(tiers)} folders see those of earlier tiers only")
     return 1 if found or not searched else 0
 

@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from solver_runs import EXIT_FILES, require, run_deck, write_deck
+from solver_runs import EXIT_FILES, require, run, run_deck, write_deck
 
 DECK = "../small/ply_damage.nml"
 
@@ -65,6 +65,15 @@ def check_invalid_files(implam, folder):
         require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
 
 
+def check_limit_load(implam, folder):
+    """A force beyond that at which an interface separates: the sentence names the key that follows its growth."""
+    deck = write_deck(folder, "enf.nml")
+    text = deck.read_text(encoding="utf-8").replace("displacement=4e-3", "force=2e3").replace("dissipation=0.2", "")
+    deck.write_text(text, encoding="utf-8")
+    printed = run([implam, deck, "--output", folder], expected=3)
+    require("leave none at this load: &static dissipation follows its growth." in printed, printed)
+
+
 def main(implam, folder):
     """Run all failures."""
     folder = Path(folder)
@@ -84,6 +93,7 @@ def main(implam, folder):
     error = [line for line in (deck.parent / "ply_damage.log").read_text(encoding="utf-8").splitlines()
              if "error: " in line]
     require(len(error) == 1, f"The log holds the sentence {len(error)} times.")
+    check_limit_load(implam, folder / "limit")
     check_one_writer(implam, folder / "writer")
     check_invalid_files(implam, folder / "invalid")
 

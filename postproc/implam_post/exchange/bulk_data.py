@@ -21,9 +21,9 @@ class BulkData:
     def __init__(self, path: Path, text: str) -> None:
         """Split the text into cards."""
         try:
-            import pyNastran.bdf.bdf_interface.bdf_card  # noqa: F401
-        except ImportError:
-            raise ImplamError("Nastran's files are read by pyNastran, which isn't installed: "
+            import pyNastran.bdf.bdf  # noqa: F401
+        except ImportError as error:
+            raise ImplamError(f"Nastran's files are read by pyNastran, and {error.name} isn't installed: "
                               "pip install 'implam-post[nastran]' and pip install --no-deps pyNastran.") from None
         self.path = path
         self.cards: list[BulkCard] = []
