@@ -34,6 +34,8 @@ def extremes(program, options):
     """A model of breaking plies and interfaces, at extremes of its keys."""
     text = (INPUT/'small/breaking_rounds.nml').read_text(encoding='utf-8')
     for name, settings in EXTREMES.items():
+        if options.only and not any(word in name for word in options.only):
+            continue
         deck = re.sub(r'\s\w+=(?=\s)', '', change_deck(explicit(text), settings))
         steps, _ = steps_of(program, deck)
         if steps is not None and steps > options.max_steps:

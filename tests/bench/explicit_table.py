@@ -277,9 +277,10 @@ def main():
     parser.add_argument('--count', type=int, default=20, help='random models of a part')
     parser.add_argument('--first', type=int, default=1, help='first random model of damaging')
     parser.add_argument('--max-steps', type=float, default=MAX_STEPS, help='longer elastic runs are left out')
-    parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas')
+    parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas; extremes by words')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
-    parser.add_argument('--quick', action='store_true', help='leave out the peanut of halves and the last of costs')
+    parser.add_argument('--quick', action='store_true',
+                        help='leave out the peanut of halves, the last of costs and most of ranks')
     parser.add_argument('--run', action='store_true', help='run the panels, in scaling too')
     options = parser.parse_args()
     print('| what | figure | bound | |\n|---|---|---|---|')
