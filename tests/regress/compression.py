@@ -3,7 +3,7 @@ Usage: compression.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the 
 
 chain    what the impact has left is there at the start, comes to rest, is pressed and fails; the ledger closes
 again    from a checkpoint in the midst, without the impact's: bitwise
-ranks    on two ranks: bitwise
+ranks    on two and three ranks, and from a checkpoint of two on three: bitwise
 mapped   on finer cells, of the half and of the full plate: areas, energies and damage stay; from a checkpoint, bitwise
 mapped_ranks   the same on two ranks: bitwise
 whole    the full plate from the half that was struck: to rounding until it fails
@@ -123,12 +123,16 @@ def check_again(implam, folder, _):
 
 
 def check_ranks(implam, folder, launcher):
-    """Two ranks, from a checkpoint that one has left."""
+    """Several ranks, from the impact's checkpoint that one has left and from one in the midst of the collapse."""
     strike(implam, folder)
+    settings = ["output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."]
     reference = folder / "reference.csv"
-    shutil.copy(press(implam, folder), reference)
-    path = press(implam, folder, launcher=[*launcher, "2"])
-    require(filecmp.cmp(path, reference, shallow=False), "The history differs from that of one rank.")
+    shutil.copy(press(implam, folder, settings), reference)
+    for ranks in ("3", "2"):
+        path = press(implam, folder, settings, [*launcher, ranks])
+        require(filecmp.cmp(path, reference, shallow=False), f"The history of {ranks} ranks differs from that of one.")
+    run([*launcher, "3", implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    require(filecmp.cmp(path, reference, shallow=False), "The history differs after a restart on three ranks.")
 
 
 def check_mapped(implam, folder, launcher):
