@@ -118,7 +118,15 @@ def check_again(implam, folder, _):
     reference = folder / "reference.csv"
     shutil.copy(path, reference)
     (folder / CHECKPOINT).unlink()
-    run([implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    check_restart(implam, folder, reference)
+
+
+def check_restart(implam, folder, reference, launcher=()):
+    """Restart from the checkpoint in the midst: rows beyond it are computed anew and are those of the reference."""
+    path = folder / f"{COMPRESSION}_history.csv"
+    rows = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    path.write_text("".join([*rows[:-20], *rows[-1:]*20]), encoding="utf-8")
+    run([*launcher, implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
     require(filecmp.cmp(path, reference, shallow=False), "The history differs from the uninterrupted one.")
 
 
@@ -131,8 +139,7 @@ def check_ranks(implam, folder, launcher):
     for ranks in ("3", "2"):
         path = press(implam, folder, settings, [*launcher, ranks])
         require(filecmp.cmp(path, reference, shallow=False), f"The history of {ranks} ranks differs from that of one.")
-    run([*launcher, "3", implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
-    require(filecmp.cmp(path, reference, shallow=False), "The history differs after a restart on three ranks.")
+    check_restart(implam, folder, reference, [*launcher, "3"])
 
 
 def check_mapped(implam, folder, launcher):
@@ -309,8 +316,7 @@ def check_closing(implam, folder, _):
     require(error < CLOSED_BY_CLOSING, "The ledger does not close.")
     reference = folder / "reference.csv"
     shutil.copy(path, reference)
-    run([implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
-    require(filecmp.cmp(path, reference, shallow=False), "The history differs from the uninterrupted one.")
+    check_restart(implam, folder, reference)
 
 
 def check_coupon(implam, folder, _):
