@@ -10,7 +10,10 @@ from implam_post.io.errors import FileError
 from implam_post.io.history import History
 from implam_post.io.run import read_summary
 
-STRENGTH = "residual_strength"
+STRENGTH, STRESS = "residual_strength", "far_field_stress"
+# The plate has failed once the stress falls below this part of its maximum beyond this nominal strain, as in the
+# summary: the halves of a failed plate vibrate, and press on its ends with more than it bore.
+_FAILED, _FAILED_BEYOND = 0.7, 1e-3
 # Part of the strength from which on the motion has to be slow: below it the work is too small to hold anything against.
 _FROM = 0.1
 
@@ -22,10 +25,16 @@ class Across(NamedTuple):
     plies: list[int]
 
 
+def row_of_strength(history: History) -> int:
+    """Return the row with the largest stress up to the failure of the plate."""
+    stress = history[STRESS]
+    failed = (stress < _FAILED * np.maximum.accumulate(stress)) & (history["nominal_strain"] > _FAILED_BEYOND)
+    return int(np.argmax(stress[:int(np.argmax(failed)) + 1] if np.any(failed) else stress))
+
+
 def kinetic_share(history: History) -> float:
     """Return the largest kinetic energy over the work done, from a tenth of the strength to the strength."""
-    stress = history["far_field_stress"]
-    top = int(np.argmax(stress))
+    stress, top = history[STRESS], row_of_strength(history)
     low = np.flatnonzero(stress[:top + 1] < _FROM * stress[top])
     rows = slice(int(low[-1]) + 1 if len(low) else 0, top + 1)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -41,6 +41,8 @@ _DENSITIES = {"SI": (100.0, 25000.0), "mm-kg-ms": (1e-7, 2.5e-5), "mm-t-s": (1e-
 _UNITS = {"force": {"N": 1.0, "kN": 1e3}, "energy": {"mJ": 1e-3, "J": 1.0}, "area": {"mm²": 1e-6},
           "length": {"µm": 1e-6, "mm": 1e-3}, "time": {"µs": 1e-6, "ms": 1e-3}, "velocity": {"m/s": 1.0},
           "mass": {"g": 1e-3, "kg": 1.0}, "stress": {"MPa": 1e6, "GPa": 1e9}, "toughness": {"J/m²": 1.0}}
+# A unit is taken from this many of it on, others from a tenth: strengths are in MPa, moduli in GPa.
+_FROM = {"GPa": 5.0}
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def axis_of(label: str, dimension: str, values: Iterable[float], system: str) ->
     to_si = _to_si(dimension, system)
     largest = to_si * max((abs(value) for value in values if math.isfinite(value)), default=0.0)
     units = _UNITS[dimension]
-    unit = next((name for name in reversed(units) if largest >= 0.1 * units[name]), next(iter(units)))
+    unit = next((name for name in reversed(units) if largest >= _FROM.get(name, 0.1) * units[name]), next(iter(units)))
     return Axis(to_si / units[unit], f"{label} [{unit}]")
 
 

@@ -47,7 +47,10 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
 
 def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: PictureStyle) -> int:
     """Draw the responses over each other and the energies of each history."""
+    from implam_post.io.compression import strength_of
     from implam_post.io.history import read_history
+    from implam_post.io.run import HISTORY, SUMMARY, read_summary
+    from implam_post.plot.compression import is_compressed
     from implam_post.plot.pictures import RESPONSES, plot_compression, plot_energies, plot_response
 
     histories = [read_history(path) for path in paths]
@@ -57,7 +60,11 @@ def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: P
         raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
     response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
     print(plot_response(histories, response, style, measured))
-    compressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{style.kind}", style)
+    beside = [path.with_name(path.name.removesuffix(HISTORY) + SUMMARY) for path in paths]
+    compressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{style.kind}", style,
+                                  [read_summary(path) if is_compressed(history) and path.exists() else {}
+                                   for history, path in zip(histories, beside, strict=True)],
+                                  strength_of(options.undamaged) if options.undamaged else None)
     if compressed is not None:
         print(compressed)
     for history, path, folder in zip(histories, paths, folders, strict=True):
@@ -83,6 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="one picture of delamination, force and energies of NAME.h5, instead of all")
     parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
                         "force, indentation or deflection, in the units of the results")
+    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
+                        "compression: its strength is drawn, and the share that is left given")
     parser.add_argument("--projected", choices=("depth", "time"), default="depth", help="colour of NAME_projected: the "
                         "first delaminated interface, or when the first one delaminated (default: depth)")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")

@@ -1,15 +1,16 @@
 """Pictures of compressed plates: stress against shortening, strains of gauges against stress."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from implam_post.io.compression import STRENGTH, STRESS, row_of_strength
 from implam_post.io.history import History
 from implam_post.plot.style import STYLES, PictureStyle
 
-STRESS = "far_field_stress"
 _GAUGE = "gauge_strain_"
 
 
@@ -18,12 +19,29 @@ def is_compressed(history: History) -> bool:
     return bool(np.any(history.columns.get(STRESS, 0)))
 
 
-def compression_figure(histories: Mapping[str, History], style: PictureStyle) -> Figure:
-    """Draw the stress of some runs, by name, against the shortening, and below it the strains of their gauges."""
+def remark_of(summary: Mapping[str, Any], style: PictureStyle, undamaged: float | None = None) -> str:
+    """Return strength, its share of the undamaged plate's, failure code and percent bending, as far as known."""
+    if STRENGTH not in summary:
+        return ""
+    parts = [style.shown("stress", summary[STRENGTH], 4)]
+    if undamaged:
+        parts.append(f"{100 * summary[STRENGTH] / undamaged:.3g} % of the undamaged plate's")
+    parts.append((summary.get("failure_code") or "code not known") if summary["has_failed"] else "not failed")
+    if "percent_bending" in summary:
+        parts.append(f"bending {summary['percent_bending']:.3g} %")
+    return ", ".join(parts)
+
+
+def compression_figure(histories: Mapping[str, History], style: PictureStyle, remarks: Mapping[str, str] | None = None,
+                       undamaged: float | None = None) -> Figure:
+    """Draw the stress of some runs, by name, against the shortening, and below it the strains of their gauges.
+
+    Remarks on runs stand in the legend; `undamaged` is the strength of the undamaged plate, if that is known.
+    """
     gauges = any(_gauges(history) for history in histories.values())
     figure = Figure(figsize=(7, 8 if gauges else 4.2), layout="constrained")
     panels = np.ravel(figure.subplots(1 + gauges, squeeze=False))
-    _draw_stress(panels[0], histories, style)
+    _draw_stress(panels[0], histories, style, remarks or {}, undamaged)
     if gauges:
         _draw_gauges(panels[1], histories, style)
     return figure
@@ -34,27 +52,31 @@ def _gauges(history: History) -> Sequence[str]:
     return [name for name in history.columns if name.startswith(_GAUGE)]
 
 
-def _draw_stress(axes: Axes, histories: Mapping[str, History], style: PictureStyle) -> None:
-    """Draw stress against shortening, with a dot at the strength."""
+def _draw_stress(axes: Axes, histories: Mapping[str, History], style: PictureStyle, remarks: Mapping[str, str],
+                 undamaged: float | None) -> None:
+    """Draw stress against shortening, with a dot at the strength and a line at that of the undamaged plate."""
     along, up = (style.axis(label, dimension, np.concatenate([one[column] for one in histories.values()]))
                  for label, dimension, column in (("shortening", "length", "shortening"),
                                                   ("far-field stress", "stress", STRESS)))
     for place, (name, history) in enumerate(histories.items()):
-        line, top = STYLES[place % len(STYLES)], int(np.argmax(history[STRESS]))
-        axes.plot(along.factor * history["shortening"], up.factor * history[STRESS], label=name or None, **line)
+        line, top = STYLES[place % len(STYLES)], row_of_strength(history)
+        label = ": ".join(filter(None, (name, remarks.get(name))))
+        axes.plot(along.factor * history["shortening"], up.factor * history[STRESS], label=label or None, **line)
         axes.plot(along.factor * history["shortening"][top], up.factor * history[STRESS][top], "o",
                   color=line["color"])
+    if undamaged:
+        axes.axhline(up.factor * undamaged, color="grey", linestyle="--", linewidth=1, label="undamaged plate")
     axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)
-    if any(histories):
-        axes.legend()
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(fontsize="small", loc="lower center", bbox_to_anchor=(0.5, 1.0))
 
 
 def _draw_gauges(axes: Axes, histories: Mapping[str, History], style: PictureStyle) -> None:
     """Draw strains of gauges against the stress up to the strength: those back to back part where the plate buckles."""
     up = style.axis("far-field stress", "stress", np.concatenate([one[STRESS] for one in histories.values()]))
     for place, (name, history) in enumerate(histories.items()):
-        rows = slice(0, int(np.argmax(history[STRESS])) + 1)
+        rows = slice(0, row_of_strength(history) + 1)
         for gauge in _gauges(history):
             number = gauge.removeprefix(_GAUGE)
             label = f"gauge {number}" if len(histories) == 1 else f"{name}, gauge {number}"

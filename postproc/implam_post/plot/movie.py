@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from PIL import Image
 
+from implam_post.io.compression import STRESS
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.fields import Fields, read_fields
 from implam_post.io.history import History, read_history
-from implam_post.plot.compression import STRESS, is_compressed
+from implam_post.plot.compression import is_compressed
 from implam_post.plot.plan_frame import fill, frame, reach_of
 from implam_post.plot.style import PictureStyle, add_options, style_of
 

@@ -1,7 +1,8 @@
 """The pictures that `implam-plot` draws of histories and fields."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +12,7 @@ from implam_post.io.errors import FileError
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
-from implam_post.plot.compression import compression_figure, is_compressed
+from implam_post.plot.compression import compression_figure, is_compressed, remark_of
 from implam_post.plot.curves import AXES, in_contact
 from implam_post.plot.front import front_figure
 from implam_post.plot.plan import (
@@ -48,13 +49,21 @@ def plot_response(histories: Sequence[History], path: Path, style: PictureStyle 
     return _save(figure, path, style)
 
 
-def plot_compression(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN) -> Path | None:
-    """Draw stress and gauges of the compressions among some histories; None if there are none."""
-    compressed = [history for history in histories if is_compressed(history)]
+def plot_compression(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN,
+                     summaries: Sequence[Mapping[str, Any]] | None = None,
+                     undamaged: float | None = None) -> Path | None:
+    """Draw stress and gauges of the compressions among some histories; None if there are none.
+
+    Summaries of the same runs, empty where there is none, give remarks; `undamaged` is the undamaged plate's strength.
+    """
+    compressed = [(history, summary) for history, summary in
+                  zip(histories, summaries or [{}] * len(histories), strict=True) if is_compressed(history)]
     if not compressed:
         return None
-    names = _names([history.name for history in compressed])
-    return _save(compression_figure(dict(zip(names, compressed, strict=True)), style), path, style)
+    names = _names([history.name for history, _ in compressed])
+    remarks = {name: remark_of(summary, style, undamaged) for name, (_, summary) in zip(names, compressed, strict=True)}
+    shown = {name: history for name, (history, _) in zip(names, compressed, strict=True)}
+    return _save(compression_figure(shown, style, remarks, undamaged), path, style)
 
 
 def plot_energies(history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:

@@ -14,6 +14,7 @@ from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.io.run import SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.io.summary_shape import missing_member
+from implam_post.plot.compression import remark_of
 from implam_post.plot.style import PictureStyle
 from implam_post.report.compression import compression_rows
 from implam_post.report.page import image, render, rounded
@@ -64,7 +65,8 @@ def report(run: Run, undamaged: float | None = None) -> str:
     energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
                 if key in summary}
     axis = style.axis("energy", "energy", [*energies.values()])
-    curves = [] if run.columns is None else history_pictures(run.columns, style, mark)
+    remark = remark_of(summary, style, undamaged)
+    curves = [] if run.columns is None else history_pictures(run.columns, style, mark, (remark, undamaged))
     maps = [] if run.fields is None else map_pictures(run.fields, style)
     return render(
         "run.html", title=summary["title"] or summary["case"], summary=summary, base=run.name,

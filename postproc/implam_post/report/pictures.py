@@ -85,11 +85,12 @@ def plan_figure(summary: Mapping[str, Any], style: PictureStyle) -> Figure:
     return figure
 
 
-def history_pictures(history: History, style: PictureStyle,
-                     threshold: tuple[float, float] | None = None) -> Iterator[tuple[str, Figure]]:
+def history_pictures(history: History, style: PictureStyle, threshold: tuple[float, float] | None = None,
+                     compression: tuple[str, float | None] = ("", None)) -> Iterator[tuple[str, Figure]]:
     """Give the curves of a history: force, force against displacements, deflection, areas and energies.
 
-    Time and force of a threshold are marked on the curve of the force.
+    Time and force of a threshold are marked on the curve of the force. Of a compression there may be a remark and the
+    strength of the undamaged plate.
     """
     if np.any(history["force"]):
         shown = in_contact(history)
@@ -99,7 +100,9 @@ def history_pictures(history: History, style: PictureStyle,
                                                                                style)
         yield "contact force against deflection", _curve(shown, "deflection", "force", style)
     if is_compressed(history):
-        yield "stress of the compression, and strains of gauges", compression_figure({"": history}, style)
+        remark, undamaged = compression
+        yield "stress of the compression, and strains of gauges", compression_figure({"": history}, style, {"": remark},
+                                                                                     undamaged)
     yield "deflection against time", _curve(history, "time", "deflection", style)
     areas = {name: name.replace("area_below_", "below ply ") for name in history.columns
              if name.startswith("area_below_")}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.compression import kinetic_share, strength_of, went_across
+from implam_post.io.compression import kinetic_share, row_of_strength, strength_of, went_across
 from implam_post.io.errors import FileError
 from implam_post.io.history import History
 from tests.io.test_summary_shape import SUMMARY
@@ -18,10 +18,19 @@ class CompressionTest(unittest.TestCase):
 
     def test_kinetic_share_between_a_tenth_and_the_strength(self) -> None:
         """Neither what rings at the start nor the collapse counts."""
-        history = History({"time": np.arange(6.0), "far_field_stress": np.array([1.0, 9, 20, 60, 100, 30]),
-                           "work_external": np.array([1.0, 2, 10, 50, 200, 220]),
-                           "energy_kinetic": np.array([5.0, 1, 0.2, 0.5, 1.8, 100])})
+        history = History({"time": np.arange(7.0), "far_field_stress": np.array([1.0, 9, 20, 60, 100, 30, 110]),
+                           "nominal_strain": np.array([0.0, 0, 1, 2, 3, 4, 5]) * 1e-3,
+                           "work_external": np.array([1.0, 2, 10, 50, 200, 220, 230]),
+                           "energy_kinetic": np.array([5.0, 1, 0.2, 0.5, 1.8, 100, 90])})
         self.assertAlmostEqual(kinetic_share(history), 0.02)
+
+    def test_strength_before_the_failure(self) -> None:
+        """What a failed plate's halves press with is no strength; a drop under small strains is no failure."""
+        stress = np.array([10.0, 2, 90, 100, 65, 120])
+        history = History({"far_field_stress": stress, "nominal_strain": np.array([0.1, 0.2, 2, 3, 4, 5]) * 1e-3})
+        self.assertEqual(row_of_strength(history), 3)
+        history = History({"far_field_stress": stress[:4], "nominal_strain": np.array([0.1, 0.2, 2, 3]) * 1e-3})
+        self.assertEqual(row_of_strength(history), 3)
 
     def test_strength_of_another_run(self) -> None:
         """A summary without a strength is refused."""

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from implam_post.io.history import History
+from implam_post.plot.compression import compression_figure, remark_of
 from implam_post.plot.style import PictureStyle
 from implam_post.report.compression import compression_rows
 
@@ -13,6 +14,7 @@ _SUMMARY = {"residual_strength": 2e8, "shortening_at_strength": 7e-4, "effective
             "failure_code": "LDM", "percent_bending": -4.0, "buckling_strain": 3.9e-3,
             "collapse": {"interfaces": [], "fibres": [{"ply": 3, "went_across": True}]}}
 _HISTORY = History({"time": np.arange(3.0), "far_field_stress": np.array([0.0, 1e8, 2e8]),
+                    "nominal_strain": np.array([0.0, 2e-3, 4e-3]), "shortening": np.array([0.0, 3e-4, 6e-4]),
                     "energy_kinetic": np.array([0.0, 0.1, 0.2]), "work_external": np.array([0.0, 10.0, 40.0])})
 
 
@@ -40,6 +42,16 @@ class CompressionRowsTest(unittest.TestCase):
         rows = self._rows(_SUMMARY | {"has_failed": False, "failure_code": None})
         self.assertNotIn("failure code of ASTM D7137", rows)
         self.assertNotIn("share of the undamaged plate's", rows)
+
+    def test_legend(self) -> None:
+        """The picture has strength, share, code and bending in its legend, and the undamaged plate's strength."""
+        style = PictureStyle("SI")
+        remark = remark_of(_SUMMARY, style, 4e8)
+        self.assertEqual(remark, "200 MPa, 50 % of the undamaged plate's, LDM, bending -4 %")
+        axes = compression_figure({"": _HISTORY}, style, {"": remark}, 4e8).axes[0]
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], [remark, "undamaged plate"])
+        self.assertEqual(remark_of(_SUMMARY | {"has_failed": False}, style), "200 MPa, not failed, bending -4 %")
+        self.assertEqual(remark_of({}, style), "")
 
 
 if __name__ == "__main__":
