@@ -29,13 +29,16 @@ module run_warnings
 
   !> Rotation up to which its cosine counts as 1, as von Karman's strains take it: 2 % are lost there.
   real(wp), parameter :: steepest = 0.2_wp
-  !> Deflection over thickness beyond which membrane forces carry a clamped plate.
+  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
+  !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
+  !> Shells, 1959, art. 100).
   real(wp), parameter :: deepest = 3
-  !> Relative round-off of an area.
+  !> Relative round-off of an area: below it are sums of 1e6 elements with a precision of 2e-16.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
-  !> Permitted ratio of kinetic energy to work in slow motion, a few per cent, and fraction of the run after which it is
-  !> checked: the velocity is then constant.
+  !> Permitted ratio of kinetic energy to work in slow motion, 5 % (Getting Started with Abaqus, chapter on quasi-static
+  !> analysis: 5 to 10 %), and fraction of the run after which it is checked: the default rise of a travel, after which
+  !> the velocity is constant.
   real(wp), parameter :: max_kinetic = 0.05_wp, slow_start = 0.25_wp
   !> Share of the energy that may be kinetic energy of motions whose inertia is scaled. Forces and velocities go by the
   !> root of energies: 2 % of these is 1 % of them, the error that the default factor may make. On decks of input/ it

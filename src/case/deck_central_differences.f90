@@ -25,7 +25,7 @@ module deck_central_differences
   public :: choose_for_central_differences, find_stable_step
 
   !> Largest factor of in-plane and rotary inertia that is chosen. It also slows membrane waves by its root, which no
-  !> estimate covers.
+  !> estimate covers: with 10 they cross the plate in 3.2 times the time.
   real(wp), parameter :: max_scaling = 10
   !> Share by which scaled inertia may slow the bending waves of first contact and change the history of the contact
   !> force (relative L2 norm). Half of the 1 % that a run with `accuracy='reference'` is allowed in all; mesh and step

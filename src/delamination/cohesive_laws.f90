@@ -15,7 +15,8 @@ module cohesive_laws
   !> Stiffness of the law over that of the layer beside it, K_n h/E3. A factor of ten either way moves the radius of a
   !> grown delamination by 0.3 to 1.4 %; the iterations of a step fall by a third from 50 to 5.
   real(wp), parameter :: usual_stiffness = 5
-  !> Least jump at failure over jump at onset.
+  !> Least jump at failure over jump at onset. Its inverse is the part of the toughness that is stored at the
+  !> onset: 5 %.
   real(wp), parameter :: min_ratio = 20
 
   !> The law of one interface.

@@ -10,7 +10,7 @@ module damped_motions
   private
   public :: damp_motion
 
-  !> What is left of an amplitude at the end: of energies a ten-millionth.
+  !> What is left of an amplitude at the end: of energies a ten-millionth, below the usual tolerance of 1e-6.
   real(wp), parameter :: left_over = 3.0e-4_wp
 
 contains

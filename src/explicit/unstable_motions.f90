@@ -11,7 +11,7 @@ module unstable_motions
   public :: refuse_instability
 
   !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
-  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it.
+  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it, 1 %.
   real(wp), parameter :: max_created = 0.1_wp
 
 contains

@@ -135,7 +135,7 @@ contains
     real(wp), intent(in) :: reach
     !> True for the closest ones
     logical :: first(size(open))
-    !> Distance, relative to a cell, that counts as none.
+    !> Distance, relative to a cell, that counts as none: far above 1e-16, and distances differ by parts of a cell.
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 

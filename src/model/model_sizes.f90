@@ -13,7 +13,7 @@ module model_sizes
 
   !> Unknowns of one rank in a script; a choice, since the best value depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
-  !> Megabytes of the libraries a process: MPI, PETSc and those behind it.
+  !> Megabytes of the libraries a process: MPI, PETSc and those behind it (doc/studies/speed.md).
   real(wp), parameter :: megabytes_of_libraries = 55
   !> Bytes for each pair of unknowns of a node times the doublings of the number of nodes: nested dissection of a plane
   !> grid fills its factor so. Measured, doc/manual/queue.md.
@@ -22,7 +22,7 @@ module model_sizes
   !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm). Where layers follow the damage all that
   !> evolves is in memory once more as they grow: 13700 and 14900 in all on cells of 1.5 and 3 mm.
   real(wp), parameter :: bytes_explicit = 9700, bytes_transferred = 5000
-  !> Memory of several ranks together over that of one: MUMPS' buffers and ghosts.
+  !> Memory of several ranks together over that of one: MUMPS' buffers and ghosts. Measured, doc/manual/queue.md.
   real(wp), parameter :: more_on_ranks = 1.7_wp
 
   !> Size of a model.

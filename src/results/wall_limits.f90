@@ -8,7 +8,7 @@ module wall_limits
   !> Longest steps so far that are kept in reserve: the next one may take twice as long as any before, and the
   !> checkpoint takes its time too.
   real(wp), parameter :: reserve = 3
-  !> Seconds for the start and end of the process.
+  !> Seconds for the start and end of the process: libraries take .1 s, a file system of a cluster some tenths more.
   real(wp), parameter :: outside = 2
 
   !> A limit, and what its reserve is measured by.

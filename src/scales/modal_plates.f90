@@ -30,7 +30,8 @@ module modal_plates
                          lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Most modes along one direction; the deflection by higher ones is below what an estimate needs.
   integer, parameter :: max_modes = 300
-  !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up.
+  !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up: shorter ones
+  !> have (sin x/x)**2 < .026, x > 2 pi, times the load of a point, and a compliance that falls with the fourth power.
   real(wp), parameter :: part_of_patch = 0.25_wp
 
 contains

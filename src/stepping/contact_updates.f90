@@ -17,7 +17,8 @@ module contact_updates
   !> Part of the way to what the last state asks for that a step goes: the plate responds to the change, and a whole
   !> way would overshoot where it gives way more than the nose is indented. doc/theory/impact.md has figures.
   real(wp), parameter :: relaxation = 0.2_wp
-  !> Sum of the changes of weights, of one, that are not worth a solve.
+  !> Sum of the changes of weights, of one, that are not worth a solve: they change the force by less than its tolerance
+  !> of 1e-6.
   real(wp), parameter :: negligible = 1.0e-6_wp
 
 contains

@@ -16,7 +16,8 @@ module stepping_parameters
   !> What an adaptive step follows: the stress at the struck point (the paper's), or the error of each step.
   integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
 
-  !> Time from touch to the end of a run over that to the end of the contact.
+  !> Time from touch to the end of a run over that to the end of the contact: a quarter more shows that the impactor is
+  !> gone, and lets a second contact begin.
   real(wp), parameter, public :: past_contact = 1.25_wp
   !> Longest run that follows the contact, over the end that was chosen for it: an impactor that is not gone by then
   !> perforates the plate or rests on it.

@@ -49,19 +49,20 @@ OWN_DECKS = {
     "stress": ("sun_chen.nml", [*COARSE, PLAIN], "&adapt on=.true. rule='stress_rate' stress_change=0.2 /"),
     "long": ("sun_chen.nml", [*COARSE, PLAIN, ("step=2e-6", "step=40e-6")], "&adapt on=.true. /\n"),
     "front": ("small/delamination.nml", FRONT, "&adapt on=.true. /"),
-    "block": ("verify/block.nml", [], ""), "mmb": ("verify/mmb.nml", [], ""), "enf": ("verify/enf.nml", [], ""),
-    "ubm": ("verify/dcb_ubm.nml", [], ""), "strip": ("verify/buckled_strip.nml", [], ""),
+    "block": ("verify/block.nml", [], ""), "ubm": ("verify/dcb_ubm.nml", [], ""),
+    "strip": ("verify/buckled_strip.nml", [], ""),
 }
 # Constants, the decks that use them, and other values.
 OWN = {
     "element_reduction": ("curved", (1e-3, 0.1)), "last_digits": ("exact", (8, 128)),
     "force_floor": ("block", (1e-7, 1e-5, 1e-3)), "alternating_iterations": ("block", (4, 16, 100)),
-    "dissipation_tolerance": ("mmb enf ubm strip", (1e-3, 0.1)), "dissipation_growth": ("mmb enf ubm strip", (2, 16)),
-    "load_step_parts": ("mmb enf ubm strip", (16, 256, 4096)), "ratio_near_growth": ("front", (0.5, 0.7, 0.9)),
+    "ratio_near_growth": ("front", (0.5, 0.7, 0.9)),
     "lag_low": ("stress short", (0.1, 0.6)), "lag_high": ("stress long", (1.2, 5)),
     "rejection_error": ("long", (4, 16)), "first_error": ("long", (2, 64)),
     "allowed_in_impact": ("short", (0.0625, 0.25)), "max_doublings": ("short", (1, 2, 6)),
     "steady_in_impact": ("short", (12, 48)), "doublings_of_gear": ("gear", (2, 3)), "equal_of_gear": ("gear", (2, 8)),
+    "dissipation_tolerance": ("ubm strip", (1e-3, 0.1)), "dissipation_growth": ("ubm strip", (2, 16)),
+    "load_step_parts": ("ubm strip", (16, 4096)),
 }
 
 

@@ -1,8 +1,8 @@
-!> A matrix in the parts of the ranks (MATIS), which domain decomposition needs, and what BDDC is told of the plate.
+!> A matrix in the parts of the ranks (MATIS), which domain decomposition needs, and the motions of the plate for BDDC.
 module subdomain_matrices
   use, intrinsic :: iso_c_binding, only: c_intptr_t
   use petscksp, only: tIS, tMatNullSpace, tPC, tVec, PETSC_COMM_SELF, PETSC_COPY_VALUES, PETSC_FALSE, &
-                      PETSC_NULL_INTEGER, MatNullSpaceCreate
+                      MatNullSpaceCreate
   use communicators, only: communicator_t
   use kinds, only: wp
   use models, only: model_t
@@ -11,9 +11,6 @@ module subdomain_matrices
   implicit none
   private
   public :: create_parts, describe_motions
-
-  !> Unknowns that a node shares elements with, in a plate without layers: five of each of 25 nodes
-  integer, parameter :: max_columns = 125
 
 contains
 
@@ -25,29 +22,29 @@ contains
     type(petsc_matrix_t), intent(inout) :: matrix
     ! PETSc's handle of the map from equations of the part to those of the whole
     integer(c_intptr_t) :: mapping
-    integer, allocatable :: equations(:)
+    integer, allocatable :: equations(:), widths(:)
     integer :: ierr
 
+    widths = numbering%row_start(2:) - numbering%row_start(:numbering%rows)
     equations = pack(numbering%equation, numbering%equation >= 0)
     call ISLocalToGlobalMappingCreate(communicator%handle(), 1, size(equations), equations, PETSC_COPY_VALUES, &
                                       mapping, ierr)
     associate (rows => numbering%rows, total => numbering%total)
       call MatCreateIS(communicator%handle(), 1, rows, rows, total, total, mapping, mapping, matrix%object, ierr)
     end associate
-    call MatISSetPreallocation(matrix%object, max_columns, PETSC_NULL_INTEGER, max_columns, PETSC_NULL_INTEGER, ierr)
+    call MatISSetPreallocation(matrix%object, 0, widths, 0, 0*widths, ierr)
     call MatCreateVecs(matrix%object, matrix%left, matrix%right, ierr)
     call ISLocalToGlobalMappingDestroy(mapping, ierr)
   end subroutine create_parts
 
-  !> Tells BDDC which equations are of one component, and the rigid motions of the plate.
-  subroutine describe_motions(communicator, model, numbering, matrix, preconditioner, by_component)
+  !> Gives BDDC the equations of each component and the rigid motions of the plate. Without the components it
+  !> finds no corners of parts, and these can move freely.
+  subroutine describe_motions(communicator, model, numbering, matrix, preconditioner)
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(in) :: model
     type(numbering_t), intent(in) :: numbering
     type(petsc_matrix_t), intent(inout) :: matrix
     type(tPC), intent(inout) :: preconditioner
-    !> True: constraints are of one component each
-    logical, intent(in) :: by_component
     type(tVec) :: motions(6)
     type(tMatNullSpace) :: null_space
     type(tIS) :: fields(5)
@@ -67,7 +64,6 @@ contains
     call MatNullSpaceCreate(communicator%handle(), PETSC_FALSE, size(motions), motions, null_space, ierr)
     call MatSetNearNullSpace(matrix%object, null_space, ierr)
     call MatNullSpaceDestroy(null_space, ierr)
-    if (.not. by_component) return
     components = pack(spread([1, 2, 3, 4, 5], 2, size(numbering%equation, 2)), numbering%equation >= 0)
     do i = 1, size(fields)
       associate (chosen => pack([(k, k=0, size(components) - 1)], components == i))
