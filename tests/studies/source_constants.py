@@ -60,7 +60,7 @@ def variant(build, folder, source, old, new):
     changed.write_text(text.replace(old, new), encoding="utf-8")
     made = f"CMakeFiles/implam_{source.split('/')[0]}.dir/src/{source}.f90"
     words = command(build, f"{made}.o", " -c ").split()
-    words = [word for word in words if not word.startswith("-J") and word != "-fpreprocessed"]
+    words = [word.replace("-Jmodules", "-Imodules") for word in words if word != "-fpreprocessed"]
     words = [str(changed) if word.endswith("-pp.f90") else word for word in words]
     words[words.index("-o") + 1] = f"{changed}.o"
     subprocess.run([*words, f"-J{folder}"], cwd=build, check=True)

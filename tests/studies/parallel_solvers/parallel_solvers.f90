@@ -178,12 +178,14 @@ contains
     call KSPSetUp(inner, ierr)
   end subroutine factorize_gathered
 
-  !> Processor time and operations of this rank so far.
+  !> Processor time and operations of this rank once all ranks are here.
   subroutine note(seconds, flops)
     !> Processor time, and operations that PETSc knows of
     real(wp), intent(out) :: seconds, flops
-    integer :: ierr
+    integer :: ierr, ranks
 
+    ranks = 1
+    call communicator%sum(ranks)
     call cpu_time(seconds)
     call PetscGetFlops(flops, ierr)
   end subroutine note
