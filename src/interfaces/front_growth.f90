@@ -11,7 +11,8 @@ module front_growth
   private
   public :: grow_fronts, find_release_ratio
 
-  !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so.
+  !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so. With .9 and
+  !> .99 histories are the same (doc/studies/solution_controls.md).
   real(wp), parameter :: together = 0.95_wp
 
 contains
