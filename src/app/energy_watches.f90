@@ -8,7 +8,8 @@ module energy_watches
   private
   public :: energy_watch_t
 
-  !> Permitted fraction of energy created, dissipated or unaccounted for.
+  !> Permitted fraction of energy created, dissipated or unaccounted for. Energies go by the square of forces: 1 % of
+  !> energy is half the error of the force that accuracy='standard' permits.
   real(wp), parameter, public :: energy_tolerance = 0.01_wp
   !> Fraction of the energy of residual stresses below which energies are not checked. The initial equilibrium has a
   !> residual of 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of the

@@ -14,7 +14,8 @@ module queue_scripts
   private
   public :: write_queue_script
 
-  !> Requested memory over the estimate: ply failure and growing fronts need more than the first factor.
+  !> Requested memory over the estimate: layers that follow damage take up to 14900 bytes an element in place of 9700
+  !> (`model_sizes`).
   real(wp), parameter :: spare_memory = 1.5_wp
   !> Wall-clock seconds of a job without `--time`, and largest reserve for the checkpoint.
   integer, parameter :: usual_seconds = 86400, max_kept = 600

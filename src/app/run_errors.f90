@@ -24,7 +24,8 @@ module run_errors
     real(wp) :: area = -1
   end type run_errors_t
 
-  !> Relative difference of the peak forces of run and elastic impact up to which the estimate applies.
+  !> Relative difference of the peak forces of run and elastic impact up to which the estimate applies: the errors of
+  !> two histories that differ by a tenth differ by about as much. It decides on a line of the log.
   real(wp), parameter :: same_setup = 0.1_wp
 
 contains

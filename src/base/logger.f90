@@ -11,7 +11,8 @@ module logger
   private
   public :: log_t
 
-  !> Longest time in seconds that a line may wait before it is in the file.
+  !> Longest time in seconds that a line may wait before it is in the file: short for a reader, while writes that are
+  !> this rare take no measurable time. It changes no result.
   real(wp), parameter :: longest_wait = 2
   !> C's number of the standard output.
   integer(c_int), parameter :: standard_output = 1

@@ -95,6 +95,7 @@ contains
     character(len=:), allocatable :: digits
     character(len=40) :: buffer
     character(len=12) :: form
+    ! The largest number is 1.798e308.
     real(wp), parameter :: near_largest = 1.0e308_wp
     real(wp) :: again
     integer :: places, status

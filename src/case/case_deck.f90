@@ -33,7 +33,8 @@ module case_deck
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 
-  !> Permitted errors of the peak force for each `accuracy`, %.
+  !> Permitted errors of the peak force for each `accuracy`, %: what these words mean. doc/studies/defaults.md has their
+  !> cost.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
 
 contains

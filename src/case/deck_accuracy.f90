@@ -22,7 +22,8 @@ module deck_accuracy
   private
   public :: check_left_out, choose_by_accuracy
 
-  !> Permitted error of the history over that of the peak: 3 % and 1 %. Half of each is for the mesh, half for the step.
+  !> Error of the history allowed over that of the peak: 3 % and 1 %, as a small shift in time changes a steep history
+  !> by more than its peak (doc/studies/speed.md). Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
   !> Largest number of elements along one direction of the modelled part, twice that for a full plate, with
   !> factorizations and without: more take hours. Central differences take .2 us an element and step (`explicit_costs`):
@@ -36,9 +37,12 @@ module deck_accuracy
   integer, parameter :: zone_elements = 24
   !> Fields written in a run, and the largest accuracy, %, with which they are: they cost a draft half its time.
   integer, parameter :: fields_written = 10
+  !> Between a draft, 5 %, and the standard, 1 %.
   real(wp), parameter :: max_with_fields = 2
   !> Elements in the plate's shorter side and steps in its first period, without an impactor, for an error of 1 %. The
-  !> error is of fourth order in the elements and of second order in the step.
+  !> error is of fourth order in the elements: 16 give the first nine frequencies along a side within .6 % (`dispersion`
+  !> of `setup_elastic_impacts`). It is of second order in the step: 40 lengthen a period by .2 % (Newmark's method,
+  !> (omega h)**2/12), 1 % after five periods.
   real(wp), parameter :: part_of_side = 1.0_wp/16, part_of_period = 1.0_wp/40
 
 contains

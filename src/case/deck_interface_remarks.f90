@@ -15,7 +15,7 @@ module deck_interface_remarks
   private
   public :: check_interfaces
 
-  !> Tolerance of equal angles, degrees.
+  !> Angles nearer than this, in degrees, are one: decks have at most three decimals, and rounding gives 1e-13.
   real(wp), parameter :: same = 1.0e-6_wp
 
 contains

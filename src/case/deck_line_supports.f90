@@ -12,7 +12,7 @@ module deck_line_supports
   private
   public :: check_line_supports, check_moved_lines
 
-  !> Relative tolerance of equal lengths.
+  !> Difference of lengths, relative to them, that is none: above round-off, 1e-16, and below the last digit of a deck.
   real(wp), parameter :: rounding = 1.0e-9_wp
 
 contains

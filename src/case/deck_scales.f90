@@ -16,9 +16,10 @@ module deck_scales
   private
   public :: check_scales
 
-  !> Errors of peak and history, by preliminary elastic impacts, above which a warning is given.
+  !> Errors of peak and history, by preliminary elastic impacts, that a user is warned of: 5 % is the peak's error with
+  !> accuracy='draft'; a small shift in time changes a history by more. They decide on warnings.
   real(wp), parameter :: error_limits(2) = [0.05_wp, 0.2_wp]
-  !> The same for the effect of the size of the patch.
+  !> The same for the size of the patch, of which twice as much is permitted for the peak, as it is an estimate itself.
   real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
   !> Ratio of estimated to requested error above which it is reported: estimates are 1.2 to 2 times the true errors.
   real(wp), parameter :: missed = 1.5_wp

@@ -40,15 +40,17 @@ module deck_units
     integer :: place = 1
   end type quantity_t
 
-  !> Usual range of the end of the run over the plate's period or the contact, whichever is longer.
+  !> Usual range of the end of the run over the plate's period or the contact, whichever is longer. It is wide enough
+  !> for any run, and confused units change the ratio by 1e3 or 1e6. It decides on a warning, as all below.
   real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
-  !> Times that a contact takes as long as its force rises.
+  !> Times that a contact takes as long as its force rises: two in a symmetric contact, and room for repeated ones.
   real(wp), parameter :: contact_rises = 10
-  !> Density of steel, kg/m^3, and relative tolerance within which a ball is assumed to be of steel.
+  !> Density of steel, kg/m^3, and how near to it a ball's is taken to be steel's: steels have 7700 to 8050.
   real(wp), parameter :: steel = 7850, near = 0.03_wp
-  !> Contact stiffness over that of Sun's formula for a rigid ball: usual and improbable values.
+  !> Contact stiffness over that of Sun's formula for a rigid ball: usual and improbable values. That of an
+  !> elastic plate is .5 (input/verify/karas.nml); N/mm^1.5 in place of N/m^1.5 changes the ratio by 3e4.
   real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
-  !> N/m^1.5 in one N/mm^1.5.
+  !> N/m^1.5 in one N/mm^1.5: 1000**1.5.
   real(wp), parameter :: per_millimetre = 31622.8_wp
 
 contains
@@ -202,6 +204,7 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: longest, ratio
     integer :: i
+    ! Ratios of units of time, in whose order the names below are
     real(wp), parameter :: thousands(4) = [1.0e-3_wp, 1.0e-6_wp, 1.0e3_wp, 1.0e6_wp]
     character(len=2), parameter :: of_si(4) = [character(len=2) :: 'ms', 'us', '', ''], &
                                    of_ms(4) = [character(len=2) :: 'us', '', 's', '']

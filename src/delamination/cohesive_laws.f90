@@ -15,7 +15,8 @@ module cohesive_laws
   !> Stiffness of the law over that of the adjacent layer, K_n h/E3. A factor of ten up or down changes the radius of a
   !> grown delamination by 0.3 to 1.4 %; 5 instead of 50 saves a third of the iterations of a step.
   real(wp), parameter :: usual_stiffness = 5
-  !> Smallest ratio of the jump at failure to that at onset.
+  !> Least jump at failure over jump at onset. Its inverse is the part of the toughness that is stored at the
+  !> onset: 5 %.
   real(wp), parameter :: min_ratio = 20
 
   !> The law of one interface.

@@ -18,7 +18,7 @@ module front_smoothing
   integer, parameter :: cells_of_line = 3
   !> Lines of nodes to each side of an edge's midpoint in the search for its nodes: two and a half cells.
   integer, parameter :: lines_beside = 5
-  !> Relative tolerance of equal distances.
+  !> Relative difference of distances that counts as none: far above 1e-16, and distances differ by parts of a cell.
   real(wp), parameter :: distance_tolerance = 1.0e-6_wp
 
   !> A front with its smooth line.
@@ -98,7 +98,8 @@ contains
     real(wp), intent(in) :: reach
     !> Receive point and normal
     real(wp), intent(out) :: place(2), normal(2)
-    !> Regularisation of slope and curvature, for a front of one or two edges.
+    !> Stiffness against slope and bend relative to that of one edge, for a front of one edge or two: a fit of three
+    !> changes by 1e-6.
     real(wp), parameter :: regularisation = 1.0e-6_wp
     real(wp) :: matrix(3, 3), fit(3), powers(3), from(2), mean(2), near
     integer :: t, image, pass

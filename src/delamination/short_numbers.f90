@@ -6,7 +6,7 @@ module short_numbers
   private
   public :: short_text, text_at_least, text_at_most
 
-  !> Relative tolerance within which a number equals one of three digits.
+  !> Numbers this near to one of three digits are meant to be it: a thousand operations lose as much.
   real(wp), parameter :: blur = 1.0e-12_wp
 
 contains

@@ -23,7 +23,8 @@ module virtual_crack_closure
   logical, parameter, public :: closure_odd(closure_figures) = &
     [.false., .true., .false., .false., .true., .false., .false., .true., .false., .false., .false., .false., &
      .false., .true., .false., .false., .true., .false.]
-  !> Distance behind the front, in cells, over which the jump is fitted: a full cell on oblique fronts, too.
+  !> Cells behind the front whose nodes the jump is fitted to, times the cell: the diagonal of a square cell, so that on
+  !> slanting fronts too a whole cell counts, and an allowance for round-off.
   real(wp), parameter :: fitted = sqrt(2.0_wp)*(1 + 1.0e-6_wp)
 
 contains
@@ -154,7 +155,8 @@ contains
     real(wp), intent(in) :: length, extension
     !> G_I, G_II, G_III, none negative
     real(wp) :: modes(3)
-    !> Relative determinant below which all nodes have one distance, so that only a straight line can be fitted.
+    !> Determinant, relative, below which nodes at one distance leave a straight line only: round-off gives 1e-15, two
+    !> distances of which one is half the other .01 and more.
     real(wp), parameter :: one_distance = 1.0e-9_wp
     real(wp) :: slope(3), bend(3), det, work(3)
 

@@ -17,10 +17,11 @@ module initial_equilibrium
   private
   public :: has_initial_motion, find_initial_equilibrium, find_acceleration
 
-  !> Mass factor relative to that at which inertia equals the stiffness of the lowest bending mode of a plate of this
-  !> length.
+  !> Factor of mass over that which doubles the lowest stiffness of a bending plate as long as this one. It makes the
+  !> operator of a free plate definite, and an iteration leaves a thousandth of the lowest mode.
   real(wp), parameter :: negligible_mass = 1.0e-3_wp
-  !> Tolerance of the residual over the forces of the suppressed strains: later loads may be much smaller than these.
+  !> Residual over the forces of the suppressed strains: loads 1e-5 times as large still get the usual tolerance of
+  !> 1e-6, and round-off, 1e-16, is far below it.
   real(wp), parameter :: tolerance = 1.0e-11_wp
   integer, parameter :: max_iterations = 100
 

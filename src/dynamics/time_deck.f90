@@ -49,7 +49,7 @@ module time_deck
     'time | settle | real | 1 | time | 0 | >= 0 | &
     &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 
-  !> Largest number of steps of a run, within the range of default integers.
+  !> Most steps of a run: with twenty iterations each, their count still fits a default integer, up to 2.1e9.
   real(wp), parameter, public :: max_steps = 1.0e8_wp
 
 contains

@@ -34,9 +34,10 @@ module central_differences
   !> hundredth.
   integer, parameter :: between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
-  !> Fraction of that allowance below which the step is lengthened again, so that its length seldom changes.
+  !> Fraction of that allowance, a squared frequency, below which steps are lengthened again: they are a tenth too short
+  !> at most.
   real(wp), parameter :: relaxed = 0.8_wp
-  !> Tolerance in steps for meeting an event: round-off of the sum of millions of steps.
+  !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
   real(wp), parameter :: rounded_off = 1.0e-3_wp
 
   !> Data of central differences besides the state. It has many components because inertia, stacks, lines, rigs and

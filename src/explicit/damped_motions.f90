@@ -10,7 +10,7 @@ module damped_motions
   private
   public :: damp_motion
 
-  !> Ratio of amplitudes at the end and at the start of damping: 1e-7 of the energy.
+  !> What is left of an amplitude at the end: of energies a ten-millionth, below the usual tolerance of 1e-6.
   real(wp), parameter :: final_ratio = 3.0e-4_wp
 
 contains

@@ -13,7 +13,8 @@ module impactor_steps
   private
   public :: impactor_steps_t, create_impactor_steps
 
-  !> Growth of the contact stiffness allowed for by a new step length, so that the length changes a few times only.
+  !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only. A
+  !> step that the contact limits is shorter by a factor of sqrt(2) at most.
   real(wp), parameter :: slope_reserve = 2
 
   !> The impactor.

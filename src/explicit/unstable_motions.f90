@@ -10,8 +10,8 @@ module unstable_motions
   private
   public :: refuse_instability
 
-  !> Error of the energy ledger, relative to initial energy plus external work, above which a run ends. An unstable mode
-  !> grows exponentially and passes it within a few steps; the check of the ledger warns from a tenth of it.
+  !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
+  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it, 1 %.
   real(wp), parameter :: max_created = 0.1_wp
 
 contains

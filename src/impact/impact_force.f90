@@ -181,6 +181,8 @@ contains
     real(wp), intent(in) :: x
     !> Force per length
     real(wp) :: slope
+    ! Relative change of the indentation below which the slope is taken at its end: the quotient loses six digits there,
+    ! and the slope changes by a part of 1e-6.
     real(wp), parameter :: short_way = 1e-6_wp
 
     slope = indentation_stiffness(law, state, alpha_end)

@@ -10,7 +10,7 @@ module cohesive_sliding
   private
   public :: heat_since, update_friction_limits, visit_friction
 
-  !> Relative change of a friction limit at which load steps have converged.
+  !> Relative change of a friction limit at which load steps have converged: the usual tolerance of forces.
   real(wp), parameter :: limit_tolerance = 1.0e-6_wp
 
 contains

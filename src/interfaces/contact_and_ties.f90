@@ -41,8 +41,9 @@ module contact_and_ties
     procedure :: visit
   end type contact_and_ties_t
 
-  !> Penalty of a tied jump relative to the diagonal of the operator: it gives five digits in a preconditioner, and can
-  !> be removed again without a factorization.
+  !> Penalty of a tied jump relative to the diagonal of the operator: stiff enough for five digits in a preconditioner,
+  !> soft enough to be removed again without a factorization. A factor of ten either way changes the cost by up to 3 %
+  !> (doc/studies/solution_controls.md).
   real(wp), parameter, public :: held_stiffness = 1.0e5_wp
 
 contains

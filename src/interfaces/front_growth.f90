@@ -11,8 +11,8 @@ module front_growth
   private
   public :: grow_fronts, find_release_ratio
 
-  !> Fraction of the largest ratio above which segments delaminate together, so that a symmetric front remains
-  !> symmetric.
+  !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so. With .9 and
+  !> .99 histories are the same (doc/studies/solution_controls.md).
   real(wp), parameter :: together = 0.95_wp
 
 contains
@@ -136,7 +136,7 @@ contains
     real(wp), intent(in) :: reach
     !> True for the closest ones
     logical :: first(size(open))
-    !> Tolerance of equal distances, relative to a cell
+    !> Distance, relative to a cell, that counts as none: far above 1e-16, and distances differ by parts of a cell.
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 

@@ -12,7 +12,7 @@ module interface_flaws
   private
   public :: reachable_cells, weaken_beside, visit_flaws
 
-  !> Factor that includes cells at exactly the distance on every machine.
+  !> So that cells as far away as the reach count on every machine: above 1e-16, and below any part of a cell.
   real(wp), parameter :: rounding_factor = 1 + 1.0e-9_wp
 
 contains

@@ -12,7 +12,7 @@ module required_zones
   private
   public :: required_extents
 
-  !> Relative tolerance of lengths for round-off.
+  !> Part by which rounding may carry a length beyond another: above 1e-16, and below any part of a cell.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains

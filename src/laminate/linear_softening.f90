@@ -6,7 +6,8 @@ module linear_softening
   private
   public :: softening_t, linear_softening_of, more_damaged, damage_at, taken_by, weights_of_signs
 
-  !> Smallest ratio of failure strain to onset strain: a longer element would snap back.
+  !> Smallest ratio of failure strain to onset strain: at 1 the stress falls at once, and a longer element would snap
+  !> back. At 1.25 it falls with four times the modulus. The check warns of the energy that is then too large.
   real(wp), parameter, public :: min_ratio = 1.25_wp
 
   !> A linear softening law.

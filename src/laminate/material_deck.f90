@@ -80,7 +80,8 @@ module material_deck
 
   !> Keys of an orthotropic material that have to be there, and all of them.
   character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
-  !> Largest ratio of two moduli of a material; rounding spoils the result beyond.
+  !> Largest ratio of two moduli of a material; rounding spoils the result beyond: with the slenderness of a plate it
+  !> leaves few of sixteen digits.
   real(wp), parameter :: max_contrast = 1.0e6_wp
 
 contains

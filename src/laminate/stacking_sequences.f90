@@ -8,7 +8,7 @@ module stacking_sequences
 
   !> Most plies of a laminate.
   integer, parameter, public :: max_plies = 1000
-  !> Largest size of an angle, degrees.
+  !> Largest size of an angle, degrees: a full turn.
   real(wp), parameter :: max_degrees = 360
   !> Largest plausible angle; a larger number may be a lost subscript, as in 302 for 30_2.
   real(wp), parameter, public :: usual_degrees = 180

@@ -6,7 +6,8 @@ module gradings
   private
   public :: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
 
-  !> Fraction of an element by which a tie between two numbers of elements is resolved to the larger one in all units.
+  !> Fraction of an element by which a tie between two numbers of elements is resolved to the larger one in all units:
+  !> above round-off, at most 1e-10 with 1e6 elements.
   real(wp), parameter :: tie = 1.0e-9_wp
 
 contains

@@ -18,7 +18,7 @@ module line_overlaps
 
   !> Part of a cell's side that belongs to the nodes at its ends, each: the integral of their quadratic.
   real(wp), parameter :: end_part = 1.0_wp/6.0_wp
-  !> Part of an interval by which rounding may move a bound.
+  !> Part of an interval by which rounding may move a bound: far above 1e-16, below any part of a cell.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains

@@ -15,7 +15,8 @@ module mesh_deck
   character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
                                          key_core = 'core', key_cell = 'cell', key_grading = 'grading'
   character(len=*), parameter, public :: key_lines(2) = ['lines_x', 'lines_y']
-  !> Most elements: more pass the range of default integers.
+  !> Most elements: a matrix of 20 unknowns an element and about 40 entries a row in a triangle has 8e8, and default
+  !> integers reach 2.1e9.
   real(wp), parameter, public :: max_elements = 1.0e6_wp
   !> Row of the group.
   character(len=group_row_length), parameter, public :: mesh_group_row = &

@@ -13,7 +13,7 @@ module mesh_parameters
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
 
-  !> Distance of two lines, over that from the centre, that is none.
+  !> Distance of two lines, over that from the centre, that is none: above 1e-16, below the last digit of a deck.
   real(wp), parameter :: same_line = 1.0e-9_wp
 
   !> The plate; lengths are of the full plate, also under symmetry.

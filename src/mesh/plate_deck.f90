@@ -41,7 +41,7 @@ module plate_deck
 
   !> What elastic edges need, against deflection and against rotation.
   character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']
-  !> Largest ratio of the plate's sides.
+  !> Largest ratio of the plate's sides: with one square element across, a thousand along; the most of a mesh are 1e6.
   real(wp), parameter :: max_aspect_ratio = 1.0e3_wp
 
 contains

@@ -13,10 +13,11 @@ module contact_areas
   private
   public :: contact_area_t, new_contact_area
 
-  !> Additional separation of the surfaces at the edge of a Hertzian contact, relative to the indentation.
+  !> Additional separation of the surfaces at the edge of a Hertzian contact, relative to the indentation: its radius a
+  !> is sqrt(R alpha), and the nose rises by a**2/(2 R) there.
   real(wp), parameter, public :: edge_gap = 0.5_wp
-  !> Weight relative to the largest above which a point counts as in contact: at the end of contact weights decrease
-  !> gradually.
+  !> Weight over the largest from which a place counts as touched: as contact ends, weights fade. It decides on an area
+  !> that is reported.
   real(wp), parameter :: min_weight = 1.0e-3_wp
 
   !> Struck face and nose.

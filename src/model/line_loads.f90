@@ -13,7 +13,8 @@ module line_loads
   !> Layer of a line that acts on all layers.
   integer, parameter, public :: all_layers = 0
 
-  !> Relative tolerance within which a line lies on an edge of the plate.
+  !> Distance from the plate's edge, over its length, up to which a line lies on it: below the digits of a deck, above
+  !> round-off.
   real(wp), parameter :: at_end = 1.0e-6_wp
 
   !> One line.

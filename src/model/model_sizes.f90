@@ -13,7 +13,7 @@ module model_sizes
 
   !> Unknowns per rank in a job script; a choice, since the best value depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
-  !> Megabytes of the libraries per process: MPI, PETSc and its libraries.
+  !> Megabytes of the libraries a process: MPI, PETSc and those behind it (doc/studies/speed.md).
   real(wp), parameter :: megabytes_of_libraries = 55
   !> Bytes per pair of unknowns of a node times log2 of the number of nodes: fill-in of a plane grid by nested
   !> dissection. Measured, doc/manual/queue.md.
@@ -22,7 +22,7 @@ module model_sizes
   !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm). With adaptive layers the state is in
   !> memory twice during their extension: 13700 and 14900 in total on cells of 1.5 and 3 mm.
   real(wp), parameter :: bytes_explicit = 9700, bytes_transferred = 5000
-  !> Memory of several ranks together over that of one: MUMPS' buffers and ghosts.
+  !> Memory of several ranks together over that of one: MUMPS' buffers and ghosts. Measured, doc/manual/queue.md.
   real(wp), parameter :: more_on_ranks = 1.7_wp
 
   !> Size of a model.

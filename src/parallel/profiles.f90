@@ -123,6 +123,7 @@ contains
     !> What has been found
     type(record_t), intent(inout) :: record
     real(wp) :: seconds, megabytes
+    ! Seconds: twice what the query takes, which reads a file of the system.
     real(wp), parameter :: a_while = 1.0e-4_wp
 
     seconds = wall_time()

@@ -19,7 +19,8 @@ module ply_failures
   public :: ply_failure_t, new_ply_failure
 
   !> Tolerance of the energy error of softening plies in a step, relative to the energy they dissipate in it and to the
-  !> total energy. The spurious energy of a step past a failure would cause further failures.
+  !> total energy. The spurious energy of a step past a failure would cause further failures. Half and twice of them
+  !> choose other steps in implicit motion, and with these other failures (doc/studies/solution_controls.md).
   real(wp), parameter :: path_tolerance = 0.1_wp, energy_tolerance = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.

@@ -14,7 +14,8 @@ module force_filters
 
   !> Name of the filter in results.
   character(len=*), parameter, public :: filter_kind = 'Butterworth low pass of 4th order, causal'
-  !> Damping of the two sections.
+  !> Damping of the two sections of a Butterworth filter of fourth order: its poles lie at odd multiples of pi/8 on a
+  !> circle.
   real(wp), parameter :: damping(2) = [cos(pi/8), cos(3*pi/8)]
 
   !> A filter and its state.

@@ -12,7 +12,8 @@ module history_file
   private
   public :: history_file_t
 
-  !> Longest time in seconds that a row may wait before it is in the file.
+  !> Longest time in seconds that a row may wait before it is in the file: short for a reader, while writes that are
+  !> this rare take no measurable time. It changes no result.
   real(wp), parameter :: longest_wait = 3
   !> Bytes read at a time.
   integer, parameter :: block_length = 65536

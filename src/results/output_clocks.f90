@@ -7,7 +7,7 @@ module output_clocks
   private
   public :: clock_t, next_event, shown_time
 
-  !> Relative round-off of the time of events.
+  !> Distance of two events, relative to their time, that rounding may bring about: multiples of an interval lose 1e-16.
   real(wp), parameter :: rounding = 1.0e-12_wp
 
   !> A clock with events at multiples of an interval.

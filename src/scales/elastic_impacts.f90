@@ -31,11 +31,13 @@ module elastic_impacts
     logical :: complete = .false.
   end type elastic_impact_t
 
-  !> Fraction of the largest force that counts as contact.
+  !> Fraction of the largest force that counts as contact: as much as its permitted error, 1 %.
   real(wp), parameter :: contact_part = 0.01_wp
-  !> A contact that ended is taken to be the last if none follows for as long as it took up to then.
+  !> A contact that ended is taken to be the last if none follows for as long as it took up to then. At its
+  !> velocity the impactor is then farther away than the plate has moved.
   real(wp), parameter :: waiting = 2
-  !> Fraction of the largest force above which a contact is compared with it.
+  !> Fraction of the largest force above which a contact is compared with it: errors permitted, at most 5 %, cannot make
+  !> a smaller one the largest.
   real(wp), parameter :: like_peaks = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: max_iterations = 60

@@ -30,7 +30,8 @@ module modal_plates
                          lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Largest number of modes along one direction; the deflection by higher ones is negligible for an estimate.
   integer, parameter :: max_modes = 300
-  !> Shortest half wave of the modes in the sum along one direction, as a fraction of the patch.
+  !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up: shorter ones
+  !> have (sin x/x)**2 < .026, x > 2 pi, times the load of a point, and a compliance that falls with the fourth power.
   real(wp), parameter :: part_of_patch = 0.25_wp
 
 contains

@@ -17,7 +17,8 @@ module contact_updates
   !> Relaxation factor of the weights per step: the plate responds to the change, and without relaxation the update
   !> overshoots where the plate is more compliant than the contact. doc/theory/impact.md has figures.
   real(wp), parameter :: relaxation = 0.2_wp
-  !> Sum of the changes of the weights, whose sum is 1, below which they are not updated.
+  !> Sum of the changes of weights, of one, that are not worth a solve: they change the force by less than its tolerance
+  !> of 1e-6.
   real(wp), parameter :: negligible = 1.0e-6_wp
 
 contains

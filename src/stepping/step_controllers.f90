@@ -9,7 +9,7 @@ module step_controllers
   private
   public :: step_controller_t
 
-  !> Ratio above which a step counts as longer than another one.
+  !> Ratio above which a step counts as longer than another one: above round-off, below any factor of a step.
   real(wp), parameter :: longer_than = 1 + 1.0e-9_wp
 
   !> State of the controller.

@@ -17,7 +17,8 @@ module stepping_parameters
   !> step.
   integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
 
-  !> Duration of a run over the time from first contact to the end of the contact.
+  !> Time from touch to the end of a run over that to the end of the contact: a quarter more shows that the impactor is
+  !> gone, and lets a second contact begin.
   real(wp), parameter, public :: past_contact = 1.25_wp
   !> Longest extension of a run by its contact, over the end first chosen: an impactor still in contact by then
   !> perforates the plate or rests on it.

@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """What the constants of the iteration change: each halved and doubled, on small decks.
 Usage: solution_controls.py IMPLAM [CONSTANT or DECK ...]     (about six minutes)
+       solution_controls.py IMPLAM own [CONSTANT ...]         (about two minutes)
 
 The constants are those of the group &controls, which `implam explain controls` lists. Without a name all are varied,
 on all decks.
 Prints a row a variant: the constant, its value, and for each deck the ratio of its cost to that of the deck as it is,
 and the largest change of the force in the history over the peak force (of the energies, where no impactor presses), in
 %. The cost is the number of solves plus 30 for each factorization, which takes about as long as 30 solves. A dash is a
-run that has not ended."""
+run that has not ended.
+
+With `own` those constants are varied that few decks use, each on decks that use it: a row has constant, deck, and for
+each other value ratio and change."""
 
 import csv
 import subprocess
@@ -30,6 +34,39 @@ REPLACED = {"adaptive": ("step=2e-6", "step=20e-6")}
 BY_LOAD = ("dissipation_tolerance", "dissipation_growth", "load_step_parts")
 NEWTON = ("forcing", "max_forcing", "element", "contact", "search", "force", "last", "alternating")
 PRICE = 30
+# Changes of input/sun_chen.nml for decks of its own: patterns and their replacements.
+COARSE = [("elements=16, 16", "elements=8, 8")]
+SHORT = [*COARSE, ("step=2e-6", "step=0.1e-6")]
+PLAIN = ("'gear4'", "'trapezoidal'")
+CURVED = [*COARSE, PLAIN, ("'linear'", "'von_karman'"), ("end=1000e-6", "end=300e-6")]
+FRONT = [("starter=12e-3", "starter=12e-3 law='front' growth='one_per_step'")]
+PRESSED = [("step=1e-3", "step=2e-2"), ("step_max=5e-3", "step_max=2e-2"), ("stress_change=0.1 ", ""),
+           ("refactor='deflection' stiffness_update=0.003 ", "")]
+# Decks of constants that few decks use: path, changes, and what is added.
+OWN_DECKS = {
+    "curved": ("sun_chen.nml", [*CURVED, ("velocity=3", "velocity=30")], ""),
+    "exact": ("sun_chen.nml", CURVED, "&solver tolerance=1e-12 /"),
+    "short": ("sun_chen.nml", [*SHORT, PLAIN], "&adapt on=.true. tolerance=1e-2 /"),
+    "gear": ("sun_chen.nml", SHORT, "&adapt on=.true. tolerance=1e-2 /"),
+    "stress": ("sun_chen.nml", [*COARSE, PLAIN], "&adapt on=.true. rule='stress_rate' stress_change=0.2 /"),
+    "long": ("sun_chen.nml", [*COARSE, PLAIN, ("step=2e-6", "step=40e-6")], "&adapt on=.true. /\n"),
+    "pressed": ("../tests/decks/good/pressure_transient.nml", PRESSED, ""),
+    "front": ("small/delamination.nml", FRONT, "&adapt on=.true. /"),
+    "block": ("verify/block.nml", [], ""), "ubm": ("verify/dcb_ubm.nml", [], ""),
+    "strip": ("verify/buckled_strip.nml", [], ""),
+}
+# Constants, the decks that use them, and other values.
+OWN = {
+    "element_reduction": ("curved", (1e-3, 0.1)), "last_digits": ("exact", (8, 128)),
+    "force_floor": ("block", (1e-7, 1e-5, 1e-3)), "alternating_iterations": ("block", (4, 16, 100)),
+    "ratio_near_growth": ("front", (0.5, 0.7, 0.9)),
+    "lag_low": ("stress short", (0.1, 0.6)), "lag_high": ("stress pressed", (1.2, 5)),
+    "rejection_error": ("pressed", (4, 16, 100)), "first_error": ("long", (2, 64)),
+    "allowed_in_impact": ("short", (0.0625, 0.25)), "max_doublings": ("short", (1, 2, 6)),
+    "steady_in_impact": ("short", (12, 48)), "doublings_of_gear": ("gear", (2, 3)), "equal_of_gear": ("gear", (1, 20)),
+    "dissipation_tolerance": ("ubm strip", (1e-3, 0.1)), "dissipation_growth": ("ubm strip", (2, 16)),
+    "load_step_parts": ("ubm strip", (16, 4096)),
+}
 
 
 def constants(program):
@@ -63,7 +100,7 @@ def compared(found, reference):
     cost, history = found
     times, values = reference[1].T
     change = np.abs(np.interp(times, *history.T) - values).max() / np.abs(values).max()
-    return f"{cost / reference[0]:.2f} {100 * change:.1g}"
+    return f"{cost / reference[0] if cost else 1:.2f} {100 * change:.1g}"
 
 
 def variants(kind, value, key):
@@ -87,8 +124,38 @@ def decks_of(key):
     return ["layers", "snapping", "adaptive"]
 
 
+def own_deck(name):
+    """Text of a deck of OWN_DECKS."""
+    path, changes, added = OWN_DECKS[name]
+    text = (ROOT / path).read_text(encoding="utf-8")
+    for old, new in changes:
+        if old not in text:
+            raise SystemExit(f"{path} has no {old}.")
+        text = text.replace(old, new)
+    return f"{text}\n{added}\n"
+
+
+def vary_own(program, wanted):
+    """Print a row a constant of OWN and deck."""
+    values, plain = constants(program), {}
+    print("| constant | deck | value | other value: cost, change in % |")
+    print("|---|---|---|---|")
+    for key, (names, others) in OWN.items():
+        for name in names.split() if not wanted or key in wanted else ():
+            if name not in plain:
+                plain[name] = run(program, own_deck(name), "")
+            cells = []
+            for other in others:
+                found = run(program, own_deck(name), f"&controls {key}={other:g} /\n")
+                cells.append(f"{other:g}: {compared(found, plain[name]) if plain[name] else 'deck fails'}")
+            print(f"| {key} | {name} | {values[key][1]:g} | {'; '.join(cells)} |", flush=True)
+
+
 def main():
     """Run the variants and print their table."""
+    if sys.argv[2:3] == ["own"]:
+        vary_own(sys.argv[1], sys.argv[3:])
+        return
     program, wanted = sys.argv[1], [word for word in sys.argv[2:] if word not in DECKS]
     decks = {name: (ROOT / path).read_text(encoding="utf-8").replace(*REPLACED.get(name, ("", "")))
              for name, path in DECKS.items() if name in sys.argv or not set(DECKS) & set(sys.argv)}
