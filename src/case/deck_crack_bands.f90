@@ -162,8 +162,8 @@ contains
     do mode = 1, size(toughness_keys)
       if (longest(mode) < present(2)) &
         call append(limits, length_text(deck, longest(mode))//' ('//toughness_keys(mode)//')')
-      if (usual > reported_ratio*longest(mode)) call append(excesses, rounded_text(usual/longest(mode), 2)//' times '// &
-                                             toughness_keys(mode))
+      if (usual > reported_ratio*longest(mode)) &
+        call append(excesses, rounded_text(usual/longest(mode), 2)//' times '//toughness_keys(mode))
     end do
     if (size(limits) == 0) return
     excess = ''
@@ -171,8 +171,8 @@ contains
                                       joined(excesses, ', ')//'.'
     sides = length_text(deck, present(2))
     if (length_text(deck, present(1)) /= sides) sides = length_text(deck, present(1))//' to '//sides
-    call remark(deck%settings, problems, material_group, '', 'the sides of elements are '//sides// &
-                ' long; failure dissipates more than the fracture energy in those longer than '//joined(limits, ', ')// &
+    call remark(deck%settings, problems, material_group, '', 'the sides of elements are '//sides//' long; failure '// &
+                'dissipates more than the fracture energy in those longer than '//joined(limits, ', ')// &
                 '. Use shorter ones where plies fail.'//excess, place)
   end subroutine check_lengths
 

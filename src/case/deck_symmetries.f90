@@ -23,10 +23,10 @@ module deck_symmetries
   private
   public :: check_symmetry, note_symmetry, symmetry_sentence
 
-  !> Coupling stiffness that counts as none, relative to the stiffness it couples: plies that cancel each other leave
+  !> Tolerance of zero coupling stiffness, relative to the stiffness it couples: plies that cancel each other leave
   !> 1e-16, and one degree in one of a hundred plies leaves 1e-4.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
-  !> Distance of a clamp from the image of another one that counts as none, relative to the plate: .1 um in 100 mm,
+  !> Tolerance of the distance of a clamp from the image of another one, relative to the plate: .1 um in 100 mm,
   !> below the digits of a deck and above round-off.
   real(wp), parameter :: same_place = 1.0e-6_wp
 

@@ -45,7 +45,7 @@ module deck_units
   real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
   !> Times that a contact takes as long as its force rises: two in a symmetric contact, and room for repeated ones.
   real(wp), parameter :: contact_rises = 10
-  !> Density of steel, kg/m^3, and how near to it a ball's is taken to be steel's: steels have 7700 to 8050.
+  !> Density of steel, kg/m^3, and the relative tolerance for a ball of steel: steels have 7700 to 8050.
   real(wp), parameter :: steel = 7850, near = 0.03_wp
   !> Contact stiffness over that of Sun's formula for a rigid ball: usual and improbable values. That of an
   !> elastic plate is .5 (input/verify/karas.nml); N/mm^1.5 in place of N/m^1.5 changes the ratio by 3e4.

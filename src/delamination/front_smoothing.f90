@@ -18,7 +18,7 @@ module front_smoothing
   integer, parameter :: cells_of_line = 3
   !> Lines of nodes to each side of an edge's midpoint in the search for its nodes: two and a half cells.
   integer, parameter :: lines_beside = 5
-  !> Relative difference of distances that counts as none: far above 1e-16, and distances differ by parts of a cell.
+  !> Relative tolerance of equal distances: far above 1e-16, and distances differ by parts of a cell.
   real(wp), parameter :: distance_tolerance = 1.0e-6_wp
 
   !> A front with its smooth line.

@@ -136,7 +136,7 @@ contains
     real(wp), intent(in) :: reach
     !> True for the closest ones
     logical :: first(size(open))
-    !> Distance, relative to a cell, that counts as none: far above 1e-16, and distances differ by parts of a cell.
+    !> Tolerance of equal distances, relative to a cell: far above 1e-16, and distances differ by parts of a cell.
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 

@@ -47,12 +47,6 @@ module krylov_solvers
     logical :: defined = .false.
     !> Iterations of the last solve
     integer :: iterations = 0
-    !> Ranks it was defined for
-    type(communicator_t), private :: communicator
-    !> Rows of this rank
-    integer, private :: rows = 0
-    !> PETSc's name of the method
-    character(len=:), allocatable, private :: method
     !> PETSc's solver
     type(tKSP), private :: solver
     !> Its preconditioner
@@ -136,26 +130,10 @@ contains
     call KSPSetFromOptions(self%solver, ierr(14))
     call report_petsc(ierr, error)
     self%defined = .true.
-    self%communicator = communicator
-    self%rows = rows
-    self%method = method
   end subroutine define
 
-  !> Sets the solver up anew: PETSc keeps the right-hand side locked after a solve that a product has ended. Collective.
-  subroutine renew(self, error)
-    !> The solver
-    type(krylov_solver_t), intent(inout) :: self
-    !> Set if PETSc fails
-    type(error_t), allocatable, intent(inout) :: error
-    type(krylov_solver_t) :: new
-
-    call new%define(self%communicator, self%rows, self%method, error)
-    new%iterations = self%iterations
-    call self%release()
-    self = new
-  end subroutine renew
-
-  !> Solves to a tolerance, or as far as the largest dimension of the space reaches. Collective.
+  !> Solves to a tolerance, or as far as the largest dimension of the space reaches. After a product that failed the
+  !> solver has to be defined anew. Collective.
   subroutine solve(self, system, row_factors, right_hand_side, tolerance, solution, converged, indefinite, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self
@@ -191,7 +169,8 @@ contains
     indefinite = reason == KSP_DIVERGED_INDEFINITE_MAT
     if (allocated(products%error)) then
       call move_alloc(products%error, error)
-      call renew(self, error)
+      ! PETSc keeps the right-hand side locked after a solve that a product has ended.
+      call self%release()
     else
       call report_petsc(ierr, error)
     end if

@@ -97,7 +97,7 @@ contains
     end associate
   end subroutine try_dissipation
 
-  !> Finds how near fronts are to growth; under load steps they do not grow.
+  !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
   subroutine note_state(self, stepper, model)
     !> The kind
     class(load_steps_t), intent(in) :: self
