@@ -30,8 +30,7 @@ module central_differences
   public :: central_difference_t
 
   !> Steps between two updates of the highest frequency by slopes and membrane tension, and relative allowance for its
-  !> growth in between: the change of a slope is below velocity times time over the element length, far below a
-  !> hundredth.
+  !> growth in between: a slope changes by less than velocity times time over element length, far below a hundredth.
   integer, parameter :: between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
   !> Fraction of that allowance, a squared frequency, below which steps are lengthened again: they are a tenth too short
