@@ -64,8 +64,8 @@ OWN = {
     "rejection_error": ("pressed", (4, 16, 100)), "first_error": ("long", (2, 64)),
     "allowed_in_impact": ("short", (0.0625, 0.25)), "max_doublings": ("short", (1, 2, 6)),
     "steady_in_impact": ("short", (12, 48)), "doublings_of_gear": ("gear", (2, 3)), "equal_of_gear": ("gear", (1, 20)),
-    "dissipation_tolerance": ("ubm strip", (1e-3, 0.1)), "dissipation_growth": ("ubm strip", (2, 16)),
-    "load_step_parts": ("ubm strip", (16, 4096)),
+    "dissipation_tolerance": ("strip ubm", (1e-3, 0.1)), "dissipation_growth": ("strip ubm", (1.5, 16)),
+    "load_step_parts": ("strip ubm", (2, 16)),
 }
 
 
