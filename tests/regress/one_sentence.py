@@ -67,7 +67,7 @@ def check_invalid_files(implam, folder):
 
 def check_limit_load(implam, folder):
     """A force beyond that at which an interface separates: the sentence names the key that follows its growth."""
-    deck = write_deck(folder, "enf.nml")
+    deck = write_deck(folder, "enf.nml", ["mesh%elements=28,2", "static%steps=5"])
     text = deck.read_text(encoding="utf-8").replace("displacement=4e-3", "force=2e3").replace("dissipation=0.2", "")
     deck.write_text(text, encoding="utf-8")
     printed = run([implam, deck, "--output", folder], expected=3)

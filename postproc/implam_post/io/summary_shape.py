@@ -32,7 +32,9 @@ _FIGURES = (
     "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage", "energy_contact",
     "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic", "energy_error", "delaminated_area",
     "projected_area", "threshold_force_at_starter", "fibre_failures", "matrix_cracks", "matrix_crushings")
-_POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | {
+_ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
+             "energy_contact", "energy_friction")
+_POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | dict.fromkeys(_ENERGIES, float) | {
     "in_contact": bool, "interfaces": [_INTERFACE], "force_filter": {"frequency": float, "peak_force": float}}
 _POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float)
 
