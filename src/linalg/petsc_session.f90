@@ -12,9 +12,9 @@ module petsc_session
   !> Options of the program, which those of the user override: the run handles signals, and CHOLMOD uses its supernodal
   !> factorization with square roots for all matrices, which detects those that are not positive definite. "telescope"
   !> is the solver on one rank for all of them.
-  character(len=*), parameter :: own_options = '-no_signal_handler true -mat_cholmod_factor supernodal '// &
-    '-telescope_pc_type cholesky -telescope_pc_factor_mat_solver_type cholmod '// &
-    '-telescope_mat_cholmod_factor supernodal '
+  character(len=*), parameter :: own_options = '-no_signal_handler true -options_left no '// &
+    '-mat_cholmod_factor supernodal -telescope_mat_cholmod_factor supernodal '// &
+    '-telescope_pc_type cholesky -telescope_pc_factor_mat_solver_type cholmod '
 
   interface
     !> Starts PETSc by its C entry: the Fortran one always reads the command line.
