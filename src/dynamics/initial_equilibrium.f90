@@ -25,6 +25,16 @@ module initial_equilibrium
   real(wp), parameter :: tolerance = 1.0e-11_wp
   integer, parameter :: max_iterations = 100
 
+  !> What Aitken's extrapolation keeps of a correction.
+  type :: aitken_t
+    !> Its factor
+    real(wp) :: factor = 1
+    !> Work of the residual on it
+    real(wp) :: work = 0
+    !> The correction without the factor, (5, points)
+    real(wp), allocatable :: correction(:, :)
+  end type aitken_t
+
 contains
 
   !> Finds the equilibrium of a plate at rest with its residual stresses, and then with lines prescribed before the run,
@@ -82,6 +92,7 @@ contains
     type(state_t) :: before
     real(wp), allocatable :: residual(:, :), correction(:, :), suppressing(:, :), lines(:, :)
     real(wp) :: energy, damage, force_square, largest(2)
+    type(aitken_t) :: aitken
     integer :: iteration
 
     allocate (residual, correction, lines, mold=state%motion%displacement)
@@ -111,6 +122,7 @@ contains
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) return
       operator%solves = operator%solves + 1
+      if (model%setup%has_crack_bands()) call extrapolate(model, residual, aitken, correction)
       call state%interfaces%faces%hold(model, correction)
       state%motion%displacement = state%motion%displacement + correction
     end do
@@ -123,6 +135,31 @@ contains
     state%patch_mean = model%contact_deflection(state%motion%displacement)
     operator%ready = .false.
   end subroutine equilibrate
+
+  !> Extrapolates a correction by the secant stiffness of softening plies, which alone converges linearly, by Aitken's
+  !> method in the energy norm (B. M. Irons, R. C. Tuck, Int. J. Numer. Meth. Eng. 1 (1969) 275-277). Where corrections
+  !> decrease quadratically, the factor tends to 1. Collective.
+  subroutine extrapolate(model, residual, aitken, correction)
+    type(model_t), intent(in) :: model
+    !> Residual, (5, points)
+    real(wp), intent(in) :: residual(:, :)
+    !> The correction before; receives this one
+    type(aitken_t), intent(inout) :: aitken
+    !> Correction, (5, points)
+    real(wp), intent(inout) :: correction(:, :)
+    real(wp) :: works(2), change, factor
+
+    works = 0
+    if (allocated(aitken%correction)) works(1) = model%product(aitken%correction, residual)
+    works(2) = model%product(correction, residual)
+    call model%communicator%sum(works)
+    change = aitken%work - 2*works(1) + works(2)
+    factor = 1
+    if (allocated(aitken%correction) .and. change > 0) factor = aitken%factor*(aitken%work - works(1))/change
+    if (.not. factor > 0) factor = 1
+    aitken = aitken_t(factor, works(2), correction)
+    correction = factor*correction
+  end subroutine extrapolate
 
   !> Initial acceleration of the plate under pressure and forces applied at time 0, and initial velocity of prescribed
   !> lines. Collective.
