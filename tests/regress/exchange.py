@@ -121,7 +121,8 @@ def check(program, implam, folder):
 def check_manual(implam, folder):
     """Do what the example of the manual does; it prints what the page shows, and the panel comes back damaged."""
     page = (ROOT / "doc" / "manual" / "exchange.md").read_text(encoding="utf-8").split("\n## Example\n")[1]
-    commands = {line.split()[0]: line.split()[1:] for line in re.findall(r"^    (implam.*)$", page, re.MULTILINE)}
+    lines = "".join(re.findall(r"```sh\n(.*?)```", page, re.DOTALL)).splitlines()
+    commands = {line.split()[0]: line.split()[1:] for line in lines if line.startswith("implam")}
     shown, deck = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("text", "fortran"))
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
