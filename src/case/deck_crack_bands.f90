@@ -22,8 +22,8 @@ module deck_crack_bands
   private
   public :: check_crack_bands
 
-  !> Ratio of dissipated energy to fracture energy from which it is reported: smaller ratios are 1 in two digits.
-  real(wp), parameter :: reported_ratio = 1.1_wp
+  !> Ratio of dissipated energy to fracture energy from which it is reported: smaller ones are written as 1.0.
+  real(wp), parameter :: reported_ratio = 1.05_wp
 
 contains
 

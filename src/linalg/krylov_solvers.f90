@@ -16,7 +16,7 @@ module krylov_solvers
 
   !> Largest dimension of the Krylov space: this number of solves takes about as long as a factorization.
   integer, parameter :: max_dimension = 30
-  !> PETSC_ERR_NOT_CONVERGED, by which a product that fails ends the iteration
+  !> PETSC_ERR_CONV_FAILED, by which a product that fails ends the iteration
   integer, parameter :: product_failed = 82
 
   !> Equations known by the products of their matrix and of a preconditioner.

@@ -17,7 +17,8 @@ module petsc_factors
   !> PETSC_ERR_LIB, for lack of memory
   integer, parameter :: bad_pivot = 81, no_memory(*) = [55, 76]
 
-  !> Room beyond MUMPS' estimate in %: its own choice, and what is tried where that is not enough
+  !> Room beyond MUMPS' estimate in %, ICNTL(14): its own choice and, as its users' guide advises after a failure for
+  !> lack of room, more: twice and five times the estimate
   integer, parameter :: usual_margin = -1, larger_margins(*) = [100, 400]
 
   !> A factor and what makes it.

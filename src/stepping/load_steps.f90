@@ -145,7 +145,7 @@ contains
                       converged, error)
       if (.not. (allocated(error) .or. converged)) &
         call fail(error, exit_convergence, 'No equilibrium at '//rounded_text(stepper%now%time)// &
-                  'of the load: the plate with its failed plies cannot carry it.')
+                  ' of the load: the plate with its failed plies cannot carry it.')
       if (allocated(error)) return
       stepper%trial%step = stepper%now%step
       call accept_step(stepper, model, 0.0_wp)

@@ -47,7 +47,7 @@ def extremes(program, options):
             continue
         smallest, largest, contact = run.ledger()
         finite = all(map(math.isfinite, (value for entry in run.rows for value in entry.values())))
-        warnings = sum(len(line) > 0 for line in re.findall('warning', run.said))
+        warnings = run.said.count('warning')
         row(name, f'{run.rows[-1]["step"]:.0f} steps ({steps or 0:.0f} foreseen), '
                   f'peak {run.summary["peak_force"]:.0f} N, '
             f'{run.rows[-1]["fibre_failures"]:.0f} fibre failures, ledger {100*smallest:.4f} to {100*largest:+.4f} %, '
