@@ -1,11 +1,11 @@
 !> Two faces at a point of a cohesive interface: cohesive law in opening, penalty stiffness of the undamaged interface
 !> in closing, and friction on the damaged part of the area under pressure. Without contact the damaged part, with the
 !> damage at the start of the step, has no stiffness in closing, so that tractions have a potential within a step; the
-!> undamaged part acts in both directions. Energy stored in closing is released by growing damage and booked as
-!> algorithmic dissipation.
+!> undamaged part acts in both directions, and growing damage releases the energy stored in closing.
 module cohesive_faces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
-  use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, grown_damage, stored_energy
+  use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, fraction_growth, grown_damage, &
+                             separation_t, stored_energy, undamaged_energy
   use cohesive_tangents, only: operator_stiffness, traction_slopes
   use face_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
@@ -26,6 +26,10 @@ module cohesive_faces
     procedure :: traction
     !> Energy per area stored by the jumps.
     procedure :: stored
+    !> Work per area on the cohesive law in a step.
+    procedure :: work
+    !> Energy per area that growing damage takes from closed faces without contact.
+    procedure :: closing_loss
     !> Derivative of the traction.
     procedure :: slopes
     !> Diagonal for a factored operator.
@@ -70,6 +74,48 @@ contains
     if (jumps(3) < 0) stored = stored + closing_stiffness(self, point)*jumps(3)**2/2
     if (self%friction > 0) stored = stored + friction_energy(self%law%stiffness_shear, jumps(:2), point%sliding)
   end function stored
+
+  !> Work per area on the cohesive law in a step: change of the stored energy without that of friction and contact,
+  !> energy dissipated, and loss in closing. It begins from the law at the first jumps: where flaws or a mapping have
+  !> weakened the point, damage at fixed jumps takes no work.
+  pure real(wp) function work(self, from, to, old, damage)
+    !> The faces
+    class(cohesive_faces_t), intent(in) :: self
+    !> Two shears and opening at the start and at the end
+    real(wp), intent(in) :: from(3), to(3)
+    !> The point at the start
+    type(cohesive_point_t), intent(in) :: old
+    !> Damage at the end
+    real(wp), intent(in) :: damage
+    type(separation_t) :: separation
+    real(wp) :: first
+
+    first = old%damage
+    work = 0
+    if (damage > first) then
+      first = min(damage, grown_damage(self%law, separation_of(self%law, from, 0.0_wp), old))
+      separation = separation_of(self%law, to, 0.0_wp)
+      work = separation%toughness*fraction_growth(self%law, first, damage)
+    end if
+    work = work + (1 - damage)*undamaged_energy(self%law, to) - (1 - first)*undamaged_energy(self%law, from)
+    if (self%closing) return
+    work = work + self%law%stiffness_opening/2*((1 - damage)*min(to(3), 0.0_wp)**2 &
+                                                - (1 - first)*min(from(3), 0.0_wp)**2) &
+           + self%closing_loss(from(3), to(3), damage - first)
+  end function work
+
+  !> Energy per area that growing damage takes from closed faces without contact, by the trapezoidal rule.
+  pure real(wp) function closing_loss(self, from, to, growth)
+    !> The faces
+    class(cohesive_faces_t), intent(in) :: self
+    !> Opening at the start and at the end
+    real(wp), intent(in) :: from, to
+    !> Growth of damage
+    real(wp), intent(in) :: growth
+
+    closing_loss = 0
+    if (.not. self%closing) closing_loss = self%law%stiffness_opening*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2
+  end function closing_loss
 
   !> Derivative of the traction.
   pure function slopes(self, jumps, old)

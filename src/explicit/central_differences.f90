@@ -373,7 +373,6 @@ contains
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    real(wp), allocatable :: interfaces(:, :)
 
     call archive%item('explicit/step', self%steps%now)
     call archive%item('explicit/step_before', self%steps%last)
@@ -387,14 +386,7 @@ contains
       if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%inherits) &
         call self%lines%visit(archive, owned, points)
       if (.not. model%map%layered) return
-      allocate (interfaces(8, size(self%force, 2)))
-      interfaces(1:3, :) = self%stacks%forces
-      interfaces(4:6, :) = self%stacks%change
-      interfaces(7:8, :) = self%stacks%lost
-      call archive%field('explicit/interfaces', owned, points, interfaces)
-      self%stacks%forces = interfaces(1:3, :)
-      self%stacks%change = interfaces(4:6, :)
-      self%stacks%lost = interfaces(7:8, :)
+      call self%stacks%history%visit(archive, owned, points)
     end associate
   end subroutine visit
 end module central_differences

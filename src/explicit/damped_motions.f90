@@ -31,7 +31,7 @@ contains
     share = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, model, now)
     now%motion%velocity = share*now%motion%velocity
-    method%stacks%change = share*method%stacks%change
+    call method%stacks%history%slow_down(share)
     method%rigs%approach = share*method%rigs%approach
     method%lines%pins%change = share*method%lines%pins%change
     now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now)

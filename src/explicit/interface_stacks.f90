@@ -2,10 +2,12 @@
 module interface_stacks
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: cohesive_law_t
+  use jump_histories, only: create_jump_history, jump_history_t
   use kinds, only: wp
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, along_x, along_y, along_z
   use tridiagonal_systems, only: factorize
+  use weighted_jumps, only: newest
   implicit none
   private
   public :: interface_stacks_t, create_interface_stacks
@@ -27,15 +29,12 @@ module interface_stacks
     !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
     !> Square of the step times the compliance of the layers, its diagonal and the off-diagonal entries, along x, y and
-    !> z,
-    !> (3, points)
+    !> z, (3, points)
     real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Factors of the undamaged stacks, (2, 3, points)
     real(wp), allocatable :: factors(:, :, :)
-    !> Forces on the jumps in the last step, and change of the jumps in it, (3, points)
-    real(wp), allocatable :: forces(:, :), change(:, :)
-    !> Energy dissipated by contact of faces, and numerically by the implicit tractions, (2, points)
-    real(wp), allocatable :: lost(:, :)
+    !> Earlier steps of the jumps
+    type(jump_history_t) :: history
   contains
     !> Finds the compliances for a step.
     procedure :: prepare
@@ -83,10 +82,9 @@ contains
       self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
       self%area(inertia%dependents(i)) = 0
     end do
-    allocate (self%stiffness(2, points), self%min_onset(points), self%diagonal(3, points), self%off_diagonal(3, &
-      points), &
-              self%factors(2, 3, points), self%forces(3, points), self%change(3, points), self%lost(2, points), &
-              source=0.0_wp)
+    allocate (self%stiffness(2, points), self%min_onset(points), self%diagonal(3, points), &
+              self%off_diagonal(3, points), self%factors(2, 3, points), source=0.0_wp)
+    self%history = create_jump_history(points)
     do i = 1, model%distribution%owned
       if (model%zone(i) == 0) cycle
       associate (law => model%cohesive_laws(model%zone(i)))
@@ -185,8 +183,8 @@ contains
       end do
       associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
         do k = 1, 3
-          call factorize(self%stiffness(merge(2, 1, k == 3), from:to), self%diagonal(k, from:to), &
-                         self%off_diagonal(k, from:to), self%factors(:, k, from:to))
+          call factorize(newest*self%stiffness(merge(2, 1, k == 3), from:to), &
+                         self%diagonal(k, from:to), self%off_diagonal(k, from:to), self%factors(:, k, from:to))
         end do
       end associate
     end do

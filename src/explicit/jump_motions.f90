@@ -1,9 +1,13 @@
 !> Jumps between layers in a step: update, damage, and work of the tractions.
+!>
+!> The kinetic energy of the layers at whole steps changes by -(F dJ + (F - F_old) dJ_old/2) with the forces F on the
+!> jumps J (doc/theory/energy.md). What contact neither stores nor returns is lost in contact; what the other forces
+!> neither store nor dissipate is numerical dissipation.
 module jump_motions
   use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
-  use face_friction, only: sliding_t
+  use face_friction, only: friction_energy, sliding_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use models, only: model_t
@@ -29,7 +33,8 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: change(3), k(3), jump(3)
+    type(cohesive_faces_t) :: faces
+    real(wp) :: change(3), k(3), jump(3), traction(3)
     integer :: j, p
 
     do j = 1, size(forces, 2)
@@ -37,80 +42,33 @@ contains
       change = steps%now*v(1:3, p)
       jump = u(1:3, p) + change
       k = stacks%stiffness([1, 1, 2], p)
-      ! Work of a linear spring beyond its stored energy, as in `advance_points`.
-      stacks%lost(2, p) = stacks%lost(2, p) + (k(1)*change(1)*(change(1) + stacks%change(1, p)) &
-                                               + k(2)*change(2)*(change(2) + stacks%change(2, p)) &
-                                               + k(3)*change(3)*(change(3) + stacks%change(3, p)))/2
-      if (abs(steps%now - steps%last) > 0) &
-        stacks%lost(2, p) = stacks%lost(2, p) + sum(forces(:, j)*steps%shift(stacks%change(:, p), change))
+      ! Work beyond the stored energy k (jump**2 - u**2)/2.
+      stacks%history%lost(2, p) = stacks%history%lost(2, p) + work_of(stacks, p, steps, forces(:, j), change) &
+                          - sum(k*change*(u(1:3, p) + jump))/2
       u(1:3, p) = jump
-      stacks%forces(:, p) = forces(:, j)
-      stacks%change(:, p) = change
+      call stacks%history%take(p, forces(:, j), change)
       if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
-      cohesive%points(p)%sliding%slip = u(1:2, p)
-      call damage_point(stacks, model, p, u(1:3, p), 0.0_wp, cohesive)
-      if (cohesive%points(p)%damage > 0) stacks%damaged(i) = .true.
+      faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
+      associate (point => cohesive%points(p))
+        point%sliding%slip = jump(1:2)
+        call faces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
+        stacks%history%lost(2, p) = stacks%history%lost(2, p) + sum(k*jump**2)/2 &
+                                    - stacks%area(p)*(faces%stored(jump, point) + point%dissipated)
+        if (point%damage > 0) stacks%damaged(i) = .true.
+      end associate
     end do
     if (.not. stacks%damaged(i)) return
     do j = 1, size(forces, 2)
       p = stacks%first(i) + j
       cohesive%points(p)%sliding%slip = u(1:2, p)
+      associate (work => stacks%history%work(p), last => stacks%history%change(:, p))
+        work = sum(stacks%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
+      end associate
     end do
   end subroutine advance_intact
 
-  !> Damage of a point under new jumps; the dissipated energy is booked.
-  subroutine damage_point(stacks, model, p, jumps, limit, cohesive)
-    !> The stacks
-    type(interface_stacks_t), intent(inout) :: stacks
-    type(model_t), intent(in) :: model
-    !> The point
-    integer, intent(in) :: p
-    !> Its jumps at the end of the step
-    real(wp), intent(in) :: jumps(3)
-    !> Friction limit, force per area
-    real(wp), intent(in) :: limit
-    !> The interfaces
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
-    type(cohesive_faces_t) :: faces
-    type(cohesive_point_t) :: old
-    real(wp) :: traction(3), before
-
-    faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
-    old = cohesive%points(p)
-    before = old%sliding%limit
-    old%sliding%limit = limit
-    call faces%traction(jumps, old, traction, cohesive%points(p))
-    if (faces%friction > 0) call add_release_heat(faces%law%stiffness_shear, before, old%sliding, &
-                                                  cohesive%points(p)%sliding)
-    ! Energy dissipated by damage and slip, and their change of the stored energy, are subtracted from the numerical
-    ! dissipation.
-    stacks%lost(2, p) = stacks%lost(2, p) - stacks%area(p)*(faces%stored(jumps, cohesive%points(p)) - &
-      faces%stored(jumps, old) + cohesive%points(p)%dissipated - old%dissipated + &
-      cohesive%points(p)%sliding%heat - old%sliding%heat)
-  end subroutine damage_point
-
-  !> Adds the heat of slip under a friction limit that decreases within the step: the traction follows the decreasing
-  !> limit, so that the elastic energy of sticking becomes heat.
-  pure subroutine add_release_heat(stiffness, before, old, new)
-    !> Stiffness of sticking faces, pressure per jump
-    real(wp), intent(in) :: stiffness
-    !> Limit at the start of the step
-    real(wp), intent(in) :: before
-    !> The faces at the start, with the limit of the end
-    type(sliding_t), intent(in) :: old
-    !> The faces at the end
-    type(sliding_t), intent(inout) :: new
-    real(wp) :: slipped, highest
-
-    slipped = norm2(new%slip - old%slip)
-    highest = min(old%limit + stiffness*slipped, max(before, old%limit))
-    new%heat = new%heat + (highest - old%limit)*slipped/2
-  end subroutine add_release_heat
-
-  !> Updates jumps and damage of a damaged stack, and books the work of the tractions beyond the stored energy. The
-  !> kinetic energy of the layers at whole steps changes by -(F dJ + (F - F_old) dJ_old/2) with the forces F on the
-  !> jumps J (doc/theory/energy.md); the part that is neither stored nor dissipated is numerical dissipation.
-  subroutine advance_points(stacks, i, model, steps, limit, forces, cohesive, u, v)
+  !> Updates jumps, damage and friction of a damaged stack, and books the work of the tractions.
+  subroutine advance_points(stacks, i, model, steps, limit, sliding_force, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
     !> Index of the stack
@@ -120,14 +78,15 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Friction limit, force, (n)
     real(wp), intent(in) :: limit(:)
-    !> Forces on the jumps, (3, n)
-    real(wp), intent(in) :: forces(:, :)
+    !> Friction forces, (2, n), and all forces on the jumps, (3, n)
+    real(wp), intent(in) :: sliding_force(:, :), forces(:, :)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
     type(cohesive_faces_t) :: faces
-    real(wp) :: change(3), work(3), stored(2), before(3)
+    type(cohesive_point_t) :: old
+    real(wp) :: change(3), before(3), traction(3), work, in_contact, growth
     integer :: j, p
 
     do j = 1, size(forces, 2)
@@ -136,27 +95,80 @@ contains
       change = steps%now*v(1:3, p)
       before = u(1:3, p)
       u(1:3, p) = before + change
-      work = forces(:, j)*(change + steps%shift(stacks%change(:, p), change)) &
-             + (forces(:, j) - stacks%forces(:, p))*stacks%change(:, p)/2
-      stored(1) = stacks%area(p)*(faces%stored([0.0_wp, 0.0_wp, u(3, p)], without_slip(cohesive%points(p))) &
-                                  - faces%stored([0.0_wp, 0.0_wp, before(3)], without_slip(cohesive%points(p))))
-      stored(2) = stacks%area(p)*(faces%stored([u(1:2, p), 0.0_wp], cohesive%points(p)) &
-                                  - faces%stored([before(1:2), 0.0_wp], cohesive%points(p)))
-      stacks%lost(:, p) = stacks%lost(:, p) + [work(3) - stored(1), work(1) + work(2) - stored(2)]
-      stacks%forces(:, p) = forces(:, j)
-      stacks%change(:, p) = change
-      call damage_point(stacks, model, p, u(1:3, p), limit(j)/stacks%area(p), cohesive)
+      work = work_of(stacks, p, steps, forces(:, j), change)
+      in_contact = 0
+      if (faces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
+      old = cohesive%points(p)
+      old%sliding%limit = limit(j)/stacks%area(p)
+      associate (new => cohesive%points(p), area => stacks%area(p))
+        call faces%traction(u(1:3, p), old, traction, new)
+        if (faces%friction > 0) call add_heat(faces%law%stiffness_shear, before(1:2), u(1:2, p), &
+          sum(sliding_force(:, j)*(change(1:2) + stacks%history%change(1:2, p)))/(2*area), old%sliding, new%sliding, &
+          stacks%history%slipped(p))
+        growth = new%dissipated - old%dissipated
+        in_contact = in_contact + area*faces%closing_loss(before(3), u(3, p), new%damage - old%damage)
+        stacks%history%lost(:, p) = stacks%history%lost(:, p) + [in_contact, work - in_contact - area* &
+          (faces%stored(u(1:3, p), new) - faces%stored(before, old) + growth + new%sliding%heat - old%sliding%heat)]
+        stacks%history%work(p) = area*faces%work(before, u(1:3, p), old, new%damage)
+      end associate
+      call stacks%history%take(p, forces(:, j), change)
     end do
   end subroutine advance_points
 
-  !> The point without slip, which stores the energy of its opening only.
-  pure function without_slip(point) result(plain)
+  !> Energy that the forces on a jump take from the kinetic energy at whole steps.
+  pure real(wp) function work_of(stacks, p, steps, force, change)
+    !> The stacks, with force and change of the step before
+    type(interface_stacks_t), intent(in) :: stacks
     !> The point
-    type(cohesive_point_t), intent(in) :: point
-    !> The same with no slip
-    type(cohesive_point_t) :: plain
+    integer, intent(in) :: p
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Force, and change of the jump in this step
+    real(wp), intent(in) :: force(3), change(3)
 
-    plain = point
-    plain%sliding%slip = 0
-  end function without_slip
+    work_of = sum(force*(change + steps%shift(stacks%history%change(:, p), change)) &
+                  + (force - stacks%history%forces(:, p))*stacks%history%change(:, p)/2)
+  end function work_of
+
+  !> The same for the pressure of closed faces, a spring at the end of each step, beyond what it stores.
+  pure real(wp) function lost_in_contact(stacks, p, steps, before, change) result(lost)
+    !> The stacks, with the change of the step before
+    type(interface_stacks_t), intent(in) :: stacks
+    !> The point
+    integer, intent(in) :: p
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Opening at the start of the step, and its change
+    real(wp), intent(in) :: before, change
+    real(wp) :: from, to
+
+    from = min(before, 0.0_wp)
+    to = min(before + change, 0.0_wp)
+    lost = stacks%stiffness(2, p)*(to*(change + steps%shift(stacks%history%change(3, p), change)) &
+                                   + (to - from)*stacks%history%change(3, p)/2 - (to**2 - from**2)/2)
+  end function lost_in_contact
+
+  !> Heat of slipping faces: the work of friction beyond what sticking stores.
+  pure subroutine add_heat(stiffness, from, to, work, old, new, slipped)
+    !> Stiffness of sticking faces, pressure per jump
+    real(wp), intent(in) :: stiffness
+    !> Tangential jumps at the start and at the end
+    real(wp), intent(in) :: from(2), to(2)
+    !> Work of friction per area
+    real(wp), intent(in) :: work
+    !> The faces at the start
+    type(sliding_t), intent(in) :: old
+    !> The faces at the end; receive the heat
+    type(sliding_t), intent(inout) :: new
+    !> Slip in the step before; receives that of this one
+    real(wp), intent(inout) :: slipped
+    real(wp) :: slip
+
+    slip = norm2(new%slip - old%slip)
+    new%heat = old%heat
+    ! Forces act over the mean motion of two steps.
+    if (slip > 0 .or. slipped > 0) new%heat = old%heat + &
+      max(0.0_wp, work - friction_energy(stiffness, to, new) + friction_energy(stiffness, from, old))
+    slipped = slip
+  end subroutine add_heat
 end module jump_motions

@@ -32,7 +32,7 @@ contains
       associate (held_by => model%rig%held_by(i), on_frame => model%rig%frame(i), clamps => model%rig%clamps(i))
         if (held_by > 0) then
           call sums(held_by)%add(method%force(3, i))
-          if (has_interface_below(i)) call sums(held_by)%add(method%stacks%forces(3, i + 1))
+          if (has_interface_below(i)) call sums(held_by)%add(method%stacks%history%forces(3, i + 1))
         else
           if (on_frame > 0) call sums(on_frame)%add(method%rigs%reaction(i))
           if (clamps > 0) &

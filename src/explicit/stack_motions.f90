@@ -1,9 +1,7 @@
 !> Motion of the layers of a node in a step: velocities from the forces on each layer, tractions between them, jumps.
 module stack_motions
-  use cohesive_faces, only: cohesive_faces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
-  use cohesive_laws, only: weakened
-  use cohesive_points, only: separation_of, grown_damage
+  use damaged_stacks, only: load_stack, solve_damaged
   use interface_stacks, only: interface_stacks_t
   use jump_motions, only: advance_intact, advance_points
   use kinds, only: wp
@@ -11,10 +9,11 @@ module stack_motions
   use line_steps, only: line_steps_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
-  use stack_solutions, only: stack_t, jumps_of, solve_openings, solve_shears
+  use stack_solutions, only: stack_t
   use step_lengths, only: step_lengths_t
   use rig_steps, only: rig_steps_t
   use tridiagonal_systems, only: solve_factored, solve_tractions
+  use weighted_jumps, only: newest, past_jumps
   implicit none
   private
   public :: move_stacks, new_workspaces
@@ -32,10 +31,10 @@ contains
     allocate (work(maxval([1, stacks%layers]) - 1))
     do n = 1, size(work)
       work(n)%n = n
-      allocate (work(n)%area(n), work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), &
-                work(n)%free(3, n), work(n)%start(3, n), work(n)%points(n), work(n)%damage(n), &
-                work(n)%closing(n), work(n)%friction(n), &
-                work(n)%forces(3, n), work(n)%limit(n))
+      allocate (work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), work(n)%free(3, n), &
+                work(n)%start(3, n), work(n)%points(n), work(n)%closing(n), work(n)%friction(n), work(n)%secant(2, n), &
+                work(n)%given(3, n), work(n)%forces(3, n), work(n)%limit(n), work(n)%sliding_force(2, n), &
+                work(n)%normal_stiffness(n))
     end do
   end function new_workspaces
 
@@ -90,7 +89,7 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: layer(5, stacks%layers(i)), free(3, work%n), forces(3, work%n)
+    real(wp) :: layer(5, stacks%layers(i)), free(3, work%n), forces(3, work%n), past(3, work%n)
     integer :: n, p, q, k
     logical :: pinned
 
@@ -110,13 +109,18 @@ contains
     free = u(1:3, p + 1:q) + steps%now*free
     if (stacks%damaged(i)) then
       call load_stack(stacks, work, model, cohesive, p, u, free)
-      call solve_damaged(work, model, cohesive, p)
+      call solve_damaged(stacks, work, model, cohesive, p)
       forces = work%forces
     else
-      call solve_factored(n, stacks%factors(:, :, p + 1:q), free, forces)
+      past = past_jumps(u(1:3, p + 1:q), stacks%history%change(:, p + 1:q), stacks%history%earlier(:, p + 1:q))
+      call solve_factored(n, stacks%factors(:, :, p + 1:q), free + past/newest, forces)
+      if (rigs%on_frame(p)) then
+        work%normal_stiffness = newest*stacks%stiffness(2, p + 1:q)
+        work%given(3, :) = stacks%stiffness(2, p + 1:q)*past(3, :)
+      end if
     end if
-    if (rigs%on_frame(p)) call rest_on_frame(stacks, i, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), layer, &
-                                          forces(3, :))
+    if (rigs%on_frame(p)) call rest_on_frame(stacks, i, work, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), &
+                                          layer, forces(3, :))
     call push_layers(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
     if (rigs%on_frame(p)) layer(3, 1) = rigs%approach(p)/steps%now
     if (pinned) &
@@ -126,7 +130,7 @@ contains
     v(1:3, p + 1:q) = free
     v(4:5, p + 1:q) = layer(4:5, 2:)
     if (stacks%damaged(i)) then
-      call advance_points(stacks, i, model, steps, work%limit, forces, cohesive, u, v)
+      call advance_points(stacks, i, model, steps, work%limit, work%sliding_force, forces, cohesive, u, v)
     else
       call advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
     end if
@@ -135,11 +139,13 @@ contains
   end subroutine move_stack
 
   !> Stops the first layer at a frame that it would penetrate, independently of the layers below.
-  pure subroutine rest_on_frame(stacks, i, rigs, inertia, steps, w, jump, free, layer, forces)
+  pure subroutine rest_on_frame(stacks, i, work, rigs, inertia, steps, w, jump, free, layer, forces)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Index of the stack
     integer, intent(in) :: i
+    !> The stack, with its stiffness against openings and the given part of the forces
+    type(stack_t), intent(in) :: work
     !> Frames
     type(rig_steps_t), intent(inout) :: rigs
     !> Lumped inertia
@@ -154,7 +160,7 @@ contains
     real(wp), intent(in) :: layer(:, :)
     !> Forces on the openings, (n)
     real(wp), intent(inout) :: forces(:)
-    real(wp) :: rate, diagonal(size(free)), stiffness(size(free)), none(size(free))
+    real(wp) :: rate, diagonal(size(free))
 
     associate (p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i)), n => size(free))
       rate = layer(3, 1) + steps%mean()*inverse*forces(1)
@@ -163,9 +169,8 @@ contains
         free(1) = jump + steps%now*(layer(3, 2) + w/steps%now)
         diagonal = stacks%diagonal(3, p + 1:p + n)
         diagonal(1) = diagonal(1) - steps%now*steps%mean()*inverse
-        stiffness = stacks%stiffness(2, p + 1:p + n)
-        none = 0
-        call solve_tractions(n, stiffness, none, diagonal, stacks%off_diagonal(3, p + 1:p + n), free, forces)
+        call solve_tractions(n, work%normal_stiffness, work%given(3, :), diagonal, &
+                             stacks%off_diagonal(3, p + 1:p + n), free, forces)
         rate = rate + steps%mean()*inverse*forces(1)
         if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
       end if
@@ -201,76 +206,4 @@ contains
       end do
     end associate
   end subroutine book_reactions
-
-  !> Forces of a damaged stack. If damage grows, they are computed again with the mean of old and new damage. With the
-  !> old damage the work of the tractions exceeds the energy stored and dissipated by the law, with the new damage it is
-  !> less: by half of the reduction of the traction times the change of the jump.
-  pure subroutine solve_damaged(work, model, cohesive, p)
-    !> The stack; receives the forces
-    type(stack_t), intent(inout) :: work
-    type(model_t), intent(in) :: model
-    !> The interfaces
-    type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> First point of the stack
-    integer, intent(in) :: p
-    real(wp) :: jumps(3, work%n), energy
-    logical :: grows
-    integer :: j
-
-    call solve_openings(work)
-    call solve_shears(work)
-    jumps = jumps_of(work)
-    grows = .false.
-    do j = 1, work%n
-      associate (law => model%cohesive_laws(model%zone(p + j)), strength => cohesive%strength(p + j))
-        energy = (law%stiffness_shear*(jumps(1, j)**2 + jumps(2, j)**2) &
-                  + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
-        ! N Y = G_c at the onset; the toughness of a mixture of modes is at least that of the weaker pure mode.
-        if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
-        work%damage(j) = grown_damage(weakened(law, strength), &
-                                      separation_of(weakened(law, strength), jumps(:, j), 0.0_wp), work%points(j))
-      end associate
-      grows = grows .or. work%damage(j) > work%points(j)%damage
-      work%damage(j) = (work%damage(j) + work%points(j)%damage)/2
-    end do
-    if (.not. grows) return
-    call solve_openings(work)
-    call solve_shears(work)
-  end subroutine solve_damaged
-
-  !> Copies a damaged stack from the state.
-  pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
-    !> The stacks
-    type(interface_stacks_t), intent(in) :: stacks
-    !> Receives it
-    type(stack_t), intent(inout) :: work
-    type(model_t), intent(in) :: model
-    !> The interfaces
-    type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> First point of the stack
-    integer, intent(in) :: p
-    !> Unknowns, (5, points)
-    real(wp), intent(in) :: u(:, :)
-    !> Jumps without tractions, (3, n)
-    real(wp), intent(in) :: free(:, :)
-    type(cohesive_faces_t) :: faces
-    integer :: j
-
-    associate (q => p + work%n)
-      work%area = stacks%area(p + 1:q)
-      work%stiffness = stacks%stiffness(:, p + 1:q)
-      work%diagonal = stacks%diagonal(:, p + 1:q)
-      work%off_diagonal = stacks%off_diagonal(:, p + 1:q)
-      work%free = free
-      work%start = u(1:3, p + 1:q)
-      work%points = cohesive%points(p + 1:q)
-      work%damage = work%points%damage
-    end associate
-    do j = 1, work%n
-      faces = cohesive%faces_of(model, model%zone(p + j), 1.0_wp)
-      work%closing(j) = faces%closing
-      work%friction(j) = faces%friction
-    end do
-  end subroutine load_stack
-
 end module stack_motions

@@ -1,8 +1,8 @@
 !> Forces between the layers of one node at the end of a step.
 !>
-!> Tractions are implicit: functions of the jumps at the end of the step, with the damage at its start. The stiffness of
-!> interfaces, contact and friction therefore does not limit the step. Openings are solved first; their pressure limits
-!> friction in the same step (return mapping of the trial shear traction).
+!> Contact and friction are functions of the jumps at the end of the step, cohesive tractions of weighted jumps with the
+!> damage at the start. Their stiffness therefore does not limit the step. Openings are solved first; their pressure
+!> limits friction in the same step (return mapping of the trial shear traction).
 module stack_solutions
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
@@ -15,18 +15,19 @@ module stack_solutions
   type :: stack_t
     !> Number of interfaces
     integer :: n = 0
-    !> Areas, and stiffness of shear and opening, force per jump, (2, n)
-    real(wp), allocatable :: area(:), stiffness(:, :)
-    !> Square of the step times the compliance of the layers along x, y and z: diagonal, and off-diagonal entries, (3,
-    !> n)
+    !> Undamaged stiffness of shear and opening, force per jump, (2, n)
+    real(wp), allocatable :: stiffness(:, :)
+    !> Square of the step times the compliance of the layers along x, y and z: diagonal, and off-diagonal entries,
+    !> (3, n)
     real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Jumps at the end of the step without tractions, and those at its start, (3, n)
     real(wp), allocatable :: free(:, :), start(:, :)
+    !> Force per jump at the end of the step, shear and opening, (2, n), and the part of the forces that does not depend
+    !> on these jumps, (3, n)
+    real(wp), allocatable :: secant(:, :), given(:, :)
     !> Damage and sliding at the start
     type(cohesive_point_t), allocatable :: points(:)
-    !> Damage in the secant stiffness
-    real(wp), allocatable :: damage(:)
-    !> True: damaged faces do not penetrate each other
+    !> True: faces do not penetrate each other
     logical, allocatable :: closing(:)
     !> Coefficient of friction
     real(wp), allocatable :: friction(:)
@@ -34,37 +35,36 @@ module stack_solutions
     real(wp), allocatable :: forces(:, :)
     !> Friction limit of this step, force
     real(wp), allocatable :: limit(:)
+    !> Friction forces, (2, n)
+    real(wp), allocatable :: sliding_force(:, :)
+    !> Force per opening with the contacts found, (n)
+    real(wp), allocatable :: normal_stiffness(:)
   end type stack_t
 
 contains
 
   !> Forces normal to the faces. The active set of contacts is that of the last solution, until it no longer changes;
-  !> the
-  !> law is monotonic, so the iteration converges.
+  !> the law is monotonic, so the iteration converges.
   pure subroutine solve_openings(stack)
     !> The stack; receives normal forces and the limits of friction
     type(stack_t), intent(inout) :: stack
     logical :: closed(stack%n), before(stack%n)
-    real(wp) :: stiffness(stack%n), opening(stack%n), none(stack%n)
+    real(wp) :: opening(stack%n)
     integer :: round, j
 
-    none = 0
     closed = stack%start(3, :) < 0
     do round = 0, stack%n + 1
-      do j = 1, stack%n
-        stiffness(j) = stack%stiffness(2, j)
-        if (.not. (closed(j) .and. stack%closing(j))) stiffness(j) = (1 - stack%damage(j))*stiffness(j)
-      end do
-      call solve_tractions(stack%n, stiffness, none, stack%diagonal(3, :), stack%off_diagonal(3, :), stack%free(3, :), &
-                           stack%forces(3, :))
+      stack%normal_stiffness = merge(stack%stiffness(2, :), stack%secant(2, :), closed .and. stack%closing)
+      call solve_tractions(stack%n, stack%normal_stiffness, stack%given(3, :), stack%diagonal(3, :), &
+                           stack%off_diagonal(3, :), stack%free(3, :), stack%forces(3, :))
       opening = stack%free(3, :) - jump_reduction(stack, 3)
       before = closed
       closed = opening < 0
-      if (all((before .eqv. closed) .or. (.not. stack%damage > 0))) exit
+      if (all((before .eqv. closed) .or. .not. stack%closing)) exit
     end do
     do j = 1, stack%n
       stack%limit(j) = 0
-      if (stack%closing(j)) stack%limit(j) = stack%friction(j)*stack%damage(j)*max(0.0_wp, -stack%forces(3, j))
+      if (stack%closing(j)) stack%limit(j) = stack%friction(j)*stack%points(j)%damage*max(0.0_wp, -stack%forces(3, j))
     end do
   end subroutine solve_openings
 
@@ -107,25 +107,27 @@ contains
     logical :: slips
 
     do j = 1, stack%n
-      stiffness(j) = (1 - stack%damage(j))*stack%stiffness(1, j)
-      given(:, j) = 0
+      stiffness(j) = stack%secant(1, j)
+      given(:, j) = stack%given(:2, j)
       if (.not. stack%limit(j) > 0) cycle
       stiffness(j) = stiffness(j) + stack%stiffness(1, j)
-      given(:, j) = -stack%stiffness(1, j)*stack%points(j)%sliding%slip
+      given(:, j) = given(:, j) - stack%stiffness(1, j)*stack%points(j)%sliding%slip
     end do
     call solve_both(stack, stiffness, given)
+    stack%sliding_force = 0
     if (.not. any(stack%limit > 0)) return
     slips = .false.
-    associate (jumps => stack%free(1:2, :) - reshape([jump_reduction(stack, 1), jump_reduction(stack, 2)], [2, &
-      stack%n], &
-                                                     order=[2, 1]))
+    associate (jumps => stack%free(1:2, :) - reshape([jump_reduction(stack, 1), jump_reduction(stack, 2)], &
+                                                     [2, stack%n], order=[2, 1]))
       do j = 1, stack%n
         if (.not. stack%limit(j) > 0) cycle
         tried = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)
+        stack%sliding_force(:, j) = tried
         if (.not. norm2(tried) > stack%limit(j)) cycle
+        stack%sliding_force(:, j) = stack%limit(j)*(tried/norm2(tried))
         slips = .true.
-        stiffness(j) = (1 - stack%damage(j))*stack%stiffness(1, j)
-        given(:, j) = stack%limit(j)*(tried/norm2(tried))
+        stiffness(j) = stack%secant(1, j)
+        given(:, j) = stack%given(:2, j) + stack%sliding_force(:, j)
       end do
     end associate
     if (slips) call solve_both(stack, stiffness, given)

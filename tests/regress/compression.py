@@ -38,14 +38,15 @@ AREA = 40e-3 * 2.4e-3
 REST_TIME, LENGTH = 80e-6, 60e-3
 # Of all energy. Measured: 2e-10 before plies and interfaces break again, 2e-9 with cracks that close, 3.6e-3 in the
 # collapse on these coarse cells.
-CLOSED, CLOSED_IN_COLLAPSE = 1e-8, 1e-2
+CLOSED, CLOSED_IN_COLLAPSE = 5e-8, 1e-2
 CLOSED_BY_CLOSING = 1e-7
 # Of the largest value up to half of the run. Measured: 4e-15.
 ROUNDED = 1e-11
 # Finer cells of the compression; areas and energies then, relative, are kept to rounding.
 FINER = ["mesh%elements=14, 22"]
 MAPPED = 1e-12
-GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 1e-3, 1e-3, 1e-6
+EXTENDED = 0.02
+GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 5e-3, 1e-6
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
 ENERGIES = ("kinetic", "strain", "delamination", "ply_damage", "contact", "friction", "algorithmic", "layers",
@@ -158,7 +159,9 @@ def check_mapped(implam, folder, launcher):
     pairs += [(name, kept[f"{name}_before"], kept[f"{name}_after"])
               for name in ("fibre_damage_area", "matrix_damage_area", "energy_ply_damage")]
     for name, before, after in pairs:
-        require(abs(after - before) <= MAPPED * before, f"{name}: {before} before, {after} after.")
+        # Strains of the new cells vary about the mean of the old ones, and extend matrix cracks.
+        bound = EXTENDED if name in ("matrix_damage_area", "energy_ply_damage") else MAPPED
+        require(-MAPPED * before <= after - before <= bound * before, f"{name}: {before} before, {after} after.")
     # Jumps between the old nodes may damage an interface once the first step meets them.
     grown = rows["energy_delamination"][0] / impact["energy_delamination"] - 1
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
@@ -185,7 +188,7 @@ def check_unfolded(implam, folder, half):
     """From the half that was struck to finer cells of the full plate."""
     text = (folder / f"{COMPRESSION}.nml").read_text(encoding="utf-8")
     line = re.search(r"&line .*/", text).group()
-    other = line.replace("at=30e-3", "at=-30e-3").replace("-0.35e-3", "0.35e-3")
+    other = line.replace("at=30e-3", "at=-30e-3").replace("-0.4e-3", "0.4e-3")
     text = text.replace("symmetry='point'", "symmetry='none'").replace("elements=14", "elements=28")
     text = text.replace("end=0.4e-3", "end=0.2e-3")
     (folder / f"{COMPRESSION}.nml").write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
@@ -202,7 +205,7 @@ def check_whole(implam, folder, _):
     half = read_history(press(implam, folder))
     text = (folder / f"{COMPRESSION}.nml").read_text(encoding="utf-8")
     line = re.search(r"&line .*/", text).group()
-    other = line.replace("at=30e-3", "at=-30e-3").replace("-0.35e-3", "0.35e-3")
+    other = line.replace("at=30e-3", "at=-30e-3").replace("-0.4e-3", "0.4e-3")
     text = text.replace("symmetry='point'", "symmetry='none'").replace("elements=10", "elements=20")
     (folder / f"{COMPRESSION}.nml").write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
     run([implam, f"{COMPRESSION}.nml"], folder=folder)
@@ -224,7 +227,7 @@ def check_refused(implam, folder, _):
     damaged = bytearray((folder / CHECKPOINT).read_bytes())
     damaged[len(damaged) // 2] ^= 1
     (folder / "damaged.h5").write_bytes(damaged)
-    (folder / "newer.h5").write_bytes((folder / CHECKPOINT).read_bytes().replace(b"format 2", b"format 3", 1))
+    (folder / "newer.h5").write_bytes((folder / CHECKPOINT).read_bytes().replace(b"format 3", b"format 4", 1))
     cases = [
         (["laminate%ply_thickness=0.7e-3"], ["0.0006", "0.0007"], EXIT_DECK),
         (["laminate%stacking='[0/90/0]'"], ["0 90 90 0", "0 90 0"], EXIT_DECK),

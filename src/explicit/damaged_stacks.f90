@@ -1,0 +1,125 @@
+!> Forces in stacks of layers with damaged interfaces.
+!>
+!> Tractions are those of the damage at the start of the step and of weighted jumps. Where damage grows, the trapezoidal
+!> rule misses the corners of the law at onset, failure and reloading, and softening releases energy of the weighting.
+!> The force along the motion of the jumps is then corrected, so that its work is what the law stores and dissipates: a
+!> discrete gradient, as in O. Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467.
+module damaged_stacks
+  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_points, only: grown_damage, opened, separation_of
+  use interface_stacks, only: interface_stacks_t
+  use kinds, only: wp
+  use models, only: model_t
+  use stack_solutions, only: jumps_of, solve_openings, solve_shears, stack_t
+  use weighted_jumps, only: newest, past_jumps, past_openings
+  implicit none
+  private
+  public :: load_stack, solve_damaged
+
+contains
+
+  !> Copies a damaged stack from the state.
+  pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> Receives it
+    type(stack_t), intent(inout) :: work
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> First point of the stack
+    integer, intent(in) :: p
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    !> Jumps without tractions, (3, n)
+    real(wp), intent(in) :: free(:, :)
+    type(cohesive_faces_t) :: faces
+    integer :: j
+
+    associate (q => p + work%n)
+      work%stiffness = stacks%stiffness(:, p + 1:q)
+      work%diagonal = stacks%diagonal(:, p + 1:q)
+      work%off_diagonal = stacks%off_diagonal(:, p + 1:q)
+      work%free = free
+      work%start = u(1:3, p + 1:q)
+      work%points = cohesive%points(p + 1:q)
+    end associate
+    do j = 1, work%n
+      faces = cohesive%faces_of(model, model%zone(p + j), 1.0_wp)
+      work%closing(j) = faces%closing
+      work%friction(j) = faces%friction
+      associate (change => stacks%history%change(:, p + j), earlier => stacks%history%earlier(:, p + j))
+        work%given(:, j) = past_jumps(work%start(:, j), change, earlier)
+        if (faces%closing) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))
+      end associate
+      work%given(:, j) = (1 - work%points(j)%damage)*work%stiffness([1, 1, 2], j)*work%given(:, j)
+      work%secant(:, j) = newest*(1 - work%points(j)%damage)*work%stiffness(:, j)
+    end do
+  end subroutine load_stack
+
+  !> Forces of a damaged stack, with corrections where damage grows.
+  pure subroutine solve_damaged(stacks, work, model, cohesive, p)
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> The stack; receives the forces
+    type(stack_t), intent(inout) :: work
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> First point of the stack
+    integer, intent(in) :: p
+    type(cohesive_faces_t) :: faces
+    real(wp) :: jumps(3, work%n), energy, damage
+    logical :: grows
+    integer :: j
+
+    call solve_openings(work)
+    call solve_shears(work)
+    jumps = jumps_of(work)
+    grows = .false.
+    do j = 1, work%n
+      if (.not. work%points(j)%damage < 1) cycle
+      associate (law => model%cohesive_laws(model%zone(p + j)), strength => cohesive%strength(p + j))
+        energy = (law%stiffness_shear*(jumps(1, j)**2 + jumps(2, j)**2) &
+                  + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
+        ! N Y = G_c at the onset; the toughness of a mixture of modes is at least that of the weaker pure mode.
+        if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
+        faces = cohesive%faces_of(model, model%zone(p + j), strength)
+      end associate
+      damage = grown_damage(faces%law, separation_of(faces%law, jumps(:, j), 0.0_wp), work%points(j))
+      if (.not. damage > work%points(j)%damage) cycle
+      grows = .true.
+      energy = faces%work(work%start(:, j), jumps(:, j), work%points(j), damage)
+      call correct_force(work, j, jumps(:, j), stacks%history%change(:, p + j), &
+                         (stacks%area(p + j)*energy + stacks%history%work(p + j))/2)
+    end do
+    if (.not. grows) return
+    call solve_openings(work)
+    call solve_shears(work)
+  end subroutine solve_damaged
+
+  !> Corrects a force so that it does a given work over the mean motion of this step and the one before.
+  pure subroutine correct_force(work, j, jumps, change, energy)
+    !> The stack; receives the given part of the force
+    type(stack_t), intent(inout) :: work
+    !> The interface
+    integer, intent(in) :: j
+    !> Jumps at the end of the step, and their change in the step before
+    real(wp), intent(in) :: jumps(3), change(3)
+    !> The work: mean of the law's work in both steps
+    real(wp), intent(in) :: energy
+    real(wp) :: moved(3), motion(3), force(3)
+
+    moved = jumps - work%start(:, j)
+    motion = (moved + change)/2
+    force = work%secant([1, 1, 2], j)*opened(jumps) + work%given(:, j)
+    if (.not. work%closing(j)) then
+      force(3) = work%secant(2, j)*jumps(3) + work%given(3, j)
+    else if (jumps(3) < 0) then
+      motion(3) = 0
+    end if
+    ! Where a jump has turned, its mean motion is small; the motion of this step limits the correction.
+    work%given(:, j) = work%given(:, j) + motion*((energy - sum(force*motion))/max(sum(motion**2), sum(moved**2)/4))
+  end subroutine correct_force
+end module damaged_stacks

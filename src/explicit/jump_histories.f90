@@ -1,0 +1,90 @@
+!> What the motion of jumps needs of earlier steps, and the energy that they have lost.
+module jump_histories
+  use archives, only: archive_t
+  use kinds, only: wp
+  implicit none
+  private
+  public :: jump_history_t, create_jump_history
+
+  !> Earlier steps of the jumps at each point.
+  type :: jump_history_t
+    !> Forces on the jumps in the last step, (3, points)
+    real(wp), allocatable :: forces(:, :)
+    !> Change of the jumps in the last step, and in the one before, (3, points)
+    real(wp), allocatable :: change(:, :), earlier(:, :)
+    !> Slip of damaged faces, and work on their cohesive law, in the last step, (points)
+    real(wp), allocatable :: slipped(:), work(:)
+    !> Energy dissipated by contact of faces, and numerically by the tractions, (2, points)
+    real(wp), allocatable :: lost(:, :)
+  contains
+    !> Takes over force and change of a step.
+    procedure :: take
+    !> Multiplies the changes.
+    procedure :: slow_down
+    !> Checkpoint.
+    procedure :: visit
+  end type jump_history_t
+
+contains
+
+  !> The history of jumps that have not moved.
+  pure function create_jump_history(points) result(self)
+    !> Number of points
+    integer, intent(in) :: points
+    !> The history
+    type(jump_history_t) :: self
+
+    allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%slipped(points), &
+              self%work(points), self%lost(2, points), source=0.0_wp)
+  end function create_jump_history
+
+  !> Takes over force and change of a step.
+  pure subroutine take(self, p, force, change)
+    !> The history
+    class(jump_history_t), intent(inout) :: self
+    !> The point
+    integer, intent(in) :: p
+    !> Force, and change of the jump
+    real(wp), intent(in) :: force(3), change(3)
+
+    self%forces(:, p) = force
+    self%earlier(:, p) = self%change(:, p)
+    self%change(:, p) = change
+  end subroutine take
+
+  !> Multiplies the changes by the ratio of velocities.
+  pure subroutine slow_down(self, ratio)
+    !> The history
+    class(jump_history_t), intent(inout) :: self
+    !> The ratio
+    real(wp), intent(in) :: ratio
+
+    self%change = ratio*self%change
+    self%earlier = ratio*self%earlier
+  end subroutine slow_down
+
+  !> Writes or reads the history.
+  subroutine visit(self, archive, owned, points)
+    !> The history
+    class(jump_history_t), intent(inout) :: self
+    !> The checkpoint
+    class(archive_t), intent(inout) :: archive
+    !> Numbers of this rank's points in the mesh, and number of points of the mesh
+    integer, intent(in) :: owned(:), points
+    real(wp) :: values(13, size(self%work))
+
+    values(1:3, :) = self%forces
+    values(4:6, :) = self%change
+    values(7:9, :) = self%earlier
+    values(10:11, :) = self%lost
+    values(12, :) = self%slipped
+    values(13, :) = self%work
+    call archive%field('explicit/interfaces', owned, points, values)
+    self%forces = values(1:3, :)
+    self%change = values(4:6, :)
+    self%earlier = values(7:9, :)
+    self%lost = values(10:11, :)
+    self%slipped = values(12, :)
+    self%work = values(13, :)
+  end subroutine visit
+end module jump_histories
