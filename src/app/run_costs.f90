@@ -32,9 +32,9 @@ contains
 
     allocate (lines(0))
     if (deck%is_static()) then
-      call append(lines, to_text(deck%stepping%static_steps)//' load steps'//min_time(deck, model_size, &
-        deck%stepping%static_steps*tangents_of_load_step*factor_over_solve, &
-        deck%stepping%static_steps*tangents_of_load_step))
+      call append(lines, to_text(deck%static%steps)//' load steps'//min_time(deck, model_size, &
+        deck%static%steps*tangents_of_load_step*factor_over_solve, &
+        deck%static%steps*tangents_of_load_step))
     else if (.not. deck%stepping%time%step > 0) then
       return
     else if (is_explicit(deck%stepping)) then
