@@ -75,18 +75,15 @@ contains
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Step proposed, and tried
-    real(wp), intent(inout) :: step
+    !> Step tried
+    real(wp), intent(in) :: step
     !> True if equilibrium was reached
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     type(dissipation_step_t) :: by_dissipation
-    real(wp) :: target
 
-    associate (now => stepper%now, max_growth => stepper%stepping%controls%dissipation_growth)
-      target = stepper%energy_rate(model)*step
-      if (target > max_growth*now%path%dissipated) step = step*max_growth*now%path%dissipated/target
+    associate (now => stepper%now)
       by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate(model)*step, &
                                             1.0_wp/model%setup%static%steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
