@@ -122,8 +122,6 @@ contains
       new%motion%displacement = self%guess
     else if (.not. self%keeps_displacement) then
       new%motion%displacement = self%step*old%motion%velocity
-      if (self%keeps_velocity) &
-        new%motion%displacement = new%motion%displacement + (self%step**2/2)*old%motion%acceleration
       call new%interfaces%faces%hold(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_contact_closed(model, new%motion%displacement)
@@ -155,8 +153,8 @@ contains
         else
           call new%find_internal(model, old, at%energy)
           if (self%keeps_velocity .and. new%iterations == 0) then
-            ! Newmark's acceleration is that of the start.
-            new%motion%inertia = old%motion%inertia
+            ! Newmark's acceleration with the velocity of the start.
+            new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
           else
             call model%inertia(new%motion%acceleration, new%motion%inertia)
           end if
