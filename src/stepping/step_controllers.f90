@@ -308,7 +308,7 @@ contains
       if (nonlinear) &
         due = due .or. abs(deflection_change) > stepping%adapt%stiffness_update*thickness
     else
-      due = min(mass_ratio, 1/mass_ratio) < stepping%controls%least_mass_ratio .or. &
+      due = min(mass_ratio, 1/mass_ratio) < stepping%controls%min_mass_ratio .or. &
             self%excess >= stepping%adapt%iterations
     end if
   end function renewal_due

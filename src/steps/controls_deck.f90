@@ -46,7 +46,7 @@ module controls_deck
       &Parts into which a load step may be cut.', &
     'controls | ratio_near_growth | real | 1 | - | 0.8 | > 0, < 1 | &
       &Ratio of release rates from which fronts shorten steps.', &
-    'controls | least_mass_ratio | real | 1 | - | 0.3 | > 0, <= 1 | &
+    'controls | min_mass_ratio | real | 1 | - | 0.3 | > 0, <= 1 | &
       &Smaller over larger mass factor below which an operator is renewed.', &
     'controls | shortening_error | real | 1 | - | 2 | >= 1, <= 1000 | &
       &Error over its tolerance from which the next step is halved.', &
@@ -118,7 +118,7 @@ contains
 
     controls%load_step_parts = s%integer_of(controls_group, 'load_step_parts')
     controls%ratio_near_growth = s%real_of(controls_group, 'ratio_near_growth')
-    controls%least_mass_ratio = s%real_of(controls_group, 'least_mass_ratio')
+    controls%min_mass_ratio = s%real_of(controls_group, 'min_mass_ratio')
     controls%shortening_error = s%real_of(controls_group, 'shortening_error')
     controls%rejection_error = s%real_of(controls_group, 'rejection_error')
     controls%first_error = s%real_of(controls_group, 'first_error')

@@ -50,7 +50,7 @@ module solution_controls
     real(wp) :: ratio_near_growth = 0.8_wp
     !> Ratio of the smaller to the larger mass factor of step and lagged operator, below which it is renewed. Half and
     !> twice a step have .25; an operator that serves twice the step, by .1, makes runs 23 % dearer
-    real(wp) :: least_mass_ratio = 0.3_wp
+    real(wp) :: min_mass_ratio = 0.3_wp
     !> Errors, relative to the tolerance, above which the next step is halved, and above which a step is rejected. The
     !> error is of third order in the step length: halving reduces the first to a quarter
     real(wp) :: shortening_error = 2, rejection_error = 8

@@ -60,7 +60,7 @@ OWN = {
     "element_reduction": ("curved", (1e-3, 0.1)), "last_digits": ("exact", (8, 128)),
     "force_floor": ("block", (1e-7, 1e-5, 1e-3)), "alternating_iterations": ("block", (4, 16, 100)),
     "ratio_near_growth": ("front", (0.5, 0.7, 0.9)),
-    "least_mass_ratio": ("stress short pressed", (0.1, 0.6)),
+    "min_mass_ratio": ("stress short pressed", (0.1, 0.6)),
     "rejection_error": ("pressed", (4, 16, 100)), "first_error": ("long", (2, 64)),
     "allowed_in_impact": ("short", (0.0625, 0.25)), "max_doublings": ("short", (1, 2, 6)),
     "steady_in_impact": ("short", (12, 48)), "doublings_of_gear": ("gear", (2, 3)), "equal_of_gear": ("gear", (1, 20)),
