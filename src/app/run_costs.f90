@@ -13,9 +13,9 @@ module run_costs
 
   !> Seconds of one processor for an implicit step of an undamaged plate with one solve: of each unknown for forces,
   !> ledger and columns, and of each megabyte of the estimated factor without and with interfaces. Measured: 2.8e-8 to
-  !> 4e-8; 8.5e-5 on a plate with linear strains, 6.7e-5 with von Karman's, 3.2e-5 with an interface
+  !> 4e-8; 8.0e-5 on a plate with linear strains, 6.2e-5 with von Karman's, 3.2e-5 with an interface
   !> (doc/manual/queue.md).
-  real(wp), parameter :: seconds_per_unknown = 3.0e-8_wp, seconds_per_megabyte(2) = [7.0e-5_wp, 3.0e-5_wp]
+  real(wp), parameter :: seconds_per_unknown = 3.0e-8_wp, seconds_per_megabyte(2) = [6.5e-5_wp, 3.0e-5_wp]
   !> Solves of such a step with von Karman's strains, and tangents of a load step: as measured, doc/manual/queue.md.
   real(wp), parameter :: solves_if_curved = 2, tangents_of_load_step = 4
   !> Ratio of the times of a factorization and a solve: 19 to 23 on 38 000 to 60 000 unknowns (doc/manual/queue.md).

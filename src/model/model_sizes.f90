@@ -18,7 +18,7 @@ module model_sizes
   real(wp), parameter :: megabytes_of_libraries = 55
   !> Bytes per pair of unknowns of a node times log2 of the number of nodes: fill-in of a plane grid by nested
   !> dissection. Measured, doc/manual/queue.md.
-  real(wp), parameter :: bytes_whole = 56, bytes_layered = 93
+  real(wp), parameter :: bytes_whole = 60, bytes_layered = 93
   !> Bytes per element of a layer without a factorization. Measured: 4400 in an elastic plate, 5400 with cohesive
   !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm). With adaptive layers the state is in
   !> memory twice during their extension: 13700 and 14900 in total on cells of 1.5 and 3 mm.
