@@ -1,7 +1,6 @@
 !> Adaptive zones of layers: enlarged with the damage, reported in the log, saved in the checkpoint.
 module adaptive_zones
   use archives, only: archive_t
-  use contact_updates, only: set_contact_area
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use errors, only: error_t
@@ -60,7 +59,6 @@ contains
 
     call visit_zones(model%setup%delaminations, archive)
     call stepper%visit(archive, model, error)
-    if (archive%loading .and. .not. allocated(error)) call set_contact_area(model, stepper%now, stepper%operator, error)
   end subroutine visit_evolving
 
   !> Saves the adaptive zones, or loads them: a model has to be built with them.

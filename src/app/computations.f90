@@ -63,7 +63,7 @@ contains
       call fail(error, exit_usage, '--verify refines the setup itself; take refine out of &case.')
       return
     end if
-    if (command%verify .and. deck%inherits) then
+    if (command%verify .and. deck%initial%is_inherited) then
       call fail(error, exit_usage, '--verify refines the mesh, which a deck with &initial_state has from another run.')
       return
     end if

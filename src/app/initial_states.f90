@@ -51,7 +51,7 @@ contains
     integer :: i
 
     if (present(lacks)) lacks = .false.
-    if (.not. deck%inherits) return
+    if (.not. deck%initial%is_inherited) return
     if (present(lacks)) then
       if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
       call communicator%broadcast(lacks)
@@ -136,7 +136,7 @@ contains
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The model
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
     !> Receives the quantities before and after mapping

@@ -151,7 +151,7 @@ contains
              release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
              operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
-             real(size(record%warning_kinds), wp), model%pressed_area(), now%ledger%damping, &
+             real(size(record%warning_kinds), wp), now%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &
              dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent, &
              interface_values(model, now%interfaces)]

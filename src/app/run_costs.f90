@@ -12,12 +12,14 @@ module run_costs
   public :: cost_lines
 
   !> Seconds of one processor for an implicit step of an undamaged plate with one solve: of each unknown for forces,
-  !> ledger and columns, and of each megabyte of the factor. Measured, doc/manual/queue.md.
-  real(wp), parameter :: seconds_per_unknown = 2.5e-8_wp, seconds_per_megabyte = 2.0e-5_wp
+  !> ledger and columns, and of each megabyte of the estimated factor without and with interfaces. Measured: 2.8e-8 to
+  !> 4e-8; 8.0e-5 on a plate with linear strains, 6.2e-5 with von Karman's, 3.2e-5 with an interface
+  !> (doc/manual/queue.md).
+  real(wp), parameter :: seconds_per_unknown = 3.0e-8_wp, seconds_per_megabyte(2) = [6.5e-5_wp, 3.0e-5_wp]
   !> Solves of such a step with von Karman's strains, and tangents of a load step: as measured, doc/manual/queue.md.
-  real(wp), parameter :: solves_if_curved = 3, tangents_of_load_step = 4
-  !> Ratio of the times of a factorization and a solve: 18 to 30 on 76 000 to 130 000 unknowns (doc/manual/queue.md).
-  real(wp), parameter :: factor_over_solve = 25
+  real(wp), parameter :: solves_if_curved = 2, tangents_of_load_step = 4
+  !> Ratio of the times of a factorization and a solve: 19 to 23 on 38 000 to 60 000 unknowns (doc/manual/queue.md).
+  real(wp), parameter :: factor_over_solve = 22
 
 contains
 
@@ -32,9 +34,9 @@ contains
 
     allocate (lines(0))
     if (deck%is_static()) then
-      call append(lines, to_text(deck%stepping%static_steps)//' load steps'//min_time(deck, model_size, &
-        deck%stepping%static_steps*tangents_of_load_step*factor_over_solve, &
-        deck%stepping%static_steps*tangents_of_load_step))
+      call append(lines, to_text(deck%static%steps)//' load steps'//min_time(deck, model_size, &
+        deck%static%steps*tangents_of_load_step*factor_over_solve, &
+        deck%static%steps*tangents_of_load_step))
     else if (.not. deck%stepping%time%step > 0) then
       return
     else if (is_explicit(deck%stepping)) then
@@ -73,7 +75,8 @@ contains
     character(len=:), allocatable :: clause
     real(wp) :: seconds
 
-    seconds = seconds_per_unknown*model_size%unknowns*residuals + seconds_per_megabyte*model_size%megabytes*solves
+    seconds = seconds_per_unknown*model_size%unknowns*residuals + model_size%megabytes*solves* &
+              seconds_per_megabyte(merge(2, 1, size(deck%delaminations) > 0))
     clause = ': about '
     if (seconds > 1) clause = ': at least '
     clause = clause//duration_text(seconds)//' of one processor'

@@ -19,6 +19,6 @@ contains
     character(len=:), allocatable :: words
 
     words = deck%progress_name()//' '//rounded_text(time)
-    if (deck%is_static() .and. deck%stepping%dissipation > 0) words = rounded_text(time)//' of the run'
+    if (deck%is_static() .and. deck%static%dissipation > 0) words = rounded_text(time)//' of the run'
   end function moment
 end module run_moments

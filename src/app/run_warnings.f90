@@ -183,7 +183,7 @@ contains
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
-    has_hole = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
+    has_hole = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounded_off))
   end function has_hole
 
   !> True: fibres of a clamped plate have failed. Collective.

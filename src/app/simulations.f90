@@ -104,7 +104,7 @@ contains
     character(len=:), allocatable :: retired
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
-    if (.not. allocated(error) .and. deck%inherits) &
+    if (.not. allocated(error) .and. deck%initial%is_inherited) &
       call take_initial_state(deck, self%model, self%stepper, self%record%mapping, self%log, error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
@@ -167,7 +167,7 @@ contains
     call self%timers%stop('model')
     self%model%profile = profile
     if (allocated(error)) return
-    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append .or. deck%inherits, error)
+    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append .or. deck%initial%is_inherited, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter

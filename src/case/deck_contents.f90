@@ -1,7 +1,6 @@
 !> Content of a deck, as plain parameters with its text.
 module deck_contents
   use deck_settings, only: settings_t
-  use initial_state_parameters, only: initial_state_t
   use kinds, only: wp
   use stepping_parameters, only: stepping_t
   use linear_solver_parameters, only: linear_solver_parameters_t
@@ -32,8 +31,6 @@ module deck_contents
     logical :: strict = .false.
     !> Times that elements and steps are halved
     integer :: refine = 0
-    !> Initial state from another run
-    type(initial_state_t) :: initial
     !> Values chosen for the accuracy, with reasons
     type(line_t), allocatable :: reasons(:)
     !> Scales of the setup, and expected results

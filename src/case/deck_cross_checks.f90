@@ -72,7 +72,7 @@ contains
              problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call report(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
     else if (.not. (deck%is_static() .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
-                    deck%inherits .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
+                    deck%initial%is_inherited .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
                     problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
                     problems%concern(pressure_group))) then
       call problems%error(0, pressure_group, '', 'the plate has no load; give &impactor, &pressure or &line.')
@@ -143,11 +143,11 @@ contains
       call remark_idle(deck%settings, problems, line_group, key_rise, 'has no effect on a static analysis.', line)
     end do
     if (.not. problems%concern(static_group)) &
-      call check_intervals(deck%settings, 1.0_wp/deck%stepping%static_steps, 1.0_wp, problems)
+      call check_intervals(deck%settings, 1.0_wp/deck%static%steps, 1.0_wp, problems)
     if (any(deck%delaminations%law == law_front)) &
       call remark(deck%settings, problems, delamination_group, '', &
                   'in a static analysis the starter of a front does not grow.')
-    if (deck%stepping%dissipation > 0 .and. .not. any(deck%delaminations%law == law_cohesive)) &
+    if (deck%static%dissipation > 0 .and. .not. any(deck%delaminations%law == law_cohesive)) &
       call remark(deck%settings, problems, static_group, key_dissipation, &
                   'has no effect without a cohesive interface.')
   end subroutine check_static

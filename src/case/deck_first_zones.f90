@@ -62,7 +62,7 @@ contains
     integer :: i
 
     do i = 1, size(deck%lines)
-      beside_layers(i) = deck%inherits .and. deck%lines(i)%is_end(deck%plate%length)
+      beside_layers(i) = deck%initial%is_inherited .and. deck%lines(i)%is_end(deck%plate%length)
     end do
   end function beside_layers
 

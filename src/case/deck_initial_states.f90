@@ -42,7 +42,7 @@ contains
           are_clear(s, problems, time_group, key_settle//' end')) &
         call report(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
                   to_text(deck%stepping%time%end)//'.')
-      if (.not. deck%inherits) return
+      if (.not. deck%initial%is_inherited) return
       if (deck%is_static()) then
         call report(s, problems, static_group, '', &
                     'load steps do not begin from a state of another run; give &time '// &

@@ -152,7 +152,7 @@ contains
     deck%has_pressure = deck%settings%has_group(pressure_group)
     deck%has_thermal = deck%settings%has_group(thermal_group)
     if (deck%settings%has_group(static_group)) deck%analysis = analysis_by_load_steps
-    deck%inherits = deck%settings%has_group(initial_state_group)
+    deck%initial%is_inherited = deck%settings%has_group(initial_state_group)
     deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
     deck%has_time = deck%settings%has_group(time_group) .or. &
                     has_accuracy(deck%settings) .and. .not. deck%is_static()
@@ -246,7 +246,7 @@ contains
     if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
     call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
-    if (deck%is_static()) call fill_static(deck%settings, deck%stepping%static_steps, deck%stepping%dissipation)
+    if (deck%is_static()) call fill_static(deck%settings, deck%static)
   end subroutine fill_loads
 
   !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws

@@ -41,7 +41,7 @@ contains
     clause = ''
     if (is_pressed(deck)) then
       clause = ' Softening may leave none'//slow_motion(deck)//'.'
-    else if (deck%is_static() .and. .not. deck%stepping%dissipation > 0 .and. &
+    else if (deck%is_static() .and. .not. deck%static%dissipation > 0 .and. &
              any(deck%delaminations%law == law_cohesive)) then
       clause = ' A softening interface may leave none at this load: &'//static_group//' '//key_dissipation// &
                ' follows its growth.'

@@ -89,7 +89,7 @@ contains
       new%time = old%time + self%step
       new%load_factor = new%time/model%setup%ramp_time
       call new%interfaces%ties%ramp_down(model, self%step)
-      self%patch_square = sum((model%contact%weights(model%contact%points)/model%mesh%multiplicity)**2)
+      self%patch_square = sum((new%contact%weights(new%contact%points)/model%mesh%multiplicity)**2)
       if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
       self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
       self%keeps_displacement = self%keeps_velocity &
@@ -161,7 +161,7 @@ contains
           call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
                              new%motion%internal, old%motion%internal, residual)
         end if
-        call model%add_contact_force(self%coupling%load(), residual)
+        call new%contact%add_force(self%coupling%load()/model%mesh%multiplicity, residual)
         if (size(model%lines) > 0) then
           allocate (lines, lines_before, mold=residual)
           call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
@@ -193,7 +193,7 @@ contains
     call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       new%motion%internal = 0
-      call model%add_contact_force(self%coupling%load(), new%motion%internal)
+      call new%contact%add_force(self%coupling%load()/model%mesh%multiplicity, new%motion%internal)
       call find_internal_forces(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, &
                                 old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
@@ -274,7 +274,7 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new)
       if (.not. model%setup%has_impactor) return
-      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      new%patch_mean = new%contact_deflection(model)
       call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
       new%force_iterations = new%force_iterations + iterations
     end associate
@@ -304,7 +304,7 @@ contains
     associate (model => at%model, old => at%old, new => at%new)
       call new%count_step(old)
       new%deflection = model%deflection(new%motion%displacement)
-      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      new%patch_mean = new%contact_deflection(model)
       if (model%setup%has_impactor) then
         new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
                                self%coupling%force_end)

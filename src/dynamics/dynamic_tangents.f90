@@ -45,8 +45,7 @@ contains
         call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), current_stiffness)
         if (.not. due) due = operator%has_outdated_constraints(model, current_stiffness, max_changes)
       end if
-      if (due) call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, factors(1), &
-                                   factors(2), error)
+      if (due) call operator%renew(model, new, factors(1), factors(2), error)
       if (allocated(error)) return
       call set_state(tangent, at, factors)
       tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
@@ -105,13 +104,13 @@ contains
     type(tangent_product_t), intent(inout) :: tangent
     real(wp), allocatable :: push(:, :)
 
-    associate (model => at%model, numbering => at%operator%numbering)
-      allocate (push(5, size(model%contact%weights)), source=0.0_wp)
-      push(3, :) = model%contact%weights/model%mesh%multiplicity
+    associate (model => at%model, numbering => at%operator%numbering, contact => at%new%contact)
+      allocate (push(5, size(contact%weights)), source=0.0_wp)
+      push(3, :) = contact%weights/model%mesh%multiplicity
       allocate (tangent%pattern(numbering%rows))
       call numbering%gather(push, tangent%pattern)
       tangent%force_slope = coupling%slope(model%setup%indentation, at%old%indentation, &
-                                           model%contact_deflection(at%new%motion%displacement))
+                                           at%new%contact_deflection(model))
     end associate
   end subroutine add_force_slope
 end module dynamic_tangents

@@ -104,7 +104,7 @@ contains
 
     associate (model => at%model, operator => at%operator, new => at%new)
       before = self%unknown
-      new%patch_mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(at%correction)
+      new%patch_mean = new%contact_deflection(model) + new%contact%mean(model%communicator, at%correction)
       call self%find_force(model%setup%indentation, at%old%indentation, new%patch_mean, &
                            merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
       if (is_factored) at%correction = at%correction + (self%share*(self%unknown - before))*operator%response

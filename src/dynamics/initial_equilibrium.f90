@@ -117,8 +117,7 @@ contains
                             newton_controls_t(), largest) <= tolerance) exit
       if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
-      if (.not. allocated(error)) call operator%renew(model, state%plies%stiffness, state%interfaces, &
-        state%motion%displacement, 1.0_wp, mass_factor(model), error)
+      if (.not. allocated(error)) call operator%renew(model, state, 1.0_wp, mass_factor(model), error)
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) return
       operator%solves = operator%solves + 1
@@ -132,7 +131,7 @@ contains
     state%ledger%strain = energy*model%mesh%multiplicity
     state%ledger%ply_damage = state%ledger%ply_damage + damage
     state%deflection = model%deflection(state%motion%displacement)
-    state%patch_mean = model%contact_deflection(state%motion%displacement)
+    state%patch_mean = state%contact_deflection(model)
     operator%ready = .false.
   end subroutine equilibrate
 
@@ -181,8 +180,7 @@ contains
     call model%line_forces(state%motion%displacement, 0.0_wp, loads, prescribed=.false.)
     if (allocated(model%pressure)) loads = loads + model%setup%pressure%amplitude(0.0_wp)*model%pressure
     associate (motion => state%motion)
-      call operator%renew(model, state%plies%stiffness, state%interfaces, motion%displacement, 0.0_wp, mass_factor, &
-                          error)
+      call operator%renew(model, state, 0.0_wp, mass_factor, error)
       if (allocated(error)) return
       call operator%correct(model, loads, motion%acceleration, error)
       operator%solves = operator%solves + 1

@@ -383,7 +383,7 @@ contains
       call archive%field('explicit/forces', owned, points, self%force)
       call self%rigs%visit(archive, owned, points)
       call self%impact%visit(archive)
-      if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%inherits) &
+      if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%initial%is_inherited) &
         call self%lines%visit(archive, owned, points)
       if (.not. model%map%layered) return
       call self%stacks%history%visit(archive, owned, points)

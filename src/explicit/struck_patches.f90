@@ -57,12 +57,12 @@ contains
     fields = 0
     associate (partition => model%distribution)
       do i = 1, partition%owned
-        if (allocated(model%contact%nose)) then
-          associate (nose => model%contact%nose)
+        if (allocated(model%nose)) then
+          associate (nose => model%nose)
             fields(1:3, partition%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
           end associate
         else
-          fields(1, partition%points(i)) = model%contact%weights(i)
+          fields(1, partition%points(i)) = model%patch%weights(i)
         end if
         fields(4, partition%points(i)) = i
       end do
@@ -81,8 +81,8 @@ contains
     self%beside = fields(2, reached)
     self%rise = fields(3, reached)
     self%weights = self%under
-    self%follows = allocated(model%contact%nose)
-    if (self%follows) self%area = model%contact%nose%area
+    self%follows = allocated(model%nose)
+    if (self%follows) self%area = model%nose%area
   end function create_struck_patch
 
   !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.

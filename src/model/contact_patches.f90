@@ -1,7 +1,7 @@
-!> Contact patch of the impactor on the plate: the only part of a model that changes from step to step.
+!> Contact patch of the impactor on the plate. The model has that of the deck; the state has the present one, which
+!> steps change where it follows the impactor's nose.
 module contact_patches
   use communicators, only: communicator_t
-  use contact_areas, only: contact_area_t
   use kinds, only: wp
   use rank_totals, only: total_of
   implicit none
@@ -14,13 +14,12 @@ module contact_patches
     real(wp), allocatable :: weights(:)
     !> Points with a weight
     integer, allocatable :: points(:)
-    !> Nose that determines the patch in each step; unallocated: a constant patch
-    type(contact_area_t), allocatable :: nose
     !> Difference of the mean deflection between successive patches, so that it is continuous
     real(wp) :: offset = 0
   contains
-    !> Mean deflection.
+    !> Mean of a deflection, and deflection of the plate under the impactor.
     procedure :: mean
+    procedure :: deflection
     !> Sets other weights.
     procedure :: spread
     !> Adds the nodal forces of a force.
@@ -40,6 +39,18 @@ contains
 
     mean = total_of(communicator, self%weights(self%points)*displacement(3, self%points))
   end function mean
+
+  !> Deflection of the plate under the impactor, the same on every rank.
+  real(wp) function deflection(self, communicator, displacement)
+    !> The patch
+    class(contact_patch_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Displacement, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    deflection = self%mean(communicator, displacement) + self%offset
+  end function deflection
 
   !> Sets other weights.
   pure subroutine spread(self, weights, offset)

@@ -1,6 +1,7 @@
-!> A load case: supports, loads and impactor, and the kind of analysis.
+!> A load case: initial state, supports, loads and impactor, and the kind of analysis with its load steps.
 module load_cases
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
+  use initial_state_parameters, only: initial_state_t
   use kinds, only: wp
   use line_loads, only: line_load_t
   use pressure_loads, only: pressure_t
@@ -8,10 +9,18 @@ module load_cases
   use support_parameters, only: support_t
   implicit none
   private
-  public :: load_case_t
+  public :: load_case_t, load_stepping_t
 
   !> Kinds of analysis: motion in time, or load steps, each an equilibrium without inertia.
   integer, parameter, public :: analysis_in_time = 1, analysis_by_load_steps = 2
+
+  !> Load steps.
+  type :: load_stepping_t
+    !> Number of equal load steps
+    integer :: steps = 1
+    !> Dissipated energy at which the analysis ends; 0: load control throughout
+    real(wp) :: dissipation = 0
+  end type load_stepping_t
 
   !> A load case. Callers use its procedures instead of the kind of analysis.
   type :: load_case_t
@@ -31,8 +40,10 @@ module load_cases
     real(wp) :: temperature_change = 0
     !> Lines across the plate; unallocated: none
     type(line_load_t), allocatable :: lines(:)
-    !> True: the run starts from the final state of another run
-    logical :: inherits = .false.
+    !> Load steps; not used in time
+    type(load_stepping_t) :: static
+    !> Initial state
+    type(initial_state_t) :: initial
     !> Start of the loads of lines, and duration of their ramps; not used in load steps
     real(wp) :: load_start = 0, ramp_time = 1
   contains

@@ -28,7 +28,7 @@ module model_building
   use symmetry_images, only: find_images
   implicit none
   private
-  public :: create_model, zones_of
+  public :: create_model, zones_of, is_membrane_idle
 
   !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its effect on the deflection
   !> is far below round-off and tolerance, and the conditioning of the matrix is that of tied jumps.
@@ -61,9 +61,7 @@ contains
     self%section = section_of(self%plies, setup%laminate%shear_correction)
     zones = zones_of(setup)
     self%mesh = create_mesh(setup%plate, setup%mesh, size(self%plies), zones)
-    self%membrane_idle = setup%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
-                         .not. (setup%has_ply_damage .or. setup%has_thermal) .and. uncoupled(self%section) .and. &
-                         .not. any(lines_in_plane(setup))
+    self%membrane_idle = is_membrane_idle(setup, size(zones), self%section)
     self%held = held_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
     if (allocated(setup%supports)) call hold_by_rigs(self%mesh, setup%plate, setup%supports, self%held)
     self%images = find_images(self%mesh, setup%plate%kept, self%held)
@@ -82,6 +80,19 @@ contains
     self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
   end subroutine create_model
+
+  !> True if the plate does not move in its plane.
+  pure logical function is_membrane_idle(setup, zones, section) result(idle)
+    !> The setup
+    type(setup_t), intent(in) :: setup
+    !> Number of zones of layers
+    integer, intent(in) :: zones
+    !> The laminate's section
+    type(section_t), intent(in) :: section
+
+    idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_ply_damage &
+             .or. setup%has_thermal) .and. uncoupled(section) .and. .not. any(lines_in_plane(setup))
+  end function is_membrane_idle
 
   !> True if membrane and bending are uncoupled.
   pure logical function uncoupled(section)

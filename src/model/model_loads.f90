@@ -53,7 +53,7 @@ contains
     weights = nodal_areas(self, patch_elements(self, .true.))
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
-    call self%spread_force(weights, 0.0_wp)
+    call self%patch%spread(weights, 0.0_wp)
     if (self%setup%impactor%spreads) call build_nose(self, area)
     if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
@@ -89,8 +89,8 @@ contains
     integer :: i
 
     associate (mesh => self%mesh, points => self%distribution%points, struck => self%setup%mesh%struck)
-      self%contact%nose = &
-        new_contact_area(self%contact%weights, area, nodal_areas(self, patch_elements(self, .false.)), &
+      self%nose = &
+        new_contact_area(self%patch%weights, area, nodal_areas(self, patch_elements(self, .false.)), &
                          [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), i=1, size(points))], &
                          self%setup%impactor%radius)
     end associate

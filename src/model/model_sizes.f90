@@ -3,9 +3,10 @@ module model_sizes
   use kinds, only: wp
   use layer_extents, only: largest_extents
   use layered_meshes, only: zone_t
-  use model_building, only: zones_of
+  use model_building, only: is_membrane_idle, zones_of
   use cell_grids, only: cell_edges
   use setups, only: setup_t
+  use stacking, only: section_of, stacked_plies
   use text, only: to_text
   implicit none
   private
@@ -17,7 +18,7 @@ module model_sizes
   real(wp), parameter :: megabytes_of_libraries = 55
   !> Bytes per pair of unknowns of a node times log2 of the number of nodes: fill-in of a plane grid by nested
   !> dissection. Measured, doc/manual/queue.md.
-  real(wp), parameter :: bytes_whole = 56, bytes_layered = 93
+  real(wp), parameter :: bytes_whole = 60, bytes_layered = 93
   !> Bytes per element of a layer without a factorization. Measured: 4400 in an elastic plate, 5400 with cohesive
   !> interfaces, 9700 with crack bands too (T700/M21 panel on cells of 1 mm). With adaptive layers the state is in
   !> memory twice during their extension: 13700 and 14900 in total on cells of 1.5 and 3 mm.
@@ -27,7 +28,7 @@ module model_sizes
 
   !> Size of a model.
   type :: model_size_t
-    !> Unknowns, with those fixed by supports
+    !> Unknowns, with those fixed by supports, without in-plane ones that are idle
     integer :: unknowns = 0
     !> Elements of all layers
     real(wp) :: elements = 0
@@ -53,16 +54,19 @@ contains
     !> Its size
     type(model_size_t) :: size_found
     type(zone_t), allocatable :: zones(:)
-    integer :: cells(2), i, j
+    integer :: cells(2), i, j, a_node
     real(wp) :: nodes, inside, pairs, bytes
 
     zones = zones_of(with_largest_zones(setup, explicit))
     cells = [size(cell_edges(setup%plate, setup%mesh, 1)) - 1, size(cell_edges(setup%plate, setup%mesh, 2)) - 1]
     nodes = product(2*real(cells, wp) + 1)
+    a_node = 5
+    if (is_membrane_idle(setup, size(zones), section_of(stacked_plies(setup%laminate, setup%materials), &
+                                                        setup%laminate%shear_correction))) a_node = 3
     pairs = nodes
     if (allocated(setup%delaminations)) size_found%at_most = any(setup%delaminations%follows)
     size_found%elements = product(real(cells, wp))
-    size_found%unknowns = nint(5*nodes)
+    size_found%unknowns = nint(a_node*nodes)
     ! A node has an additional layer for each zone that contains it: (1 + sum)**2 pairs, summed over pairs of zones.
     do i = 1, size(zones)
       inside = nodes_in_both(zones(i), zones(i), cells)
@@ -77,7 +81,8 @@ contains
       size_found%megabytes = 1.0e-6_wp*bytes*size_found%elements
       return
     end if
-    size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*25*pairs*log(nodes)/log(2.0_wp)
+    size_found%megabytes = 1.0e-6_wp*merge(bytes_layered, bytes_whole, size(zones) > 0)*a_node**2*pairs*log(nodes)/ &
+                           log(2.0_wp)
   end function size_of_model
 
   !> The setup with the largest zones that adaptive layers may reach: the full plate with central differences, where

@@ -1,9 +1,10 @@
-!> Model of a setup: mesh, supports, loads and laws, and forces of a motion. A run changes only the patch under the
-!> impactor, between steps; a change of layers requires a new model.
+!> Model of a setup: mesh, supports, loads and laws, and forces of a motion. Steps do not change it; a change of layers
+!> requires a new model.
 module models
   use kinds, only: wp
   use bending_forces, only: add_bending_force, add_bending_inertia
   use cohesive_laws, only: cohesive_law_t
+  use contact_areas, only: contact_area_t
   use contact_patches, only: contact_patch_t
   use face_contact, only: contact_law_t
   use inertia_forces, only: add_inertia_force
@@ -17,8 +18,7 @@ module models
   private
   public :: model_t
 
-  !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run, and the patch under the
-  !> impactor, which steps change.
+  !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run.
   type, extends(loaded_plate_t) :: model_t
     !> The setup of the deck
     type(setup_t) :: setup
@@ -43,8 +43,10 @@ module models
     type(cohesive_law_t), allocatable :: cohesive_laws(:)
     !> True if layers, frames or clamps add stiffness to the operator's diagonal
     logical :: has_bonds = .false.
-    !> The patch under the impactor
-    type(contact_patch_t) :: contact
+    !> The deck's patch under the impactor; the state has the present one
+    type(contact_patch_t) :: patch
+    !> Nose that determines the present patch; unallocated: it is the deck's
+    type(contact_area_t), allocatable :: nose
   contains
     !> Internal forces and strain energy of a displacement field.
     procedure :: internal
@@ -52,13 +54,6 @@ module models
     procedure, private :: add_inertia
     !> Mass times a field.
     procedure :: inertia
-    !> Mean deflection of the patch, and nodal forces of a force on it.
-    procedure :: patch_mean
-    procedure :: add_contact_force
-    !> Deflection below the impactor, its contact area, and the new distribution of its force.
-    procedure :: contact_deflection
-    procedure :: pressed_area
-    procedure :: spread_force
   end type model_t
 
 contains
@@ -170,53 +165,4 @@ contains
       call add_inertia_force(self%elements, field, force)
     end if
   end subroutine add_inertia
-
-  !> Mean deflection of the patch, the same on every rank.
-  real(wp) function patch_mean(self, displacement) result(mean)
-    class(model_t), intent(in) :: self
-    !> Displacement, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
-
-    mean = self%contact%mean(self%communicator, displacement)
-  end function patch_mean
-
-  !> Deflection of the plate under the impactor, the same on every rank.
-  real(wp) function contact_deflection(self, displacement) result(w)
-    class(model_t), intent(in) :: self
-    !> Displacement, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
-
-    w = self%patch_mean(displacement) + self%contact%offset
-  end function contact_deflection
-
-  !> Contact area on the full plate, the same on every rank.
-  real(wp) function pressed_area(self) result(area)
-    class(model_t), intent(in) :: self
-
-    area = self%setup%mesh%patch**2
-    if (allocated(self%contact%nose)) &
-      area = self%contact%nose%touched(self%communicator, self%contact%weights)*self%mesh%multiplicity
-  end function pressed_area
-
-  !> Sets the distribution of the impactor's force.
-  pure subroutine spread_force(self, weights, offset)
-    class(model_t), intent(inout) :: self
-    !> Weights, (local points); ghosts zero
-    real(wp), intent(in) :: weights(:)
-    !> Difference of the mean deflection from the patch before
-    real(wp), intent(in) :: offset
-
-    call self%contact%spread(weights, offset)
-  end subroutine spread_force
-
-  !> Adds the nodal forces of a force on the full plate's patch.
-  pure subroutine add_contact_force(self, force, forces)
-    class(model_t), intent(in) :: self
-    !> The force
-    real(wp), intent(in) :: force
-    !> Forces on the unknowns, (5, points)
-    real(wp), intent(inout) :: forces(:, :)
-
-    call self%contact%add_force(force/self%mesh%multiplicity, forces)
-  end subroutine add_contact_force
 end module models

@@ -3,6 +3,7 @@
 module states
   use kinds, only: wp
   use archives, only: archive_t
+  use contact_patches, only: contact_patch_t
   use impactors, only: impactor_t, new_impactor, impactor_energy
   use tan_sun_indentation, only: indentation_t
   use energy_ledgers, only: ledger_t
@@ -34,10 +35,8 @@ module states
     type(interface_state_t) :: interfaces
     !> Impact force at this time
     real(wp) :: force = 0
-    !> Weights of the impactor's force if the distribution follows the nose, (local points)
-    real(wp), allocatable :: patch(:)
-    !> Offset of the mean deflection by earlier changes of the patch
-    real(wp) :: patch_offset = 0
+    !> Patch under the impactor
+    type(contact_patch_t) :: contact
     !> Reactions of prescribed lines of the full plate in explicit steps, (lines)
     real(wp), allocatable :: line_reactions(:)
     !> Mean deflection of the patch, and deflection of the struck point
@@ -65,6 +64,9 @@ module states
     procedure :: start_from
     !> Internal forces and strain energy.
     procedure :: find_internal
+    !> Deflection of the plate under the impactor, and contact area on the full plate.
+    procedure :: contact_deflection
+    procedure :: pressed_area
     !> True once plies have failed or delaminations have grown.
     procedure :: has_failures
     !> Counts a step and its iterations.
@@ -94,7 +96,7 @@ contains
     ! Clamps with a force are in equilibrium with the frame from the start.
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
-    if (allocated(model%contact%nose)) self%patch = model%contact%weights
+    self%contact = model%patch
     if (.not. model%setup%moves_impactor()) return
     self%impactor = new_impactor(model%setup%impactor)
     self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
@@ -138,6 +140,26 @@ contains
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     call model%profile%leave()
   end subroutine find_internal
+
+  !> Deflection of the plate under the impactor, the same on every rank.
+  real(wp) function contact_deflection(self, model)
+    !> The state
+    class(state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+
+    contact_deflection = self%contact%deflection(model%communicator, self%motion%displacement)
+  end function contact_deflection
+
+  !> Contact area on the full plate, the same on every rank.
+  real(wp) function pressed_area(self, model) result(area)
+    !> The state
+    class(state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+
+    area = model%setup%mesh%patch**2
+    if (allocated(model%nose)) &
+      area = model%nose%touched(model%communicator, self%contact%weights)*model%mesh%multiplicity
+  end function pressed_area
 
   !> True once plies have failed or delaminations have grown.
   pure logical function has_failures(self)
@@ -220,13 +242,13 @@ contains
     type(model_t), intent(in) :: model
     real(wp), allocatable :: weights(:, :)
 
-    if (.not. allocated(self%patch)) return
-    call archive%item('contact/offset', self%patch_offset)
-    weights = reshape(self%patch, [1, size(self%patch)])
+    if (.not. allocated(model%nose)) return
+    call archive%item('contact/offset', self%contact%offset)
+    weights = reshape(self%contact%weights, [1, size(self%contact%weights)])
     associate (partition => model%distribution)
       call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)
     end associate
-    self%patch = weights(1, :)
+    call self%contact%spread(weights(1, :), (self%contact%offset))
   end subroutine visit_patch
 
   !> Saves or loads the motion of the plate.

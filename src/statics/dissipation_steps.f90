@@ -122,7 +122,7 @@ contains
       slopes = 0
       loads = 0
       if (model%setup%has_impactor) then
-        call add_impactor_force(model, 1.0_wp, loads)
+        call add_impactor_force(model, new, 1.0_wp, loads)
       else
         call model%load_slopes(loads)
       end if

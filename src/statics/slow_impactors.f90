@@ -16,14 +16,16 @@ module slow_impactors
 contains
 
   !> Adds the impactor's force to loads.
-  pure subroutine add_impactor_force(model, force, loads)
+  pure subroutine add_impactor_force(model, state, force, loads)
     type(model_t), intent(in) :: model
+    !> The state, with its patch
+    type(state_t), intent(in) :: state
     !> The force of the impactor on the full plate
     real(wp), intent(in) :: force
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
 
-    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*model%contact%weights
+    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*state%contact%weights
   end subroutine add_impactor_force
 
   !> Finds the impactor's force for the travel and the deflection of the plate, and adds the unit-load solution times
@@ -48,11 +50,11 @@ contains
     allocate (push, response, mold=correction)
     push = 0
     response = 0
-    call add_impactor_force(model, 1.0_wp, push)
+    call add_impactor_force(model, new, 1.0_wp, push)
     call solve_load_tangent(operator, model, new%interfaces%cohesive, push, response, error)
     if (allocated(error)) return
-    compliance = model%patch_mean(response)
-    mean = model%contact_deflection(new%motion%displacement) + model%patch_mean(correction)
+    compliance = new%contact%mean(model%communicator, response)
+    mean = new%contact_deflection(model) + new%contact%mean(model%communicator, correction)
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
     call solve_impact_force(model%setup%indentation, new%indentation, new%indentation%alpha, &
                             new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, compliance, &
@@ -71,7 +73,7 @@ contains
     real(wp) :: force
 
     force = indentation_force(model%setup%indentation, new%indentation, new%load_factor*model%setup%impactor%travel - &
-                              model%contact_deflection(new%motion%displacement))
+                              new%contact_deflection(model))
     mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
   end function force_mismatch
 
@@ -82,7 +84,7 @@ contains
     type(state_t), intent(in) :: new
 
     travel = indentation_of(model%setup%indentation, new%indentation, new%force) + &
-             model%contact_deflection(new%motion%displacement)
+             new%contact_deflection(model)
   end function travel_for
 
   !> Completes an accepted load step: position of the impactor, indentation, and work of the force that drives it.

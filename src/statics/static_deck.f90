@@ -1,8 +1,8 @@
 !> Load steps of a static analysis in the deck: rows of its table and their filling.
 module static_deck
   use deck_settings, only: settings_t
-  use kinds, only: wp
   use deck_vocabulary, only: group_row_length, key_row_length
+  use load_cases, only: load_stepping_t
   implicit none
   private
   public :: fill_static
@@ -22,15 +22,13 @@ module static_deck
 contains
 
   !> Load steps.
-  subroutine fill_static(settings, steps, dissipation)
+  subroutine fill_static(settings, static)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Their number
-    integer, intent(out) :: steps
-    !> Energy dissipated at the end; 0: not given
-    real(wp), intent(out) :: dissipation
+    !> Receives them
+    type(load_stepping_t), intent(inout) :: static
 
-    steps = settings%integer_of(static_group, 'steps')
-    dissipation = settings%real_of(static_group, key_dissipation)
+    static%steps = settings%integer_of(static_group, 'steps')
+    static%dissipation = settings%real_of(static_group, key_dissipation)
   end subroutine fill_static
 end module static_deck

@@ -75,7 +75,7 @@ contains
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
       call new%find_internal(model, old, at%energy)
       call model%static_loads(new%motion%displacement, new%load_factor, residual)
-      call add_impactor_force(model, new%force, residual)
+      call add_impactor_force(model, new, new%force, residual)
       residual = residual - new%motion%internal
     end associate
   end subroutine find_residual
@@ -92,7 +92,7 @@ contains
                residual => at%residual)
       allocate (loads, mold=residual)
       call model%static_loads(new%motion%displacement, new%load_factor, loads)
-      call add_impactor_force(model, new%force, loads)
+      call add_impactor_force(model, new, new%force, loads)
       ! A second iteration removes the round-off of the first, so it is required.
       residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
                                         0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
@@ -126,7 +126,7 @@ contains
     at%negative_curvature = .false.
     associate (model => at%model, operator => at%operator, new => at%new)
       if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
-        call operator%renew(model, new%plies%stiffness, new%interfaces, new%motion%displacement, 1.0_wp, 0.0_wp, error)
+        call operator%renew(model, new, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) &
         call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
       if (.not. allocated(error)) call self%complete_correction(at, error)
@@ -213,14 +213,14 @@ contains
       sums(6) = model%product(change, loads - loads_before)/2
       ! After failures of plies or a change of the contact area the previous state is not in equilibrium; the energy
       ! released would become kinetic.
-      call add_impactor_force(model, old%force, loads_before)
+      call add_impactor_force(model, old, old%force, loads_before)
       sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-      if (.not. (model%setup%has_ply_damage .or. allocated(model%contact%nose))) sums(5) = 0
+      if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
       call model%communicator%sum(sums)
       sums = sums*model%mesh%multiplicity
       call new%count_step(old)
       new%deflection = model%deflection(new%motion%displacement)
-      new%patch_mean = model%contact_deflection(new%motion%displacement)
+      new%patch_mean = new%contact_deflection(model)
       new%ledger%strain = sums(1)
       new%ledger%external_work = old%ledger%external_work + sums(3)
       new%ledger%contact = old%ledger%contact - sums(4)
@@ -233,7 +233,7 @@ contains
       new%ledger%ply_damage = old%ledger%ply_damage + damage
       new%ledger%delamination = old%ledger%delamination + fracture
       excess = sums(1) - old%ledger%strain - sums(2)
-      if (.not. allocated(model%contact%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
+      if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
         call correct_work(excess, sums(6), new%ledger%external_work)
       new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
     end associate

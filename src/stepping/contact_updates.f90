@@ -12,7 +12,7 @@ module contact_updates
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: update_contact_area, set_contact_area
+  public :: update_contact_area
 
   !> Relaxation factor of the weights per step: the plate responds to the change, and without relaxation the update
   !> overshoots where the plate is more compliant than the contact. doc/theory/impact.md has figures.
@@ -25,9 +25,8 @@ contains
 
   !> Updates the distribution of the force from the state reached. Collective.
   subroutine update_contact_area(model, now, operator, error)
-    !> The model; receives the distribution of the force
-    type(model_t), intent(inout) :: model
-    !> The state reached; receives the weights and the offset
+    type(model_t), intent(in) :: model
+    !> The state reached; receives the weights and the offset of its patch
     type(state_t), intent(inout) :: now
     !> The factored operator; receives its unit-load solution
     type(tangent_operator_t), intent(inout) :: operator
@@ -35,30 +34,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: change(:)
 
-    if (.not. allocated(model%contact%nose)) return
-    associate (w => now%motion%displacement(3, :), contact => model%contact)
-      change = relaxation*(contact%nose%weights(model%communicator, w, now%indentation%alpha) - contact%weights)
+    if (.not. allocated(model%nose)) return
+    associate (w => now%motion%displacement(3, :), contact => now%contact)
+      change = relaxation*(model%nose%weights(model%communicator, w, now%indentation%alpha) - contact%weights)
       if (.not. total_of(model%communicator, abs(change)) > negligible) return
-      now%patch = contact%weights + change
-      now%patch_offset = now%patch_offset - total_of(model%communicator, change*w)
+      call contact%spread(contact%weights + change, contact%offset - total_of(model%communicator, change*w))
     end associate
-    call set_contact_area(model, now, operator, error)
+    if (operator%ready) call operator%find_response(model, now%contact, error)
   end subroutine update_contact_area
-
-  !> Sets the distribution of the force to that of a state. Collective.
-  subroutine set_contact_area(model, now, operator, error)
-    !> The model; receives the distribution of the force
-    type(model_t), intent(inout) :: model
-    !> The state
-    type(state_t), intent(in) :: now
-    !> The factored operator; receives its unit-load solution
-    type(tangent_operator_t), intent(inout) :: operator
-    !> Set if a solve fails
-    type(error_t), allocatable, intent(inout) :: error
-
-    if (.not. allocated(now%patch)) return
-    call model%spread_force(now%patch, now%patch_offset)
-    if (.not. operator%ready) return
-    call operator%find_response(model, error)
-  end subroutine set_contact_area
 end module contact_updates

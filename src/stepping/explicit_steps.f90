@@ -91,16 +91,14 @@ contains
   subroutine complete_step(method, model, now, error)
     !> Central differences
     type(central_difference_t), intent(in) :: method
-    !> Receives the distribution of the impactor's force
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(inout) :: now
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
 
-    if (allocated(model%contact%nose)) &
-      call model%spread_force(method%impact%patch%local_weights(size(model%contact%weights)), &
-                              method%impact%patch%offset)
+    if (allocated(model%nose)) &
+      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), method%impact%patch%offset)
     call book_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)

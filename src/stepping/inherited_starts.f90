@@ -16,8 +16,7 @@ contains
 
   !> Starts from a loaded state. Collective.
   subroutine begin_inherited(model, transfer, motion, stepper, error)
-    !> The model; receives the distribution of an impactor's force
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Map of points and elements from the former mesh
     class(layer_transfer_t), intent(in) :: transfer
     !> motion_rest or motion_kept
@@ -36,7 +35,7 @@ contains
       call explicit%resume(model, now)
       call explicit%renew_forces(model, now)
       now%deflection = model%deflection(now%motion%displacement)
-      now%patch_mean = model%contact_deflection(now%motion%displacement)
+      now%patch_mean = now%contact_deflection(model)
       call book_energies(explicit, model, now)
       now%ledger%initial = now%ledger%initial + now%ledger%error()
       call stepper%complete_state(model, error)

@@ -4,7 +4,7 @@
 !> velocity and acceleration of every ply, strains and energies are unchanged. The remaining difference of energy is
 !> booked: round-off, or, with the energy-consistent shear correction, that of the sections.
 module layer_switches
-  use contact_updates, only: update_contact_area, set_contact_area
+  use contact_updates, only: update_contact_area
   use errors, only: error_t
   use kinds, only: wp
   use required_zones, only: required_extents
@@ -167,8 +167,6 @@ contains
     if (allocated(error)) return
     call transfer%turn_to(mesh, model%mesh)
     call stepper%visit(transfer, model, error)
-    if (.not. (allocated(error) .or. allocated(stepper%explicit))) &
-      call set_contact_area(model, stepper%now, stepper%operator, error)
     if (allocated(error)) return
     stepper%operator%timers = timers
     if (allocated(stepper%explicit)) then
@@ -214,8 +212,7 @@ contains
 
   !> Gives the new layers the motion of the single plate, and computes their forces. Collective.
   subroutine transfer_explicit_state(model, transfer, stepper, error)
-    !> The model; receives how the impactor's force is spread
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Map of points and elements from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
     !> The stepper with the loaded state

@@ -36,10 +36,8 @@ contains
     !> Not set
     type(error_t), allocatable, intent(inout) :: error
 
-    associate (stepping => stepper%stepping)
-      stepper%controller%target = 1.0_wp/stepping%static_steps
-      stepper%smallest_step = stepper%controller%target/stepping%controls%load_step_parts
-    end associate
+    stepper%controller%target = 1.0_wp/model%setup%static%steps
+    stepper%smallest_step = stepper%controller%target/stepper%stepping%controls%load_step_parts
   end subroutine start
 
   !> Tries one load step.
@@ -60,7 +58,8 @@ contains
     type(static_step_t) :: by_load
 
     associate (now => stepper%now)
-      step = stepper%controller%propose((event - now%time)/stepper%step_scale(), huge(step))*stepper%step_scale()
+      step = stepper%step_scale(model)
+      step = step*stepper%controller%propose((event - now%time)/step, huge(step))
       if (now%path%by_dissipation) then
         call try_dissipation(stepper, model, step, converged, error)
       else
@@ -76,20 +75,17 @@ contains
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Step proposed, and tried
-    real(wp), intent(inout) :: step
+    !> Step tried
+    real(wp), intent(in) :: step
     !> True if equilibrium was reached
     logical, intent(out) :: converged
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     type(dissipation_step_t) :: by_dissipation
-    real(wp) :: target
 
-    associate (now => stepper%now, max_growth => stepper%stepping%controls%dissipation_growth)
-      target = stepper%energy_rate()*step
-      if (target > max_growth*now%path%dissipated) step = step*max_growth*now%path%dissipated/target
-      by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate()*step, &
-                                            1.0_wp/stepper%stepping%static_steps)
+    associate (now => stepper%now)
+      by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate(model)*step, &
+                                            1.0_wp/model%setup%static%steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
                       converged, error)
       ! Beyond this change of the load other branches of equilibrium may be found, which the path does not lead to.
@@ -124,7 +120,7 @@ contains
     !> True: delaminations have grown
     logical, intent(in) :: extended
 
-    stepper%controller%target = 1.0_wp/stepper%stepping%static_steps
+    stepper%controller%target = 1.0_wp/model%setup%static%steps
   end subroutine choose_next
 
   !> Restores equilibrium at constant load after failures of plies, until no more plies fail.

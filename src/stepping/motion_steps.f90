@@ -97,8 +97,7 @@ contains
         due = stepper%controller%renewal_due(stepper%stepping, model%setup%kinematics == kinematics_von_karman, &
           mass_factor/operator%mass_factor, now%deflection - operator%deflection, model%thickness)
       if (due) then
-        call operator%renew(model, now%plies%stiffness, now%interfaces, now%motion%displacement, &
-                            stepper%integrator%stiffness_factor(), mass_factor, error)
+        call operator%renew(model, now, stepper%integrator%stiffness_factor(), mass_factor, error)
         if (allocated(error)) return
         call stepper%controller%renewed()
       end if

@@ -26,7 +26,8 @@ contains
     real(wp) :: change
     logical :: extended
 
-    if (self%stepping%dissipation > 0 .and. step > 0) call self%trial%note_path(self%now, self%stepping%dissipation)
+    if (model%setup%static%dissipation > 0 .and. step > 0) &
+      call self%trial%note_path(self%now, model%setup%static%dissipation)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
@@ -92,10 +93,10 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     self%rejected = self%rejected + 1
-    call self%controller%reject(step/self%step_scale())
+    call self%controller%reject(step/self%step_scale(model))
     self%operator%ready = .false.
-    if (self%stepping%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
-    if (step <= self%smallest_step*self%step_scale()*(1 + 1.0e-9_wp)) &
+    if (model%setup%static%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
+    if (step <= self%smallest_step*self%step_scale(model)*(1 + 1.0e-9_wp)) &
       call fail(error, exit_convergence, 'No equilibrium from '// &
                 model%setup%progress_name()//' '//rounded_text(self%now%time)// &
                 ' on with the smallest step, '//rounded_text(step)//'.')

@@ -308,7 +308,7 @@ contains
       if (nonlinear) &
         due = due .or. abs(deflection_change) > stepping%adapt%stiffness_update*thickness
     else
-      due = mass_ratio < stepping%controls%lag_low .or. mass_ratio > stepping%controls%lag_high .or. &
+      due = min(mass_ratio, 1/mass_ratio) < stepping%controls%min_mass_ratio .or. &
             self%excess >= stepping%adapt%iterations
     end if
   end function renewal_due

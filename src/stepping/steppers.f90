@@ -143,19 +143,21 @@ contains
   end subroutine equilibrate
 
   !> Energy to be dissipated per unit of pseudo-time in the remaining steps, so that the total is that of the deck.
-  pure real(wp) function energy_rate(self)
+  pure real(wp) function energy_rate(self, model)
     !> The stepper
     class(stepper_t), intent(in) :: self
+    type(model_t), intent(in) :: model
 
-    energy_rate = max(0.0_wp, self%stepping%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
+    energy_rate = max(0.0_wp, model%setup%static%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
   end function energy_rate
 
   !> Pseudo-time of a step under control of dissipation over that of a step under load control; 1 for the latter.
-  pure real(wp) function step_scale(self)
+  pure real(wp) function step_scale(self, model)
     !> The stepper
     class(stepper_t), intent(in) :: self
+    type(model_t), intent(in) :: model
 
     step_scale = 1
-    if (self%now%path%by_dissipation) step_scale = self%stepping%dissipation/self%energy_rate()
+    if (self%now%path%by_dissipation) step_scale = model%setup%static%dissipation/self%energy_rate(model)
   end function step_scale
 end module steppers

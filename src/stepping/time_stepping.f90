@@ -63,7 +63,7 @@ contains
     else
       allocate (motion_steps_t :: self%kind)
     end if
-    if (self%stepping%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
+    if (model%setup%static%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)
@@ -131,8 +131,7 @@ contains
   subroutine complete_state(self, model, error)
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> Receives the distribution of the impactor's force
-    type(model_t), intent(inout) :: model
+    type(model_t), intent(in) :: model
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
 
@@ -158,6 +157,6 @@ contains
     call self%controller%visit(archive)
     if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
     call archive%item('stepper/rejected', self%rejected)
-    call self%operator%visit(archive, model, error)
+    call self%operator%visit(archive, model, self%now%contact, error)
   end subroutine visit
 end module time_stepping

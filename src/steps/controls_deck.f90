@@ -42,16 +42,12 @@ module controls_deck
       &Iterations of a load step after which every other correction is halved.', &
     'controls | dissipation_tolerance | real | 1 | - | 1e-2 | > 0, <= 1 | &
       &Relative tolerance of the energy that a load step dissipates.', &
-    'controls | dissipation_growth | real | 1 | - | 4 | > 1, <= 100 | &
-      &Largest ratio of the energies of consecutive load steps.', &
     'controls | load_step_parts | integer | 1 | - | 1024 | >= 1, <= 1000000 | &
       &Parts into which a load step may be cut.', &
     'controls | ratio_near_growth | real | 1 | - | 0.8 | > 0, < 1 | &
       &Ratio of release rates from which fronts shorten steps.', &
-    'controls | lag_low | real | 1 | - | 0.3 | > 0, <= 1 | &
-      &Least ratio of mass factors of a lagged operator.', &
-    'controls | lag_high | real | 1 | - | 1.7 | >= 1, <= 100 | &
-      &Largest ratio of mass factors of a lagged operator.', &
+    'controls | min_mass_ratio | real | 1 | - | 0.3 | > 0, <= 1 | &
+      &Smaller over larger mass factor below which an operator is renewed.', &
     'controls | shortening_error | real | 1 | - | 2 | >= 1, <= 1000 | &
       &Error over its tolerance from which the next step is halved.', &
     'controls | rejection_error | real | 1 | - | 8 | >= 1, <= 1000 | &
@@ -120,11 +116,9 @@ contains
     !> Receives them
     type(step_controls_t), intent(inout) :: controls
 
-    controls%dissipation_growth = s%real_of(controls_group, 'dissipation_growth')
     controls%load_step_parts = s%integer_of(controls_group, 'load_step_parts')
     controls%ratio_near_growth = s%real_of(controls_group, 'ratio_near_growth')
-    controls%lag_low = s%real_of(controls_group, 'lag_low')
-    controls%lag_high = s%real_of(controls_group, 'lag_high')
+    controls%min_mass_ratio = s%real_of(controls_group, 'min_mass_ratio')
     controls%shortening_error = s%real_of(controls_group, 'shortening_error')
     controls%rejection_error = s%real_of(controls_group, 'rejection_error')
     controls%first_error = s%real_of(controls_group, 'first_error')

@@ -43,17 +43,14 @@ module solution_controls
   !> Constants of the control of steps: their length, and the age of the factored operator. They are many because both
   !> kinds of steps and both rules of adaptivity have theirs.
   type :: step_controls_t
-    !> Largest ratio of the energies that consecutive load steps dissipate, 1.5 to 16 without any difference: the
-    !> predictor is scaled by it (`load_steps`)
-    real(wp) :: dissipation_growth = 4
     !> Largest number of parts of a load step, ten halvings, beyond which a run gives up (`load_steps`)
     integer :: load_step_parts = 1024
     !> Ratio of the energy release rate to its critical value above which fronts that grow one cell a step shorten it
     !> (`step_controllers`, as all below)
     real(wp) :: ratio_near_growth = 0.8_wp
-    !> Range of the ratio of mass factors in which a lagged operator is still a good preconditioner. Half and twice a
-    !> step have ratios of 4 and .25; an operator that serves twice the step, by .1, makes runs 23 % dearer
-    real(wp) :: lag_low = 0.3_wp, lag_high = 1.7_wp
+    !> Ratio of the smaller to the larger mass factor of step and lagged operator, below which it is renewed. Half and
+    !> twice a step have .25; an operator that serves twice the step, by .1, makes runs 23 % dearer
+    real(wp) :: min_mass_ratio = 0.3_wp
     !> Errors, relative to the tolerance, above which the next step is halved, and above which a step is rejected. The
     !> error is of third order in the step length: halving reduces the first to a quarter
     real(wp) :: shortening_error = 2, rejection_error = 8

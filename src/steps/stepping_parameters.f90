@@ -1,4 +1,4 @@
-!> Parameters of steps as given in the deck: time integration, load steps, adaptivity, convergence of equilibrium.
+!> Parameters of steps as given in the deck: time integration, adaptivity, convergence of equilibrium.
 module stepping_parameters
   use central_difference_parameters, only: central_difference_parameters_t
   use kinds, only: wp
@@ -91,10 +91,6 @@ module stepping_parameters
     type(time_t) :: time
     !> Central differences
     type(central_difference_parameters_t) :: central
-    !> Load steps of a static analysis
-    integer :: static_steps = 1
-    !> Dissipated energy at which a static analysis ends; 0: load control throughout
-    real(wp) :: dissipation = 0
     !> Adaptivity
     type(adapt_t) :: adapt
     !> Expected response of the run

@@ -7,11 +7,12 @@ module tangent_operators
   use errors, only: error_t
   use section_stiffnesses, only: visit_stiffness
   use timers, only: timer_set_t
+  use contact_patches, only: contact_patch_t
   use krylov_solvers, only: krylov_solver_t
   use linear_solvers, only: linear_solver_t
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
-  use interface_states, only: interface_state_t
+  use states, only: state_t
   use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite
   implicit none
   private
@@ -51,7 +52,7 @@ module tangent_operators
   contains
     !> Numbers the equations and creates the solver.
     procedure :: create
-    !> Assembles and factorizes the operator at a displacement.
+    !> Assembles and factorizes the operator at a state.
     procedure :: renew
     !> Correction of the displacement for a residual.
     procedure :: correct
@@ -102,40 +103,38 @@ contains
     allocate (self%response_rows(self%numbering%rows), source=0.0_wp)
   end subroutine create
 
-  !> Assembles and factorizes the operator at a displacement, and computes the unit-load solution.
-  subroutine renew(self, model, stiffness, interfaces, displacement, stiffness_factor, mass_factor, error)
+  !> Assembles and factorizes the operator at a state, and computes the unit-load solution.
+  subroutine renew(self, model, state, stiffness_factor, mass_factor, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Section stiffness of the damaged elements, (lanes, 21, batches)
-    real(wp), intent(in) :: stiffness(:, :, :)
-    !> Ties, contacts and cohesive laws
-    type(interface_state_t), intent(in) :: interfaces
-    !> Displacement, ghosts up to date, (5, points)
-    real(wp), intent(in) :: displacement(:, :)
+    !> The state, ghosts of its displacement up to date
+    type(state_t), intent(in) :: state
     !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
     !> Set if the operator is singular
     type(error_t), allocatable, intent(out) :: error
 
-    self%displacement = displacement
-    self%stiffness = stiffness
+    self%displacement = state%motion%displacement
+    self%stiffness = state%plies%stiffness
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
     call assemble(self, model)
-    if (allocated(interfaces%cohesive%tangents)) &
-      call assemble_tangents(model, self%numbering, interfaces%cohesive%tangents, self%solver)
-    call interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
+    if (allocated(state%interfaces%cohesive%tangents)) &
+      call assemble_tangents(model, self%numbering, state%interfaces%cohesive%tangents, self%solver)
+    call state%interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
     call self%timers%stop('assembly')
-    call self%factorize(model, error)
+    call self%factorize(model, state%contact, error)
   end subroutine renew
 
   !> Factorizes the assembled matrix with the stiffness added to the jumps, and computes the unit-load solution.
-  subroutine factorize(self, model, error)
+  subroutine factorize(self, model, contact, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    !> Patch under the impactor
+    type(contact_patch_t), intent(in) :: contact
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
 
@@ -149,25 +148,27 @@ contains
     self%factorizations = self%factorizations + 1
     self%response = 0
     self%compliance = 0
-    if (model%setup%has_impactor) call self%find_response(model, error)
+    if (model%setup%has_impactor) call self%find_response(model, contact, error)
   end subroutine factorize
 
   !> Computes the unit-load solution of the impactor's force.
-  subroutine find_response(self, model, error)
+  subroutine find_response(self, model, contact, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    !> Patch under the impactor
+    type(contact_patch_t), intent(in) :: contact
     !> Set if the solve fails
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: force(:, :)
 
     allocate (force, mold=self%response)
     force = 0
-    force(3, :) = model%contact%weights/model%mesh%multiplicity
+    force(3, :) = contact%weights/model%mesh%multiplicity
     call self%correct(model, force, self%response, error)
     if (allocated(error)) return
     self%response_rows = self%rows_of(self%response)
-    self%compliance = model%patch_mean(self%response)
+    self%compliance = contact%mean(model%communicator, self%response)
   end subroutine find_response
 
   !> Solution on this rank's rows with the present factorization.
@@ -244,12 +245,14 @@ contains
 
   !> Saves the data that the factorization was computed from, or loads them and factorizes: the factorization affects
   !> the iterations.
-  subroutine visit(self, archive, model, error)
+  subroutine visit(self, archive, model, contact, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> The checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
+    !> Patch under the impactor
+    type(contact_patch_t), intent(in) :: contact
     !> Set if the factorization fails
     type(error_t), allocatable, intent(out) :: error
 
@@ -265,7 +268,7 @@ contains
     if (archive%loading .and. self%ready) then
       call model%halo%update(self%displacement)
       call assemble(self, model)
-      call self%factorize(model, error)
+      call self%factorize(model, contact, error)
     end if
     call archive%item('operator/factorizations', self%factorizations)
     call archive%item('operator/solves', self%solves)

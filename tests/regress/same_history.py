@@ -4,7 +4,7 @@ Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTIN
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
-ranks: on 1, 2 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
+ranks: on 1, 2, 3 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
 half_x, half_y or point, against the full plate with twice the elements along the directions halved. mirror: against
 the plate with x and y exchanged. tolerances: with residuals of 1e-9 against .8e-9 and 2e-9, so that steps take other
 numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must
@@ -24,8 +24,8 @@ PARTS = ("quarter", "half_x", "half_y", "point")
 
 
 def histories_of_ranks(implam, deck, folder, launcher, settings):
-    """Yield name and history of the runs on 1, 2 and 4 ranks."""
-    for ranks in (1, 2, 4):
+    """Yield name and history of the runs on 1 to 4 ranks."""
+    for ranks in (1, 2, 3, 4):
         path = write_deck(folder / f"ranks_{ranks}", deck, settings)
         history = run_deck(implam, path, [*launcher, str(ranks)])
         log = next(path.parent.glob("*.log")).read_text(encoding="utf-8")

@@ -31,7 +31,7 @@ ADDED = {"adaptive": "&adapt on=.true. /\n"}
 # What is replaced in a deck: a first step that the error chooses.
 REPLACED = {"adaptive": ("step=2e-6", "step=20e-6")}
 # Decks of the constants of load steps, of Newton's method, and of the control of steps in time.
-BY_LOAD = ("dissipation_tolerance", "dissipation_growth", "load_step_parts")
+BY_LOAD = ("dissipation_tolerance", "load_step_parts")
 NEWTON = ("forcing", "max_forcing", "element", "contact", "search", "force", "last", "alternating")
 PRICE = 30
 # Changes of input/sun_chen.nml for decks of its own: patterns and their replacements.
@@ -60,12 +60,11 @@ OWN = {
     "element_reduction": ("curved", (1e-3, 0.1)), "last_digits": ("exact", (8, 128)),
     "force_floor": ("block", (1e-7, 1e-5, 1e-3)), "alternating_iterations": ("block", (4, 16, 100)),
     "ratio_near_growth": ("front", (0.5, 0.7, 0.9)),
-    "lag_low": ("stress short", (0.1, 0.6)), "lag_high": ("stress pressed", (1.2, 5)),
+    "min_mass_ratio": ("stress short pressed", (0.1, 0.6)),
     "rejection_error": ("pressed", (4, 16, 100)), "first_error": ("long", (2, 64)),
     "allowed_in_impact": ("short", (0.0625, 0.25)), "max_doublings": ("short", (1, 2, 6)),
     "steady_in_impact": ("short", (12, 48)), "doublings_of_gear": ("gear", (2, 3)), "equal_of_gear": ("gear", (1, 20)),
-    "dissipation_tolerance": ("strip ubm", (1e-3, 0.1)), "dissipation_growth": ("strip ubm", (1.5, 16)),
-    "load_step_parts": ("strip ubm", (2, 16)),
+    "dissipation_tolerance": ("strip ubm", (1e-3, 0.1)), "load_step_parts": ("strip ubm", (2, 16)),
 }
 
 
@@ -108,8 +107,8 @@ def variants(kind, value, key):
     pair = [value / 2, value * 2]
     if key in ("forcing_factor", "search_max_part", "search_slope"):
         pair[1] = (1 + value) / 2
-    if key in ("search_max_part", "lag_high"):
-        pair[0] = (1 + value) / 2 if key == "lag_high" else 0.6
+    if key == "search_max_part":
+        pair[0] = 0.6
     if key == "ratio_near_growth":
         pair[1] = 0.9
     return [max(1, round(part)) for part in pair] if kind == "integer" else pair

@@ -3,8 +3,8 @@ module small_operators
   use kinds, only: wp
   use errors, only: error_t
   use models, only: model_t
-  use interface_states, only: new_interface_state
   use linear_solver_parameters, only: factorization_mumps
+  use states, only: new_state, state_t
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -24,11 +24,13 @@ contains
     type(tangent_operator_t), intent(out) :: operator
     !> Set if there is no factor
     type(error_t), allocatable, intent(out) :: error
+    type(state_t) :: state
 
     call operator%create(model, factorization_mumps, error)
     if (allocated(error)) return
-    call operator%renew(model, model%elements%stiffness, new_interface_state(model), displacement, stiffness_factor, &
-                        mass_factor, error)
+    state = new_state(model)
+    state%motion%displacement = displacement
+    call operator%renew(model, state, stiffness_factor, mass_factor, error)
   end subroutine factor
 
   !> Vibration mode of lowest frequency among those of the symmetry of a starting shape, by inverse iteration.

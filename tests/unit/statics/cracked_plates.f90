@@ -114,9 +114,9 @@ contains
     associate (model => self%model)
       do node = 1, model%mesh%nodes()
         upper = model%distribution%local(model%mesh%first_point(node))
-        if (.not. abs(model%contact%weights(upper)) > 0) cycle
+        if (.not. abs(model%patch%weights(upper)) > 0) cycle
         lower = model%distribution%local(model%mesh%lower_point(node, 1))
-        model%pressure(3, upper) = force/model%mesh%multiplicity*model%contact%weights(upper)
+        model%pressure(3, upper) = force/model%mesh%multiplicity*model%patch%weights(upper)
         model%pressure(3, lower) = model%pressure(3, upper)/2
       end do
     end associate

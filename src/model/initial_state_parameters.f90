@@ -1,4 +1,4 @@
-!> Initial state of a run in the deck.
+!> Initial state of a load case.
 module initial_state_parameters
   implicit none
   private
@@ -9,6 +9,8 @@ module initial_state_parameters
 
   !> The initial state.
   type :: initial_state_t
+    !> True: the run starts from the final state of another run
+    logical :: is_inherited = .false.
     !> Checkpoint of the other run; unallocated: the plate is undamaged, flat and at rest
     character(len=:), allocatable :: from
     !> motion_rest or motion_kept

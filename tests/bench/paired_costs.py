@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""What implicit runs cost over those of an older program: steps of large plates, Sun and Chen's plate, peanut, thresholds,
+specimens under load steps. Both programs run in turns. See README.md."""
+import argparse
+import os
+import pathlib
+import re
+import statistics
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
+from bench import DECK, PHASE, history, run_deck
+from solver_runs import change_deck
+
+INPUT = pathlib.Path(__file__).parents[2]/'input'
+IMPLICIT_PEANUT = ["time%integrator='generalized_alpha'", 'time%step=16e-6']
+
+
+def plate(kinematics, elements, steps):
+    """A plate of about 60 000 unknowns, each step of 1 us."""
+    return DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6, more='')
+
+
+def stored(name, *settings):
+    """A deck of the folder input, readable by older programs."""
+    text = INPUT.joinpath(name).read_text().replace("  units='SI' /", ' /').replace('mass_scaling=6', '')
+    return change_deck(text, settings)
+
+
+# Name: deck, whether the steps alone are compared, and the limit of the ratio; of sun_chen that of the difference, s.
+CASES = {
+    'plate, linear, a step': (lambda: plate('linear', 71, 100), True, 1.4),
+    'plate, von Karman, a step': (lambda: plate('von_karman', 55, 100), True, 1.4),
+    'sun_chen': (lambda: stored('sun_chen.nml'), False, 0.2),
+    'dcb': (lambda: stored('verify/dcb.nml'), False, 2),
+    'enf': (lambda: stored('verify/enf.nml'), False, 2),
+    'mmb': (lambda: stored('verify/mmb.nml'), False, 2),
+    'li2002': (lambda: stored('li2002.nml'), False, 2),
+    'peanut, implicit': (lambda: stored('peanut.nml', *IMPLICIT_PEANUT), False, 2),
+    'crossply_threshold': (lambda: stored('crossply_threshold.nml'), False, 2),
+}
+
+
+def measure(program, text, steps_alone):
+    """Seconds of the processor of a run, or of its steps, and the largest force."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        seconds = run_deck(program, text, folder)
+        if steps_alone:
+            log, = folder.glob('*.log')
+            seconds = next(float(processor) for name, _, _, processor in
+                           re.findall(PHASE, log.read_text(), re.MULTILINE) if name.strip() == 'steps')
+        return seconds, max(abs(row['force']) for row in history(folder))
+
+
+def main():
+    """Print a row for each case."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('program')
+    parser.add_argument('old', help='path of the older implam')
+    parser.add_argument('--only', nargs='+', choices=CASES, default=list(CASES))
+    parser.add_argument('--repeat', type=int, default=3, help='runs of each; the median of the ratios is printed')
+    arguments = parser.parse_args()
+    programs = [os.path.abspath(arguments.old), os.path.abspath(arguments.program)]
+    print('| case | older, s | this, s | this over older | limit | change of the peak force, % |')
+    print('|---|---|---|---|---|---|')
+    for name in arguments.only:
+        deck, steps_alone, limit = CASES[name]
+        pairs = [[measure(program, deck(), steps_alone) for program in programs] for _ in range(arguments.repeat)]
+        old, new = (statistics.median(pair[i][0] for pair in pairs) for i in (0, 1))
+        figure = f'{statistics.median(pair[1][0]/pair[0][0] for pair in pairs):.2f}'
+        bound = f'{limit:g}'
+        if name == 'sun_chen':
+            figure, bound = f'{new - old:+.2f} s', f'+{limit:g} s'
+        (_, before), (_, after) = pairs[-1]
+        change = f'{100*abs(after - before)/before:.2g}' if before > 0 else '-'
+        print(f'| {name} | {old:.2f} | {new:.2f} | {figure} | {bound} | {change} |', flush=True)
+
+
+if __name__ == '__main__':
+    main()
