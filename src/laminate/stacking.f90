@@ -86,8 +86,9 @@ contains
   end function section_stiffness
 
   !> Stiffness of a layer of some of a laminate's plies, whose elastic constants may have been reduced. Within the
-  !> laminate its faces carry shear: with shear_energy its stiffness is that of the laminate's equilibrium, unless that
-  !> of equilibrium with free faces is larger in some direction.
+  !> laminate its faces carry shear: with shear_energy its stiffness is that of the laminate's equilibrium. A layer in
+  !> which those stresses cancel would have none; below sqrt(epsilon) of the stiffness with free faces, which leaves
+  !> solutions half of their digits, it has the latter.
   pure function layer_stiffness(plies, elasticity, first, last, shear_correction) result(stiffness)
     !> All plies of the laminate
     type(ply_t), intent(in) :: plies(:)
@@ -99,7 +100,7 @@ contains
     integer, intent(in) :: shear_correction
     !> Packed as in section_t
     real(wp) :: stiffness(21)
-    real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), excess(3)
+    real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), within(3), excess(3)
     integer :: i
 
     stiffness = section_stiffness(plies(first:last), elasticity, shear_correction)
@@ -115,9 +116,9 @@ contains
         shear(:, i) = shear_stiffness(plies(i), elasticity(i - first + 1))
       end if
     end do
-    excess = layer_stiffness_from_energy(z, in_plane, shear, first, last) - stiffness(19:21)
-    if (min(excess(1), excess(3), excess(1)*excess(3) - excess(2)**2) >= 0) &
-      stiffness(19:21) = stiffness(19:21) + excess
+    within = layer_stiffness_from_energy(z, in_plane, shear, first, last)
+    excess = within - sqrt(epsilon(within))*stiffness(19:21)
+    if (min(excess(1), excess(3), excess(1)*excess(3) - excess(2)**2) > 0) stiffness(19:21) = within
   end function layer_stiffness
 
   !> Stiffness of a range of plies against membrane strains and curvatures.
