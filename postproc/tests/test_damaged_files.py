@@ -23,7 +23,8 @@ from tests.plot.test_pictures import DECK
 from tests.program import run_quietly
 
 # Words of libraries about their own internals, of which a user knows nothing.
-INTERNALS = re.compile(r"numpy|h5py|ufunc|dtype|array|attribute|subscript|synchronously|Unable to|Errno|NoneType|\bindex")
+INTERNALS = re.compile(
+    r"numpy|h5py|ufunc|dtype|array|attribute|subscript|synchronously|Unable to|Errno|NoneType|\bindex")
 FILES = int(os.environ.get("IMPLAM_SPOILT", "40"))
 
 
@@ -101,7 +102,8 @@ class DamagedFilesTest(unittest.TestCase):
             with h5py.File(path) as file:
                 file.visit(names.append)
             for name in names:
-                for kind, value in (("text", np.bytes_("x")), ("empty", np.zeros(0)), ("group", None), ("nothing", None)):
+                for kind, value in (("text", np.bytes_("x")), ("empty", np.zeros(0)), ("group", None),
+                                    ("nothing", None)):
                     write_fields(path)
                     with h5py.File(path, "a") as file:
                         del file[name]

@@ -1,8 +1,8 @@
 """A sandwich with interfaces between its skins and its core, or in the core, is as stiff as without them.
 Usage: sandwich_layers.py IMPLAM FOLDER
 
-Shear stresses of the core are nearly uniform while its skins hold: 5/6 of its stiffness makes the panel 10 % softer. Halves
-with a free face each make it 11 % stiffer."""
+Shear stresses of the core are nearly uniform while its skins hold: 5/6 of its stiffness makes the panel 10 % softer.
+Halves with a free face each make it 11 % stiffer."""
 
 import sys
 from pathlib import Path
@@ -18,14 +18,15 @@ PANEL = """&case name='panel' kinematics='linear' /
 &pressure value=1e3 /
 &static steps=1 /
 """
-INTERFACES = """&delamination below_ply=1,2 law='cohesive' strength_shear=1e9 strength_opening=1e9 G_Ic=1e6 G_IIc=1e6 eta=2
-  zone=0.4,0.4 /
+INTERFACES = """&delamination below_ply=1,2 law='cohesive' strength_shear=1e9 strength_opening=1e9 G_Ic=1e6 G_IIc=1e6
+  eta=2 zone=0.4,0.4 /
 """
 
 
 def check(implam, folder):
     """Compare the deflection under pressure."""
-    halves = PANEL.replace("'core',", "'core','core',").replace("0,0,0", "0,0,0,0").replace("20e-3,1e-3", "10e-3,10e-3,1e-3")
+    halves = PANEL.replace("'core',", "'core','core',").replace("0,0,0", "0,0,0,0")
+    halves = halves.replace("20e-3,1e-3", "10e-3,10e-3,1e-3")
     found = {}
     for name, text in (("one", PANEL), ("layers", PANEL + INTERFACES),
                        ("halves", halves + INTERFACES.replace("1,2 ", "2 "))):
