@@ -75,8 +75,8 @@ contains
 
     if (deck%load_level(now%time) >= 1) return
     allocate (warnings(0))
-    call add_energy_warnings(deck, watch%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), now%time, &
-                             record, warnings)
+    call add_energy_warnings(deck, watch%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), &
+                             now%time, record, warnings)
     call give(deck, warnings, log, error)
   end subroutine give_last_warnings
 

@@ -34,6 +34,7 @@ module dense_systems
       integer, intent(out) :: pivots(*), rank
       !> Smallest pivot; below 0: n*epsilon times the largest entry of the diagonal
       real(wp), intent(in) :: tolerance
+      !> Work space of 2*n
       real(wp), intent(out) :: work(*)
       !> Greater than 0: the rank is lower than the order
       integer, intent(out) :: info

@@ -126,8 +126,8 @@ contains
     end if
   end function pressure_factor
 
-  !> Loads relative to those at the end, the largest of pressure and lines; 1 in time with an impactor, residual stresses
-  !> or an initial state.
+  !> Loads relative to those at the end, the largest of pressure and lines; 1 in time with an impactor, residual
+  !> stresses or an initial state.
   elemental real(wp) function load_level(self, time)
     !> The load case
     class(load_case_t), intent(in) :: self
