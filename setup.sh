@@ -14,7 +14,7 @@ fi
 packages=(gfortran cmake ninja-build pkg-config git openmpi-bin libopenmpi-dev libpetsc-real-dev libmumps-dev
   libmetis-dev libhdf5-openmpi-dev libopenblas0-pthread hdf5-tools python3-venv)
 # Without these some tests are skipped.
-test_packages=(calculix-ccx slurm-wlm munge zsh)
+test_packages=(calculix-ccx slurm-wlm munge patch zsh)
 
 # What happens now, since each stage may take a minute.
 stage() {

@@ -4,6 +4,7 @@ IMPLAM_SPOILT in the environment is the number of files (default 40); 400 take f
 
 import os
 import random
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -21,6 +22,9 @@ from tests.io.test_fields import write_fields
 from tests.plot.test_pictures import DECK
 from tests.program import run_quietly
 
+# Words of libraries about their own internals, of which a user knows nothing.
+INTERNALS = re.compile(
+    r"numpy|h5py|ufunc|dtype|array|attribute|subscript|synchronously|Unable to|Errno|NoneType|\bindex")
 FILES = int(os.environ.get("IMPLAM_SPOILT", "40"))
 
 
@@ -58,6 +62,7 @@ class DamagedFilesTest(unittest.TestCase):
                         commands = (plot.main, movie.main, paraview.main)
                     except FileError as error:
                         self.assertEqual(len(str(error).splitlines()), 1, error)
+                        self.assertNotRegex(str(error), INTERNALS)
                         commands = (plot.main,)
                     for command in commands if number % 8 == 0 else ():
                         code, printed = run_quietly(command, path)
@@ -88,6 +93,31 @@ class DamagedFilesTest(unittest.TestCase):
                     file[name] = np.zeros(3)
                 with self.subTest(name), self.assertRaisesRegex(FileError, "damaged"):
                     read_fields(path)
+
+    def test_members_of_other_kinds(self) -> None:
+        """Text, a group, an empty list or nothing in the place of each member: fields, or a sentence in plain words."""
+        with tempfile.TemporaryDirectory() as folder:
+            path, names = Path(folder) / "case.h5", []
+            write_fields(path)
+            with h5py.File(path) as file:
+                file.visit(names.append)
+            for name in names:
+                for kind, value in (("text", np.bytes_("x")), ("empty", np.zeros(0)), ("group", None),
+                                    ("nothing", None)):
+                    write_fields(path)
+                    with h5py.File(path, "a") as file:
+                        del file[name]
+                        if kind == "group":
+                            file.create_group(name)
+                        elif kind != "nothing":
+                            file[name] = value
+                    with self.subTest(name=name, kind=kind):
+                        try:
+                            read_fields(path)
+                        except FileError as error:
+                            self.assertNotRegex(str(error), INTERNALS)
+                            if kind == "nothing" and name.endswith("time"):
+                                self.assertIn("(it has no time)", str(error))
 
     def test_cells_that_are_no_plate(self) -> None:
         """A point that has moved leaves cells without plies, and a ply too few a hole: panels report it."""

@@ -40,6 +40,9 @@ contains
       call advance(deck, model, stepper, event, log, error)
       if (allocated(error)) then
         if (error%code == exit_convergence) error%message = error%message//slow_motion_advice(deck)
+        ! The step was accepted, but its failed plies have found no equilibrium.
+        if (stepper%now%time > record%time) &
+          call record%observe(model, stepper%now, steps_between_stages(deck%stepping))
         return
       end if
       call record%observe(model, stepper%now, steps_between_stages(deck%stepping))

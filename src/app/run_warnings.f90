@@ -4,7 +4,7 @@ module run_warnings
   use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
-  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, energy_tolerance
+  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
@@ -18,32 +18,19 @@ module run_warnings
                          warning_slopes, &
                          warning_steps, warning_torn
   use run_moments, only: moment
-  use short_numbers, only: short_text
   use states, only: state_t
-  use stepping_parameters, only: is_explicit
-  use text, only: line_t, append, rounded_text, to_text
+  use text, only: line_t, append
   use time_stepping, only: time_stepper_t
+  use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled, steepest
   implicit none
   private
-  public :: give_warnings, warnings_given
+  public :: give_warnings, give_last_warnings, warnings_given
 
-  !> Largest rotation with a cosine of about 1, as assumed by von Karman's strains: the error is 2 %.
-  real(wp), parameter :: steepest = 0.2_wp
-  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
-  !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
-  !> Shells, 1959, art. 100).
-  real(wp), parameter :: deepest = 3
   !> Relative round-off of an area: below it are sums of 1e6 elements with a precision of 2e-16.
   real(wp), parameter :: rounded_off = 1.0e-9_wp
-
-  !> Permitted ratio of kinetic energy to work in slow motion, 5 % (Getting Started with Abaqus, chapter on quasi-static
-  !> analysis: 5 to 10 %), and fraction of the run after which it is checked: the default rise of a travel, after which
-  !> the velocity is constant.
-  real(wp), parameter :: max_kinetic = 0.05_wp, slow_start = 0.25_wp
-  !> Permitted fraction of kinetic energy of motions with scaled inertia. Forces and velocities are proportional to the
-  !> root of energies: 2 % of energy is 1 % of force, the error permitted for the default factor. On decks of input/ it
-  !> is .02 to 1 % (input/peanut.nml to input/small/breaking_bursts.nml).
-  real(wp), parameter :: max_scaled = 0.02_wp
+  !> Fraction of the run after which slow motion is checked: the default rise of a travel, after which the velocity is
+  !> constant.
+  real(wp), parameter :: slow_start = 0.25_wp
 
 contains
 
@@ -63,17 +50,56 @@ contains
     !> Set if the run is strict and exceeds a limit of the model
     type(error_t), allocatable, intent(out) :: error
     type(line_t), allocatable :: warnings(:)
-    integer :: i
 
     call find_warnings(deck, model, stepper%now, stepper%errs, record, watch, warnings)
+    call give(deck, warnings, log, error)
+  end subroutine give_warnings
+
+  !> Warns of energies of the last state of a run. Those of a small load are compared with the energy of the full load,
+  !> unless the run has ended at that load. Collective.
+  subroutine give_last_warnings(deck, model, now, record, watch, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(model_t), intent(in) :: model
+    !> The last state
+    type(state_t), intent(in) :: now
+    !> Receives the warnings
+    type(run_record_t), intent(inout) :: record
+    !> The check of energies
+    type(energy_watch_t), intent(inout) :: watch
+    !> The log
+    type(log_t), intent(inout) :: log
+    !> Set, unless it is already, if the run is strict and exceeds the limit
+    type(error_t), allocatable, intent(inout) :: error
+    type(line_t), allocatable :: warnings(:)
+
+    if (deck%load_level(now%time) >= 1) return
+    allocate (warnings(0))
+    call add_energy_warnings(deck, watch%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), &
+                             now%time, record, warnings)
+    call give(deck, warnings, log, error)
+  end subroutine give_last_warnings
+
+  !> Prints warnings; a strict run ends with the first.
+  subroutine give(deck, warnings, log, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> One sentence each
+    type(line_t), intent(in) :: warnings(:)
+    !> The log
+    type(log_t), intent(inout) :: log
+    !> Set if the run is strict
+    type(error_t), allocatable, intent(inout) :: error
+    integer :: i
+
     do i = 1, size(warnings)
       if (deck%strict) then
-        call fail(error, exit_convergence, warnings(i)%text)
+        if (.not. allocated(error)) call fail(error, exit_convergence, warnings(i)%text)
       else
         call log%warning(warnings(i)%text)
       end if
     end do
-  end subroutine give_warnings
+  end subroutine give
 
   !> Finds and stores new warnings of an accepted step. Collective.
   subroutine find_warnings(deck, model, now, step_errs, record, watch, warnings)
@@ -97,45 +123,77 @@ contains
     allocate (warnings(0))
     thickness = deck%expected%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
-      if (now%interfaces%border_reached(zone)) call add_warning(warning_border, zone)
-      if (leaves_core(deck, model%setup%delaminations(zone))) call add_warning(warning_core, zone)
+      if (now%interfaces%border_reached(zone)) call add(warning_border, zone)
+      if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, zone)
     end do
-    if (now%indentation%alpha > thickness) call add_warning(warning_indentation, 0)
-    if (step_errs) call add_warning(warning_steps, 0)
+    if (now%indentation%alpha > thickness) call add(warning_indentation, 0)
+    if (step_errs) call add(warning_steps, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
-      if (is_steep(model, now)) call add_warning(warning_slopes, 0)
+      if (is_steep(model, now)) call add(warning_slopes, 0)
     end if
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
-      if (is_torn(deck, model, now)) call add_warning(warning_torn, 0)
+      if (is_torn(deck, model, now)) call add(warning_torn, 0)
     end if
     ! After the impactor has left, the check does not apply.
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
-      if (has_hole(model, now)) call add_warning(warning_hole, 0)
+      if (has_hole(model, now)) call add(warning_hole, 0)
     end if
     alarms = watch%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), deck%is_static())
     call record%note_scaled(now%ledger%scaled, watch%largest)
     if (deck%is_impact() .or. now%time > slow_start*deck%stepping%time%end) then
-      if (record%scaled_energy > max_scaled*watch%largest) call add_warning(warning_scaled, 0)
+      if (record%scaled_energy > max_scaled*watch%largest) call add(warning_scaled, 0)
     end if
     if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
-      if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add_warning(warning_kinetic, 0)
+      if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add(warning_kinetic, 0)
     end if
-    if (alarms(energy_created)) call add_warning(warning_energy, 0)
-    if (alarms(energy_taken)) call add_warning(warning_loss, 0)
-    if (alarms(energy_unaccounted)) call add_warning(warning_ledger, 0)
+    call add_energy_warnings(deck, alarms, now%time, record, warnings)
 
   contains
 
     !> Adds a warning at its first occurrence.
-    subroutine add_warning(kind, zone)
+    subroutine add(kind, zone)
       !> Its kind and zone
       integer, intent(in) :: kind, zone
 
-      if (record%has_warned(kind, zone)) return
-      call record%note_warning(kind, zone, now%time)
-      call append(warnings, warning_text(kind, zone, moment(deck, now%time), deck))
-    end subroutine add_warning
+      call add_warning(deck, kind, zone, now%time, record, warnings)
+    end subroutine add
   end subroutine find_warnings
+
+  !> Adds warnings of energies.
+  subroutine add_energy_warnings(deck, alarms, time, record, warnings)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> True for the kinds of errors found
+    logical, intent(in) :: alarms(3)
+    !> Time or load factor
+    real(wp), intent(in) :: time
+    !> Receives the warnings
+    type(run_record_t), intent(inout) :: record
+    !> Receives their sentences
+    type(line_t), allocatable, intent(inout) :: warnings(:)
+
+    if (alarms(energy_created)) call add_warning(deck, warning_energy, 0, time, record, warnings)
+    if (alarms(energy_taken)) call add_warning(deck, warning_loss, 0, time, record, warnings)
+    if (alarms(energy_unaccounted)) call add_warning(deck, warning_ledger, 0, time, record, warnings)
+  end subroutine add_energy_warnings
+
+  !> Adds a warning at its first occurrence.
+  subroutine add_warning(deck, kind, zone, time, record, warnings)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Its kind and zone
+    integer, intent(in) :: kind, zone
+    !> Time or load factor
+    real(wp), intent(in) :: time
+    !> Receives the warning
+    type(run_record_t), intent(inout) :: record
+    !> Receives its sentence
+    type(line_t), allocatable, intent(inout) :: warnings(:)
+
+    if (record%has_warned(kind, zone)) return
+    call record%note_warning(kind, zone, time)
+    call append(warnings, warning_text(kind, zone, moment(deck, time), deck))
+  end subroutine add_warning
 
   !> True: only prescribed motions in time load the plate, as in a quasi-static test.
   pure logical function is_slow_motion(deck)
@@ -200,103 +258,6 @@ contains
     counts = now%plies%counts(model)
     is_torn = counts(fibre_failure) > 0
   end function is_torn
-
-  !> Sentence of a warning.
-  pure function warning_text(kind, zone, at, deck) result(text)
-    !> One of the kinds of warnings
-    integer, intent(in) :: kind
-    !> Its zone; 0: none
-    integer, intent(in) :: zone
-    !> Its time, such as time 0.001
-    character(len=*), intent(in) :: at
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> One sentence
-    character(len=:), allocatable :: text
-
-    text = ''
-    select case (kind)
-    case (warning_border)
-      text = 'The delamination below ply '//to_text(deck%delaminations(zone)%below_ply)// &
-             ' has reached the border of its zone at '//at// &
-             ' and cannot grow further: make the zone larger.'
-    case (warning_core)
-      text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
-             ' grow with the damage beyond the core of the mesh since '//at// &
-             ', where its cells grow: make the core larger.'
-    case (warning_energy)
-      text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
-                         '(rho_inf) with delamination.', 'take a smaller step_factor.')
-    case (warning_loss)
-      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', loss_cure(deck))
-    case (warning_ledger)
-      text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
-             ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
-                                                                          is_explicit(deck%stepping)))
-    case (warning_kinetic)
-      text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
-             at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
-    case (warning_scaled)
-      text = 'Kinetic energy of motions with scaled inertia exceeds '//short_text(100*max_scaled)// &
-             ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
-    case (warning_indentation)
-      text = 'The indentation exceeds the thickness of the laminate since '//at// &
-             ': no contact law is valid there; take less energy or a larger radius.'
-    case (warning_slopes)
-      text = 'The slope of the plate exceeds '//to_text(steepest)//' since '//at// &
-             ': its strains assume small rotations; later results are not valid.'
-    case (warning_steps)
-      text = 'The error of steps exceeds the tolerance of &adapt since '//at// &
-             ' at the smallest step, too long for the waves of failures: an eighth of that tolerance halves the &
-               &steps and shows the effect.'
-    case (warning_torn)
-      text = 'The clamped plate deflects by more than '//to_text(deepest)// &
-             ' thicknesses with failed fibres since '//at// &
-             ': membrane forces carry it, and plies do not tear in the model; later results are not valid.'
-    case (warning_hole)
-      text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
-             ': the impactor perforates the plate, and the model has no hole; later results are not valid.'
-    end select
-
-  contains
-
-    !> Sentence on an energy above its limit, with a remedy.
-    pure function energy_text(what, cure, explicit_cure) result(words)
-      !> created or taken
-      character(len=*), intent(in) :: what
-      !> Remedies for implicit steps and for central differences
-      character(len=*), intent(in) :: cure, explicit_cure
-      !> The sentence
-      character(len=:), allocatable :: words
-
-      if (deck%is_static()) then
-        words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
-          at// &
-                ' (energy_algorithmic): take more steps, unless failures or snap-through release it as kinetic energy.'
-      else if (is_explicit(deck%stepping)) then
-        words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
-          ' % of the energy by '//at &
-                //' (energy_algorithmic): '//explicit_cure
-      else
-        words = 'The time integrators have '//what//' more than '//short_text(100*energy_tolerance)// &
-          ' % of the energy by '//at &
-                //': '//cure
-      end if
-    end function energy_text
-  end function warning_text
-
-  !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
-  !> released is damped.
-  pure function loss_cure(deck) result(cure)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> End of a sentence
-    character(len=:), allocatable :: cure
-
-    cure = 'take a smaller step_factor.'
-    if (any(deck%delaminations%follows)) &
-      cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
-  end function loss_cure
 
   !> All warnings of a run, with those before a restart.
   function warnings_given(record, deck) result(lines)

@@ -21,7 +21,7 @@ module simulations
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
   use run_steps, only: advance_to_output, row_is_due
-  use run_warnings, only: give_warnings
+  use run_warnings, only: give_last_warnings, give_warnings
   use stepping_parameters, only: end_of_run
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
@@ -382,8 +382,9 @@ contains
     !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
-    if (self%is_ready) call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
-                                      wall_time() - self%timers%profile%begun, &
-                                      self%base//summary_ending, self%log, error)
+    if (.not. self%is_ready) return
+    call give_last_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_watch, self%log, error)
+    call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
+                   wall_time() - self%timers%profile%begun, self%base//summary_ending, self%log, error)
   end subroutine conclude
 end module simulations

@@ -1,8 +1,11 @@
-!> Remarks on a transverse shear stiffness that does not suit the plies.
+!> Remarks on the transverse shear of unlike plies.
 module deck_shear_remarks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
+  use delamination_deck, only: key_zone
+  use interface_places, only: delamination_group
+  use kinds, only: wp
   use laminate_deck, only: laminate_group, key_correction
   use laminate_parameters, only: shear_five_sixths
   use plies, only: ply_t
@@ -13,15 +16,20 @@ module deck_shear_remarks
   private
   public :: check_correction
 
+  !> Relative round-off of lengths: below the digits of a deck.
+  real(wp), parameter :: rounding = 1.0e-6_wp
+
 contains
 
-  !> Warns of a transverse shear stiffness that does not suit the plies: the factor 5/6 far from equilibrium.
+  !> Warns of a transverse shear stiffness that does not suit the plies: the factor 5/6 far from equilibrium, and layers
+  !> of such plies that end within the plate.
   subroutine check_correction(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
     type(ply_t), allocatable :: plies(:)
+    integer :: i
 
     if (problems%errors() > 0) return
     plies = stacked_plies(deck%laminate, deck%materials)
@@ -32,5 +40,12 @@ contains
                   'moduli of the plies differ by a factor of '//short_text(shear_contrast(plies))// &
                   '; write ''energy'', or leave the key out.')
     end if
+    do i = 1, size(deck%delaminations)
+      if (all(deck%delaminations(i)%zone >= (1 - rounding)*deck%plate%length)) cycle
+      call remark(deck%settings, problems, delamination_group, key_zone, 'at the border of the zone all layers have '// &
+                  'one rotation, though plies shear unlike each other: the plate is up to a few per cent too '// &
+                  'stiff; take a zone as large as the plate.', i)
+      exit
+    end do
   end subroutine check_correction
 end module deck_shear_remarks

@@ -197,7 +197,7 @@ contains
     end do
     whole = values(1)%text
     fraction = values(2)%text
-    hint = ' (a comma parts values; for a decimal write '//whole//'.'//fraction//')'
+    hint = ' (a comma separates values; for a decimal write '//whole//'.'//fraction//')'
   end function decimal_commas
 
   !> Allowed values of a key, for the end of a message.

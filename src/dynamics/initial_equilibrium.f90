@@ -137,7 +137,14 @@ contains
 
   !> Extrapolates a correction by the secant stiffness of softening plies, which alone converges linearly, by Aitken's
   !> method in the energy norm (B. M. Irons, R. C. Tuck, Int. J. Numer. Meth. Eng. 1 (1969) 275-277). Where corrections
-  !> decrease quadratically, the factor tends to 1. Collective.
+  !> decrease quadratically, the factor tends to 1.
+  !>
+  !> With the secant and tangent stiffness Ks and Kt, A = inv(Ks) Kt and a correction d the factor is
+  !> (d, A d)/(A d, A d) in the product (a, b) = a Ks b. It is the step length of Barzilai and Borwein (IMA J. Numer.
+  !> Anal. 8 (1988) 141-148) and lies between the reciprocals of the extreme eigenvalues of A. A factor of 9 thus means
+  !> that the tangent stiffness is a ninth of the secant one. It needs no bound: it converges wherever A is positive
+  !> definite (M. Raydan, IMA J. Numer. Anal. 13 (1993) 321-326). Elsewhere a negative factor is replaced by 1, and only
+  !> the residual ends the iteration. Collective.
   subroutine extrapolate(model, residual, aitken, correction)
     type(model_t), intent(in) :: model
     !> Residual, (5, points)

@@ -2,7 +2,7 @@
 !> the sides of cells, as a weighted mean of three nodes each. The reactions at all of these points are found together,
 !> from a constant matrix.
 module circle_frames
-  use dense_systems, only: invert_dense
+  use dense_systems, only: pseudo_inverse
   use kinds, only: wp
   use models, only: model_t
   use rigs, only: crossing_t, circle_crossings
@@ -69,7 +69,7 @@ contains
     type(model_t), intent(in) :: model
     !> Inverse inertia of w, (points)
     real(wp), intent(in) :: inverse(:)
-    real(wp) :: matrix(size(self%rig), size(self%rig))
+    real(wp) :: matrix(size(self%rig), size(self%rig)), scale(size(self%rig))
     integer :: i, j, k, l
 
     if (size(self%rig) == 0) return
@@ -84,10 +84,20 @@ contains
           end do
         end do
       end do
-      ! A point with three constrained nodes needs no force.
-      if (.not. matrix(j, j) > 0) matrix(j, j) = 1
     end do
-    self%stiffness = invert_dense(matrix)
+    ! The diagonal is scaled to 1. A point with three constrained nodes has a row of zeros and needs no force.
+    scale = 0
+    do j = 1, size(scale)
+      if (matrix(j, j) > 0) scale(j) = 1/sqrt(matrix(j, j))
+    end do
+    do j = 1, size(scale)
+      matrix(:, j) = scale*matrix(:, j)*scale(j)
+      if (.not. scale(j) > 0) matrix(j, j) = 1
+    end do
+    self%stiffness = pseudo_inverse(matrix)
+    do j = 1, size(scale)
+      self%stiffness(:, j) = scale*self%stiffness(:, j)*scale(j)
+    end do
   end subroutine prepare
 
   !> Values at the nodes of all points, the same on every rank. Collective.

@@ -4,10 +4,10 @@ module stacking
   use laminate_parameters, only: laminate_t, shear_energy
   use material_parameters, only: material_t, first_alike
   use plies, only: ply_t, elasticity_t, elasticity_of, set_angle, in_plane_stiffness, shear_stiffness
-  use transverse_shear, only: shear_stiffness_from_energy
+  use transverse_shear, only: layer_stiffness_from_energy, shear_stiffness_from_energy
   implicit none
   private
-  public :: section_t, stacked_plies, section_of, section_stiffness, in_plane_section, section_mass
+  public :: section_t, stacked_plies, section_of, section_stiffness, layer_stiffness, in_plane_section, section_mass
 
   !> A section of the laminate, or of a layer of it, per unit of area; z from the mid-plane of the whole laminate.
   type :: section_t
@@ -84,6 +84,42 @@ contains
       stiffness(19:21) = stiffness(19:21)*5/6
     end if
   end function section_stiffness
+
+  !> Stiffness of a layer of some of a laminate's plies, whose elastic constants may have been reduced. Within the
+  !> laminate its faces carry shear: with shear_energy its stiffness is that of the laminate's equilibrium. A layer in
+  !> which those stresses cancel would have none; below sqrt(epsilon) of the stiffness with free faces, which leaves
+  !> solutions half of their digits, it has the latter.
+  pure function layer_stiffness(plies, elasticity, first, last, shear_correction) result(stiffness)
+    !> All plies of the laminate
+    type(ply_t), intent(in) :: plies(:)
+    !> Present elastic constants of the plies of the layer
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> First and last ply of the layer
+    integer, intent(in) :: first, last
+    !> shear_five_sixths or shear_energy
+    integer, intent(in) :: shear_correction
+    !> Packed as in section_t
+    real(wp) :: stiffness(21)
+    real(wp) :: z(0:size(plies)), in_plane(6, size(plies)), shear(3, size(plies)), within(3), excess(3)
+    integer :: i
+
+    stiffness = section_stiffness(plies(first:last), elasticity, shear_correction)
+    if (shear_correction /= shear_energy .or. last - first + 1 == size(plies)) return
+    z(0) = plies(1)%z_top
+    z(1:) = plies%z_bottom
+    do i = 1, size(plies)
+      if (i < first .or. i > last) then
+        in_plane(:, i) = in_plane_stiffness(plies(i), plies(i)%elasticity)
+        shear(:, i) = shear_stiffness(plies(i), plies(i)%elasticity)
+      else
+        in_plane(:, i) = in_plane_stiffness(plies(i), elasticity(i - first + 1))
+        shear(:, i) = shear_stiffness(plies(i), elasticity(i - first + 1))
+      end if
+    end do
+    within = layer_stiffness_from_energy(z, in_plane, shear, first, last)
+    excess = within - sqrt(epsilon(within))*stiffness(19:21)
+    if (min(excess(1), excess(3), excess(1)*excess(3) - excess(2)**2) > 0) stiffness(19:21) = within
+  end function layer_stiffness
 
   !> Stiffness of a range of plies against membrane strains and curvatures.
   pure function in_plane_section(plies, elasticity) result(stiffness)

@@ -12,7 +12,7 @@ module transverse_shear
   use packed_matrices, only: unpacked, inverse, inverse_of_two
   implicit none
   private
-  public :: shear_stiffness_from_energy, find_unit_stresses
+  public :: shear_stiffness_from_energy, layer_stiffness_from_energy, find_unit_stresses
 
   !> Three Gauss points of the unit interval, exact for the fourth-degree energy density of a ply
   real(wp), parameter :: abscissae(3) = 0.5_wp + [-1, 0, 1]*sqrt(0.15_wp)
@@ -31,7 +31,49 @@ contains
     real(wp), intent(in) :: shear(:, :)
     !> xz-xz, xz-yz, yz-yz, such that Q = S gamma
     real(wp) :: stiffness(3)
-    real(wp) :: middle, top, bottom, height, q(3, 3), flexibility(3), compliance(3)
+    real(wp) :: compliance(3), carried(2, 2)
+
+    call integrate_layer(z, in_plane, shear, 1, size(in_plane, 2), compliance, carried)
+    stiffness = inverse_of_two(compliance)
+  end function shear_stiffness_from_energy
+
+  !> Energy-consistent transverse shear stiffness of a layer within the stack, whose faces are not free of shear: of the
+  !> shear forces Q of the stack it carries T Q and has the complementary energy Q E Q / 2, so that its stiffness is
+  !> T E**-1 T'. By Schwarz's inequality it does not exceed the sum of G dz over the layer.
+  pure function layer_stiffness_from_energy(z, in_plane, shear, first, last) result(stiffness)
+    !> z of the plies' faces, top of the first to bottom of the last, from any origin
+    real(wp), intent(in) :: z(0:)
+    !> Packed in-plane stiffness of each ply, shape (6, plies)
+    real(wp), intent(in) :: in_plane(:, :)
+    !> Packed transverse shear stiffness of each ply, shape (3, plies)
+    real(wp), intent(in) :: shear(:, :)
+    !> Plies of the layer
+    integer, intent(in) :: first, last
+    !> xz-xz, xz-yz, yz-yz
+    real(wp) :: stiffness(3)
+    real(wp) :: energies(3), carried(2, 2), product(2, 2), inverted(3)
+
+    call integrate_layer(z, in_plane, shear, first, last, energies, carried)
+    inverted = inverse_of_two(energies)
+    product = matmul(matmul(carried, reshape([inverted(1:2), inverted(2:3)], [2, 2])), transpose(carried))
+    stiffness = [product(1, 1), product(1, 2), product(2, 2)]
+  end function layer_stiffness_from_energy
+
+  !> Integrates equilibrium stresses of the stack, and their energy, over the thickness of a layer.
+  pure subroutine integrate_layer(z, in_plane, shear, first, last, energies, carried)
+    !> z of the plies' faces, top of the first to bottom of the last, from any origin
+    real(wp), intent(in) :: z(0:)
+    !> Packed in-plane stiffness of each ply, shape (6, plies)
+    real(wp), intent(in) :: in_plane(:, :)
+    !> Packed transverse shear stiffness of each ply, shape (3, plies)
+    real(wp), intent(in) :: shear(:, :)
+    !> Plies of the layer
+    integer, intent(in) :: first, last
+    !> Twice the complementary energy, packed quadratic form in the shear forces of the stack
+    real(wp), intent(out) :: energies(3)
+    !> Shear forces of the layer (rows) for Qx = 1 and Qy = 1 (columns), without their sign
+    real(wp), intent(out) :: carried(2, 2)
+    real(wp) :: middle, top, bottom, height, q(3, 3), flexibility(3)
     real(wp) :: constant(3, 2), slope(3, 2), flow(2, 2), flow_here(2, 2)
     integer :: ply, point
 
@@ -39,21 +81,23 @@ contains
     middle = (z(0) + z(ubound(z, 1)))/2
     call strains_of_unit_shear(z - middle, in_plane, constant, slope)
     flow = 0
-    compliance = 0
-    do ply = 1, size(in_plane, 2)
+    energies = 0
+    carried = 0
+    do ply = 1, last
       top = z(ply - 1) - middle
       bottom = z(ply) - middle
       q = unpacked(in_plane(:, ply))
       flexibility = inverse_of_two(shear(:, ply))
       do point = 1, 3
+        if (ply < first) exit
         height = top + (bottom - top)*abscissae(point)
         flow_here = flow + flow_between(top, height, q, constant, slope)
-        compliance = compliance + weights(point)*(bottom - top)*energy(flow_here, flexibility)
+        energies = energies + weights(point)*(bottom - top)*energy(flow_here, flexibility)
+        carried = carried + weights(point)*(bottom - top)*flow_here
       end do
       flow = flow + flow_between(top, bottom, q, constant, slope)
     end do
-    stiffness = inverse_of_two(compliance)
-  end function shear_stiffness_from_energy
+  end subroutine integrate_layer
 
   !> Shear stresses between the plies under unit shear forces, and what of these the plies above carry.
   pure subroutine find_unit_stresses(z, in_plane, stress, carried)

@@ -137,19 +137,28 @@ contains
     end if
   end function pressure_factor
 
-  !> Loads relative to those at the end; 1 for an impact.
+  !> Loads relative to those at the end, the largest of pressure and lines; 1 in time with an impactor, residual
+  !> stresses or an initial state.
   elemental real(wp) function load_level(self, time)
     !> The load case
     class(load_case_t), intent(in) :: self
     !> Time, or progress of load steps from 0 to 1
     real(wp), intent(in) :: time
+    real(wp) :: level
+    integer :: i
 
     load_level = 1
-    if (self%is_static()) then
-      load_level = time
-    else if (self%has_pressure .and. .not. self%has_impactor) then
-      load_level = self%pressure%amplitude(time)
+    if (self%is_static()) load_level = time
+    if (self%is_static() .or. self%has_impactor .or. self%has_thermal .or. self%inherits) return
+    level = -1
+    if (self%has_pressure) level = self%pressure%amplitude(time)
+    if (allocated(self%lines)) then
+      do i = 1, size(self%lines)
+        if (abs(self%lines(i)%value) > 0) &
+          level = max(level, self%lines(i)%at_factor(self%load_factor_at(time))/self%lines(i)%value)
+      end do
     end if
+    if (level >= 0) load_level = level
   end function load_level
 
   !> Ramps of lines over their full values at a time of a run by central differences.

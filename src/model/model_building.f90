@@ -8,7 +8,7 @@ module model_building
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
   use ply_shear, only: shear_shares_of
-  use stacking, only: section_t, stacked_plies, section_of
+  use stacking, only: section_t, stacked_plies, section_of, layer_stiffness, section_mass
   use mesh_parameters, only: edge_free, initial_deflection, symmetry_quarter
   use cell_grids, only: cell_edges
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
@@ -163,8 +163,11 @@ contains
         first = mesh%element_plies(1, partition%elements(element))
         last = mesh%element_plies(2, partition%elements(element))
         section = self%section
-        if (last - first + 1 < size(self%plies)) &
-          section = section_of(self%plies(first:last), self%setup%laminate%shear_correction)
+        if (last - first + 1 < size(self%plies)) then
+          section%stiffness = layer_stiffness(self%plies, self%plies(first:last)%elasticity, first, last, &
+                                              self%setup%laminate%shear_correction)
+          section%mass = section_mass(self%plies(first:last))
+        end if
         call self%elements%set_section(element, section%stiffness, section%mass)
         if (self%setup%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
           free_resultants(self%plies(first:last), self%plies(first:last)%elasticity)

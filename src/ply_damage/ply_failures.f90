@@ -8,7 +8,7 @@ module ply_failures
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t, ply_t
   use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing, energy_modes
-  use stacking, only: in_plane_section, section_stiffness
+  use stacking, only: in_plane_section, layer_stiffness
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
   use rank_totals, only: totals_of
@@ -280,8 +280,8 @@ contains
 
     associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
       self%stiffness(lane_of(element), :, batch_of(element)) = &
-        section_stiffness(model%plies(range(1):range(2)), self%modes%elasticities(model, element), &
-                          model%setup%laminate%shear_correction)
+        layer_stiffness(model%plies, self%modes%elasticities(model, element), range(1), range(2), &
+                        model%setup%laminate%shear_correction)
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
         free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
     end associate

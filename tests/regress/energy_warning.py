@@ -14,6 +14,14 @@ BEGINNING = """&case name='pressed' /
 &laminate materials='ply'  angles=0, 90, 0  thicknesses=0.6666667e-3 /
 &delamination below_ply=2  G_c=400  zone=33e-3, 20e-3  starter=13e-3 /
 """
+TURNED = """&case name='turned' /
+&plate length=0.1, 0.02 edges='clamped', 'free', 'free', 'free' in_plane='fixed' /
+&mesh elements=20, 4 /
+&material name='al' density=2700 E=70e9 nu=0.3 /
+&laminate materials='al' angles=0 thicknesses=2e-3 /
+&line at=0.05 component='theta_x' rotation=0.02 rise=2e-4 /
+&time end=1e-3 step=1e-5 integrator='generalized_alpha' rho_inf=0.8 /
+"""
 
 
 def warnings_of(implam, folder, history, time):
@@ -36,6 +44,12 @@ def main(implam, folder):
     require(warnings_of(implam, folder / "step", "step", "step=10e-6") == 0, "A load at once warns in its first step.")
     # Half a period a step and no damping.
     require(warnings_of(implam, folder / "long", "step", "step=50e-6 rho_inf=1") == 1, "Long steps do not warn once.")
+    # A rotation that sets in smoothly: the first steps lose more than 1 % of an energy far below that at the end.
+    turned = folder / "turned"
+    turned.mkdir(parents=True, exist_ok=True)
+    (turned / "turned.nml").write_text(TURNED, encoding="utf-8")
+    printed = run([implam, turned / "turned.nml", "--output", turned])
+    require("of the energy" not in printed, "A line that moves smoothly warns of the energy of its first steps.")
 
 
 if __name__ == "__main__":

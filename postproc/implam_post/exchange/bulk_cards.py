@@ -138,10 +138,10 @@ def read_cards(lines: Sequence[str], first: int, file: str) -> list[BulkCard]:
     for number, bare_line in enumerate(bare, first):
         if not bare_line.strip():
             continue
+        if re.match(r"\s*ENDDATA\b", bare_line, re.I):
+            break
         line = _name_first(bare_line, number, file)
         name = re.split(r"[,*\s]", line.expandtabs()[:8 if "," not in line else None], maxsplit=1)[0].upper()
-        if name == "ENDDATA":
-            break
         if line[0] in "+*" or not name:
             found.carry_on(number, line)
         else:

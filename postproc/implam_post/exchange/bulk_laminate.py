@@ -151,6 +151,11 @@ def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
                     isotropic=True, expansion=(expansion, expansion))
 
 
+def _absent(bulk: BulkData, card: BulkCard, number: int) -> str:
+    """Return how a field without a value is written."""
+    return "blank" if bulk.real(card, number) is None else "0"
+
+
 def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> Material:
     """Return the material of a MAT8."""
     from pyNastran.bdf.cards.materials import MAT8
@@ -160,10 +165,10 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
         raise bulk.error(card, "G2Z is needed, on the card or by --g2z; without it Nastran takes the ply as rigid in "
                                "transverse shear.")
     if not g23:
-        remarks.add(card, f"G2Z is blank: {shear_23:g} is taken for it, as --g2z says")
+        remarks.add(card, f"G2Z is {_absent(bulk, card, 7)}: {shear_23:g} is taken for it, as --g2z says")
         g23 = shear_23
     if not g13:
-        remarks.add(card, "G1Z is blank: G12 is taken for it")
+        remarks.add(card, f"G1Z is {_absent(bulk, card, 6)}: G12 is taken for it")
         g13 = found.g12
     if min(found.e11, found.e22, found.g12, g13, g23) <= 0:
         raise bulk.error(card, "E1, E2, G12, G1Z and G2Z need to be greater than zero.")

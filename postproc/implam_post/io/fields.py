@@ -1,5 +1,6 @@
 """Fields over the plate at chosen times, from NAME.h5: what has delaminated and what failed, seen in plan."""
 
+import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -229,9 +230,21 @@ def opened(path: Path) -> Iterator[h5py.File]:
         raise FileError(f"{path} isn't a file of fields written by implam, or is damaged ({_reason(error)}).") from None
 
 
+class _MemberError(ValueError):
+    """What is wrong with a member of the file, in words of this package."""
+
+
 def _reason(error: Exception) -> str:
-    """Return the first line of what is wrong, without the library's own numbers."""
-    return str(error).splitlines()[0].strip("\"'") if str(error) else type(error).__name__
+    """Return what is wrong; libraries describe it by their own internals, which say nothing to a user."""
+    if isinstance(error, _MemberError):
+        return str(error)
+    if lacking := re.search(r"object '([^']*)' doesn't exist", str(error)):
+        return f"it has no {lacking[1]}"
+    if isinstance(error, OSError) and error.errno:
+        return os.strerror(error.errno).lower()
+    if isinstance(error, OSError) and "truncated" in str(error):
+        return "it ends too early"
+    return "part of it isn't what implam writes"
 
 
 def _in_order(group: h5py.Group) -> list[h5py.Group]:
@@ -241,15 +254,16 @@ def _in_order(group: h5py.Group) -> list[h5py.Group]:
 
 def _finite(values: np.ndarray, name: str, count: int | None = None) -> np.ndarray:
     """Return numbers, of which there must be so many, all finite."""
-    if not np.all(np.isfinite(values)) or (count is not None and len(values) != count):
-        raise ValueError(f"{name} holds no numbers, or not one an element")
+    if values.dtype.kind not in "biuf" or not np.all(np.isfinite(values)) or (
+            count is not None and len(values) != count):
+        raise _MemberError(f"{name} holds no numbers, or not one an element")
     return values
 
 
 def _flags(values: np.ndarray, name: str, count: int) -> np.ndarray:
     """Return failures by element, modes added up."""
     if not np.all((_finite(values, name, count) >= 0) & (values <= sum(MODES.values()))):
-        raise ValueError(f"{name} holds no failures")
+        raise _MemberError(f"{name} holds no failures")
     return values.astype(int)
 
 
@@ -257,12 +271,12 @@ def _mesh(group: h5py.Group) -> Mesh:
     """Read a mesh; the first four points of an element are its corners."""
     points, connectivity = group["coordinates"][()], group["connectivity"][()]
     if connectivity.min(initial=0) < 0:
-        raise ValueError("connectivity has numbers below zero")
+        raise _MemberError("connectivity has numbers below zero")
     corners = _finite(points[:, :2][connectivity[:, :4]], "coordinates")
     first, last = (_finite(group[f"cells/{name}"][()].ravel(), name, len(corners)) for name in ("first_ply",
                                                                                                  "last_ply"))
     if first.min() < 1 or np.any(last < first):
-        raise ValueError("first_ply and last_ply are no plies")
+        raise _MemberError("first_ply and last_ply are no plies")
     starter = group["cells/starter_above"][()].ravel() if "starter_above" in group["cells"] else np.zeros(len(first))
     return Mesh(corners, first, last, _finite(starter, "starter_above", len(first)) > 0)
 
@@ -270,6 +284,8 @@ def _mesh(group: h5py.Group) -> Mesh:
 def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
     """Read a time; without interfaces nothing is delaminated, without ply damage no ply has an entry."""
     number = int(group["mesh"][()])
+    if number not in meshes:
+        raise _MemberError(f"it has no mesh {number}")
     mesh, cells = meshes[number], group.get("cells", {})
     nothing = np.zeros(len(mesh.first_ply))
     delaminated, release_ratio = (_finite(cells[name][()].ravel(), name, len(nothing)) if name in cells else nothing

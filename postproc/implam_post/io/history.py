@@ -93,8 +93,8 @@ def read_columns(path: Path | str) -> History:
     try:
         cells = pd.read_csv(io.StringIO("\n".join(line for _, line in lines)), skipinitialspace=True, dtype=str,
                             keep_default_na=False)
-    except ValueError as error:
-        raise FileError(f"the history {path} is no table of numbers ({str(error).strip()}).") from None
+    except ValueError:
+        raise FileError(f"the history {path} is no table of numbers.") from None
     try:
         table = cells.astype(float)
     except ValueError:

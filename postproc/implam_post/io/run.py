@@ -44,6 +44,19 @@ class Field:
     first_ply: np.ndarray | None = None
 
 
+class Summary(dict):
+    """Members of NAME_summary.json; one that is not there is a fault of the file."""
+
+    def __init__(self, members: Mapping[str, Any], path: Path) -> None:
+        """Keep the members."""
+        super().__init__(members)
+        self.path = path
+
+    def __missing__(self, name: str) -> object:
+        """Report what is missing."""
+        raise FileError(f"{self.path} isn't a summary written by implam, or it is damaged (it lacks '{name}').")
+
+
 class Run:
     """The results of a run; each part is read when it is first needed.
 
@@ -183,14 +196,16 @@ def open_run(path: Path | str) -> Run:
     raise FileError(f"{path} is none of NAME{SUMMARY}, NAME{HISTORY}, NAME{FIELDS}, and no folder with one.")
 
 
-def read_summary(path: Path) -> dict[str, Any]:
+def read_summary(path: Path) -> Summary:
     """Read the summary of a run."""
     try:
         summary = json.loads(read_text(path, "the summary"))
-    except ValueError as error:
-        raise FileError(f"{path} isn't a summary written by implam ({error}).") from None
+    except json.JSONDecodeError as error:
+        raise FileError(f"{path} isn't a summary written by implam (line {error.lineno} is no JSON).") from None
+    except (ValueError, RecursionError):
+        raise FileError(f"{path} isn't a summary written by implam.") from None
     if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():
         raise FileError(f"{path} isn't a summary written by implam.")
     if wrong := misshapen_member(summary):
         raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({wrong}).")
-    return summary
+    return Summary(summary, path)

@@ -31,10 +31,14 @@ _FIGURES = (
     "largest_deflection_at", "energy_impact", "energy_absorbed", "work_external", "energy_impactor", "energy_kinetic",
     "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage", "energy_contact",
     "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic", "energy_error", "delaminated_area",
-    "projected_area", "threshold_force_at_starter", "fibre_failures", "matrix_cracks", "matrix_crushings")
+    "projected_area", "threshold_force_at_starter", "fibre_failures", "matrix_cracks", "matrix_crushings",
+    "effective_modulus", "buckling_strain")
 _ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
              "energy_contact", "energy_friction")
-_POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | dict.fromkeys(_ENERGIES, float) | {
+_COLLAPSE = {"interfaces": [{"ply_above": int, "went_across": bool}], "fibres": [{"ply": int, "went_across": bool}]}
+_COMPRESSION = dict.fromkeys(("residual_strength", "residual_strength_at", "shortening_at_strength", "percent_bending"),
+                             float) | {"has_failed": bool, "failure_code": OrNull(str), "collapse": _COLLAPSE}
+_POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | dict.fromkeys(_ENERGIES, float) | _COMPRESSION | {
     "in_contact": bool, "interfaces": [_INTERFACE], "force_filter": {"frequency": float, "peak_force": float}}
 _POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float)
 

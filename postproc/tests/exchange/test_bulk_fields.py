@@ -39,7 +39,8 @@ class BlanksTest(ImportTest):
     def test_blank_before_the_end(self) -> None:
         """ENDDATA may be indented, and continuations stay what they are."""
         text = Bulk().text()
-        self.assertEqual(self.text_of_deck(text + "  ENDDATA\nGRID,999,,0.,0.,0.\n"), self.text_of_deck(text))
+        for end in ("  ENDDATA\n", "\tENDDATA\n", "          enddata\n"):
+            self.assertEqual(self.text_of_deck(text + end + "GRID,1,,7.,7.,7.\nrubbish,,\n"), self.text_of_deck(text))
         self.assertEqual(self.text_of_deck(text.replace("\n+ ", "\n  ")), self.text_of_deck(text))
 
     def test_names_beyond_their_field(self) -> None:

@@ -27,6 +27,10 @@ SUMMARY = {
     "warnings": [{"at": None, "text": "a warning"}], "costs": {"unknowns": 10, "wall_seconds": 1.5},
     "provenance": {"version": "0", "commit": "a", "compiler": "b", "petsc_version": "c", "ranks": "1", "started": "d",
                    "deck": "&case name='case' units='SI' /\n&plate length=0.1, 0.1 /"}}
+COMPRESSION = {"residual_strength": 2e8, "shortening_at_strength": 7e-4, "effective_modulus": None, "has_failed": True,
+               "failure_code": "LDM", "percent_bending": -4.0, "buckling_strain": 3.9e-3,
+               "collapse": {"interfaces": [], "fibres": [{"ply": 2, "went_across": True}]}}
+COMPRESSION_COLUMNS = ("far_field_stress", "nominal_strain", "shortening", "work_external")
 # What each kind of value is replaced by.
 JUNK = {str: ([], 3), bool: ("yes", 2), int: ("three", None, [1]), float: ("3", True, {}), list: (5, {}, None),
         dict: ([], "", 7)}
@@ -79,8 +83,13 @@ class SummaryShapeTest(unittest.TestCase):
 
     def test_each_member_left_out(self) -> None:
         """A page without what not every run has, or the sentence that names it."""
-        for name in SUMMARY:
-            self.write({key: value for key, value in SUMMARY.items() if key != name})
+        columns = ("time", "force", "deflection", "indentation", "impactor_velocity", "impactor_displacement",
+                   *(f"energy_{name}" for name in ENERGIES if name not in ("impact", "absorbed")), *COMPRESSION_COLUMNS)
+        rows = [",".join([str(1e-4 * place), *["1.0"] * (len(columns) - 1)]) for place in range(4)]
+        self.path.with_name("case_history.csv").write_text("\n".join([",".join(columns), *rows]), encoding="utf-8")
+        whole = SUMMARY | COMPRESSION
+        for name in whole:
+            self.write({key: value for key, value in whole.items() if key != name})
             with self.subTest(name):
                 try:
                     report.write_report(self.path, None)

@@ -1,0 +1,128 @@
+!> Sentences of the warnings of a run, with the limits they name.
+module warning_texts
+  use deck_contents, only: deck_t
+  use energy_watches, only: energy_tolerance
+  use kinds, only: wp
+  use run_records, only: warning_border, warning_core, warning_energy, warning_hole, warning_indentation, &
+                         warning_kinetic, warning_ledger, warning_loss, warning_scaled, warning_slopes, &
+                         warning_steps, warning_torn
+  use short_numbers, only: short_text
+  use stepping_parameters, only: is_explicit
+  use text, only: to_text
+  implicit none
+  private
+  public :: warning_text
+
+  !> Largest rotation with a cosine of about 1, as assumed by von Karman's strains: the error is 2 %.
+  real(wp), parameter, public :: steepest = 0.2_wp
+  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
+  !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
+  !> Shells, 1959, art. 100).
+  real(wp), parameter, public :: deepest = 3
+  !> Permitted ratio of kinetic energy to work in slow motion, 5 % (Getting Started with Abaqus, chapter on quasi-static
+  !> analysis: 5 to 10 %).
+  real(wp), parameter, public :: max_kinetic = 0.05_wp
+  !> Permitted fraction of kinetic energy of motions with scaled inertia. Forces and velocities are proportional to the
+  !> root of energies: 2 % of energy is 1 % of force, the error permitted for the default factor. On decks of input/ it
+  !> is .02 to 1 % (input/peanut.nml to input/small/breaking_bursts.nml).
+  real(wp), parameter, public :: max_scaled = 0.02_wp
+
+contains
+
+  !> Sentence of a warning.
+  pure function warning_text(kind, zone, at, deck) result(text)
+    !> One of the kinds of warnings
+    integer, intent(in) :: kind
+    !> Its zone; 0: none
+    integer, intent(in) :: zone
+    !> Its time, such as time 0.001
+    character(len=*), intent(in) :: at
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> One sentence
+    character(len=:), allocatable :: text
+
+    text = ''
+    select case (kind)
+    case (warning_border)
+      text = 'The delamination below ply '//to_text(deck%delaminations(zone)%below_ply)// &
+             ' has reached the border of its zone at '//at// &
+             ' and cannot grow further: make the zone larger.'
+    case (warning_core)
+      text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
+             ' grow with the damage beyond the core of the mesh since '//at// &
+             ', where its cells grow: make the core larger.'
+    case (warning_energy)
+      text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
+                         '(rho_inf) with delamination.', 'take a smaller step_factor.')
+    case (warning_loss)
+      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', loss_cure(deck))
+    case (warning_ledger)
+      text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
+             ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
+                                                                          is_explicit(deck%stepping)))
+    case (warning_kinetic)
+      text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
+             at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
+    case (warning_scaled)
+      text = 'Kinetic energy of motions with scaled inertia exceeds '//short_text(100*max_scaled)// &
+             ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
+    case (warning_indentation)
+      text = 'The indentation exceeds the thickness of the laminate since '//at// &
+             ': no contact law is valid there; take less energy or a larger radius.'
+    case (warning_slopes)
+      text = 'The slope of the plate exceeds '//to_text(steepest)//' since '//at// &
+             ': its strains assume small rotations; later results are not valid.'
+    case (warning_steps)
+      text = 'The error of steps exceeds the tolerance of &adapt since '//at// &
+             ' at the smallest step, too long for the waves of failures: an eighth of that tolerance halves the &
+               &steps and shows the effect.'
+    case (warning_torn)
+      text = 'The clamped plate deflects by more than '//to_text(deepest)// &
+             ' thicknesses with failed fibres since '//at// &
+             ': membrane forces carry it, and plies do not tear in the model; later results are not valid.'
+    case (warning_hole)
+      text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
+             ': the impactor perforates the plate, and the model has no hole; later results are not valid.'
+    end select
+
+  contains
+
+    !> Sentence on an energy above its limit, with a remedy.
+    pure function energy_text(what, cure, explicit_cure) result(words)
+      !> created or taken
+      character(len=*), intent(in) :: what
+      !> Remedies for implicit steps and for central differences
+      character(len=*), intent(in) :: cure, explicit_cure
+      !> The sentence
+      character(len=:), allocatable :: words
+
+      if (deck%is_static()) then
+        words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
+          at// &
+                ' (energy_algorithmic): take more steps, unless failures or snap-through release it as kinetic energy.'
+      else if (is_explicit(deck%stepping)) then
+        words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
+          ' % of the energy by '//at &
+                //' (energy_algorithmic): '//explicit_cure
+      else
+        words = 'The time integrators have '//what//' more than '//short_text(100*energy_tolerance)// &
+          ' % of the energy by '//at &
+                //': '//cure
+      end if
+    end function energy_text
+  end function warning_text
+
+  !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
+  !> released is damped.
+  pure function loss_cure(deck) result(cure)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> End of a sentence
+    character(len=:), allocatable :: cure
+
+    cure = 'take a smaller step_factor.'
+    if (any(deck%delaminations%follows)) &
+      cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
+  end function loss_cure
+end module warning_texts
