@@ -4,7 +4,7 @@ module run_warnings
   use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
-  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted, energy_tolerance
+  use energy_checks, only: energy_check_t, energy_created, energy_taken, energy_unaccounted, energy_tolerance
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
@@ -48,7 +48,7 @@ module run_warnings
 contains
 
   !> Warns once of each condition that affects the validity; a strict run ends there. Collective.
-  subroutine give_warnings(deck, model, stepper, record, watch, log, error)
+  subroutine give_warnings(deck, model, stepper, record, energy_check, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -57,7 +57,7 @@ contains
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
-    type(energy_watch_t), intent(inout) :: watch
+    type(energy_check_t), intent(inout) :: energy_check
     !> The log
     type(log_t), intent(inout) :: log
     !> Set if the run is strict and exceeds a limit of the model
@@ -65,7 +65,7 @@ contains
     type(line_t), allocatable :: warnings(:)
     integer :: i
 
-    call find_warnings(deck, model, stepper%now, stepper%errs, record, watch, warnings)
+    call find_warnings(deck, model, stepper%now, stepper%errs, record, energy_check, warnings)
     do i = 1, size(warnings)
       if (deck%strict) then
         call fail(error, exit_convergence, warnings(i)%text)
@@ -76,7 +76,7 @@ contains
   end subroutine give_warnings
 
   !> Finds and stores new warnings of an accepted step. Collective.
-  subroutine find_warnings(deck, model, now, step_errs, record, watch, warnings)
+  subroutine find_warnings(deck, model, now, step_errs, record, energy_check, warnings)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -87,12 +87,12 @@ contains
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
-    type(energy_watch_t), intent(inout) :: watch
+    type(energy_check_t), intent(inout) :: energy_check
     !> One sentence each; empty: none
     type(line_t), allocatable, intent(out) :: warnings(:)
     real(wp) :: thickness
     integer :: zone
-    logical :: alarms(3)
+    logical :: exceeded(3)
 
     allocate (warnings(0))
     thickness = deck%expected%scales%thickness
@@ -106,23 +106,24 @@ contains
       if (is_steep(model, now)) call add_warning(warning_slopes, 0)
     end if
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
-      if (is_torn(deck, model, now)) call add_warning(warning_torn, 0)
+      if (has_fibre_failure(deck, model, now)) call add_warning(warning_torn, 0)
     end if
     ! After the impactor has left, the check does not apply.
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
-      if (has_hole(model, now)) call add_warning(warning_hole, 0)
+      if (is_perforated(model, now)) call add_warning(warning_hole, 0)
     end if
-    alarms = watch%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), deck%is_static())
-    call record%note_scaled(now%ledger%scaled, watch%largest)
+    exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
+                                  deck%is_static())
+    call record%note_scaled(now%ledger%scaled, energy_check%largest)
     if (deck%is_impact() .or. now%time > slow_start*deck%stepping%time%end) then
-      if (record%scaled_energy > max_scaled*watch%largest) call add_warning(warning_scaled, 0)
+      if (record%scaled_energy > max_scaled*energy_check%largest) call add_warning(warning_scaled, 0)
     end if
     if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
       if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add_warning(warning_kinetic, 0)
     end if
-    if (alarms(energy_created)) call add_warning(warning_energy, 0)
-    if (alarms(energy_taken)) call add_warning(warning_loss, 0)
-    if (alarms(energy_unaccounted)) call add_warning(warning_ledger, 0)
+    if (exceeded(energy_created)) call add_warning(warning_energy, 0)
+    if (exceeded(energy_taken)) call add_warning(warning_loss, 0)
+    if (exceeded(energy_unaccounted)) call add_warning(warning_ledger, 0)
 
   contains
 
@@ -172,22 +173,22 @@ contains
 
   !> True: the fibres of every ply have failed over an area as large as the contact, so that the contact force has no
   !> support. Collective.
-  logical function has_hole(model, now)
+  logical function is_perforated(model, now)
     type(model_t), intent(in) :: model
     !> The step reached
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
     real(wp), allocatable :: areas(:, :)
 
-    has_hole = .false.
+    is_perforated = .false.
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
-    has_hole = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
-  end function has_hole
+    is_perforated = all(areas(fibre_failure, :) >= model%pressed_area()*(1 - rounded_off))
+  end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.
-  logical function is_torn(deck, model, now)
+  logical function has_fibre_failure(deck, model, now)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -195,11 +196,11 @@ contains
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
 
-    is_torn = .false.
+    has_fibre_failure = .false.
     if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
     counts = now%plies%counts(model)
-    is_torn = counts(fibre_failure) > 0
-  end function is_torn
+    has_fibre_failure = counts(fibre_failure) > 0
+  end function has_fibre_failure
 
   !> Sentence of a warning.
   pure function warning_text(kind, zone, at, deck) result(text)
@@ -228,7 +229,7 @@ contains
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')
     case (warning_loss)
-      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', loss_cure(deck))
+      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
     case (warning_ledger)
       text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
              ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
@@ -261,11 +262,11 @@ contains
   contains
 
     !> Sentence on an energy above its limit, with a remedy.
-    pure function energy_text(what, cure, explicit_cure) result(words)
+    pure function energy_text(what, remedy, explicit_remedy) result(words)
       !> created or taken
       character(len=*), intent(in) :: what
       !> Remedies for implicit steps and for central differences
-      character(len=*), intent(in) :: cure, explicit_cure
+      character(len=*), intent(in) :: remedy, explicit_remedy
       !> The sentence
       character(len=:), allocatable :: words
 
@@ -276,27 +277,27 @@ contains
       else if (is_explicit(deck%stepping)) then
         words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
           ' % of the energy by '//at &
-                //' (energy_algorithmic): '//explicit_cure
+                //' (energy_algorithmic): '//explicit_remedy
       else
         words = 'The time integrators have '//what//' more than '//short_text(100*energy_tolerance)// &
           ' % of the energy by '//at &
-                //': '//cure
+                //': '//remedy
       end if
     end function energy_text
   end function warning_text
 
   !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
   !> released is damped.
-  pure function loss_cure(deck) result(cure)
+  pure function dissipation_remedy(deck) result(remedy)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> End of a sentence
-    character(len=:), allocatable :: cure
+    character(len=:), allocatable :: remedy
 
-    cure = 'take a smaller step_factor.'
+    remedy = 'take a smaller step_factor.'
     if (any(deck%delaminations%follows)) &
-      cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
-  end function loss_cure
+      remedy = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
+  end function dissipation_remedy
 
   !> All warnings of a run, with those before a restart.
   function warnings_given(record, deck) result(lines)

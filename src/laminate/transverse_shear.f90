@@ -55,7 +55,7 @@ contains
     stiffness = inverse_of_two(compliance)
   end function shear_stiffness_from_energy
 
-  !> Shear stresses between the plies under unit shear forces, and what of these the plies above carry.
+  !> Shear stresses between the plies under unit shear forces, and the share of the forces that the plies above carry.
   pure subroutine find_unit_stresses(z, in_plane, stress, carried)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)

@@ -21,7 +21,7 @@ module placed_lines
   !> Total stiffness of a line's springs over that of the section. The plate is mostly more compliant than its section,
   !> so that the relative error of the displacement is 1e-5 at most; round-off of the force decreases with the
   !> stiffness.
-  real(wp), parameter :: hardness = 1.0e5_wp
+  real(wp), parameter :: relative_stiffness = 1.0e5_wp
 
   !> A line on this rank's points.
   type :: placed_line_t
@@ -89,7 +89,7 @@ contains
     along = merge(1, 2, load%direction == along_x)
     across = 3 - along
     self%load = load
-    self%stiffness = hardness*section_scale(section, load%component)
+    self%stiffness = relative_stiffness*section_scale(section, load%component)
     crossing = node_line(edges_of(mesh, across), load%at)
     mirrored = is_mirrored(symmetry)
     if (mirrored(along)) self%share = self%share/2
