@@ -52,7 +52,7 @@ contains
 
     if (allocated(stepper%explicit)) then
       associate (partition => model%distribution)
-        unknowns = count(.not. model%held(:, :partition%owned))
+        unknowns = count(.not. model%fixed(:, :partition%owned))
         most = size(partition%elements)
       end associate
       least = most

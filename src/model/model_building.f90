@@ -18,8 +18,8 @@ module model_building
   use cohesive_laws, only: create_cohesive_law
   use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
   use distributions, only: distribute
-  use supports, only: held_unknowns
-  use rig_models, only: new_rig_model, hold_by_rigs
+  use supports, only: fixed_unknowns
+  use rig_models, only: new_rig_model, fix_by_rigs
   use line_loads, only: along_y
   use placed_lines, only: place_line
   use model_loads, only: build_borders, build_loads, nodal_areas
@@ -64,9 +64,9 @@ contains
     self%membrane_idle = setup%kinematics == kinematics_linear .and. size(zones) == 0 .and. &
                          .not. (setup%has_ply_damage .or. setup%has_thermal) .and. uncoupled(self%section) .and. &
                          .not. any(lines_in_plane(setup))
-    self%held = held_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
-    if (allocated(setup%supports)) call hold_by_rigs(self%mesh, setup%plate, setup%supports, self%held)
-    self%images = find_images(self%mesh, setup%plate%kept, self%held)
+    self%fixed = fixed_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
+    if (allocated(setup%supports)) call fix_by_rigs(self%mesh, setup%plate, setup%supports, self%fixed)
+    self%images = find_images(self%mesh, setup%plate%kept, self%fixed)
     call distribute(self%mesh, communicator, self%distribution, error, self%images%first_cells(self%mesh))
     if (.not. allocated(error)) call build_elements(self, error)
     call communicator%agree(error)
@@ -79,7 +79,7 @@ contains
     call build_interfaces(self)
     call build_lines(self)
     if (allocated(setup%supports)) call build_rigs(self)
-    self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
+    self%has_point_stiffness = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
   end subroutine create_model
 
@@ -170,7 +170,7 @@ contains
 
     allocate (self%lines(0))
     if (.not. allocated(self%setup%lines)) return
-    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%held, self%plies, &
+    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%fixed, self%plies, &
                               self%section, self%setup%plate%symmetry), i=1, size(self%setup%lines))]
   end subroutine build_lines
 
