@@ -223,8 +223,8 @@ contains
              ' and cannot grow further: make the zone larger.'
     case (warning_core)
       text = 'The layers below ply '//to_text(deck%delaminations(zone)%below_ply)// &
-             ' grow with the damage beyond the core of the mesh since '//at// &
-             ', where its cells grow: make the core larger.'
+             ' extend beyond the core of the mesh since '//at// &
+             ', where cells are longer: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')

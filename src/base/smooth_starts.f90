@@ -1,4 +1,4 @@
-!> Courses that set in smoothly, so that a motion prescribed by them strikes nothing.
+!> Smooth ramps: a prescribed motion that follows them excites no vibrations.
 module smooth_starts
   use kinds, only: wp
   implicit none
