@@ -41,7 +41,7 @@ class Implam(CMakePackage):
     @on_package_attributes(run_tests=True)
     def run_starter(self):
         """The deck that the program writes runs."""
-        with working_dir("starter_run", create=True):
+        with working_dir(join_path(self.build_directory, "starter_run"), create=True):
             implam = Executable(self.prefix.bin.implam)
             implam("new", "impact.nml")
             implam("impact.nml")
