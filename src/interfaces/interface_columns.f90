@@ -22,7 +22,8 @@ module interface_columns
       &analysis fronts do not grow.', &
     'energy_released | real | energy | Work done against the decreasing forces of released ties so far; 0 if all &
       &interfaces have growth = ''one_per_step''.', &
-    'penetration | real | length | Largest penetration of separated surfaces, with a cohesive law also of intact ones.', &
+    'penetration | real | length | Largest penetration of separated surfaces, with a cohesive law also of &
+      &intact ones.', &
     'complementarity | real | - | Largest contact pressure at an open gap, or of a penetration, over the largest &
       &pressure so far.']
 
