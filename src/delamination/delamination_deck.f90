@@ -315,8 +315,8 @@ contains
 
     if (delamination%law /= law_cohesive) then
       if (.not. (settings%is_given(group, key_law, place) .or. needs_front(settings, place))) &
-        call remark(settings, problems, group, '', 'a front with a starter of the usual size holds the surfaces, '// &
-                    'as a cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
+        call remark(settings, problems, group, '', 'a front with a default starter joins the surfaces, as a '// &
+                    'cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
       return
     end if
     call check_law(settings, delamination, place, problems)
