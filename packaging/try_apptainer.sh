@@ -10,7 +10,7 @@ folder=$(realpath --canonicalize-missing "${1:-/var/tmp/implam-apptainer}")
 
 # section STAGE NAME: the lines of a section, of stage 1 or 2.
 section() {
-  awk -v stage="$1" -v name="%$2" '/^Bootstrap:/ { s++ } /^%/ { on = s == stage && $0 == name; next } on' \
+  awk -v stage="$1" -v name="%$2" '/^Bootstrap:/ { s++; on = 0 } /^%/ { on = s == stage && $0 == name; next } on' \
     "$source_dir/packaging/implam.def"
 }
 
