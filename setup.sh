@@ -69,13 +69,13 @@ install_packages() {
   run_apt install --no-install-recommends "${missing[@]}"
 }
 
-# The commands that check and plot results go into .venv, and with them, for the tests, a checker of style and readers
-# of field files and of Nastran's, and the builder of pages. pyNastran comes by itself, as its package asks for an older
+# The commands that check and plot results go into .venv, and with them, for the tests, checkers of style and types,
+# readers of field files and of Nastran's, and the builder of pages. pyNastran comes by itself, as its package asks for an older
 # numpy than it needs.
 install_python_tools() {
   local stamp=.venv/ready-to-$task tools=(./postproc) pynastran=() pages=() python=/usr/bin/python3
   if [[ $task == test ]]; then
-    tools=('./postproc[nastran,notebook]' 'ruff==0.17.*' meshio)
+    tools=('./postproc[nastran,notebook]' 'ruff==0.17.*' 'mypy==2.4.*' meshio)
     pages=(--only-binary :all: -r doc/requirements.txt)
     pynastran=(--no-deps 'pyNastran==1.4.*')
   fi

@@ -6,11 +6,7 @@
 #   WORD...   for ctest, as in ./setup.sh test WORD...
 set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-
-complain() {
-  echo "$1" >&2
-  exit 1
-}
+source "$source_dir/packaging/bare_debian.sh"
 
 release=${1:-}
 [[ $release == bookworm || $release == trixie ]] || complain "Usage: packaging/other_debian.sh bookworm|trixie [FOLDER [WORD...]]"
@@ -18,32 +14,6 @@ shift
 root=$(realpath --canonicalize-missing "${1:-/var/tmp/implam-$release}")
 (($# == 0)) || shift
 [[ $root/ != "$source_dir"/* ]] || complain "The folder $root lies within the repository."
-((EUID == 0)) || complain "A system in a folder can only be set up and entered by root."
-
-# Packages come from where this machine has its own, by the same proxy and with the same certificates.
-bootstrap() {
-  local mirror proxy=
-  if ! command -v debootstrap >/dev/null; then
-    apt-get -qq update
-    apt-get -qq install --no-install-recommends debootstrap
-  fi
-  mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Identifier: Packages' 'Origin: Debian' 'Label: Debian' | head -n 1)
-  eval "$(apt-config shell proxy Acquire::http::Proxy)"
-  [[ -z $proxy ]] || export http_proxy=$proxy
-  echo "== Setting up Debian's $release in $root"
-  debootstrap --variant=minbase --include=ca-certificates "$release" "$root" ${mirror:+"$mirror"} >"$root.log" ||
-    complain "debootstrap failed; its log is $root.log."
-  touch "$root/complete"
-}
-
-# What the system needs to reach the same packages as this machine.
-share_network() {
-  local file
-  apt-config dump | grep -E '^Acquire::(https?|Check-[A-Za-z-]*)(::| )' >"$root/etc/apt/apt.conf.d/90machine" || true
-  for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
-    [[ ! -e $file ]] || cp --dereference "$file" "$root$file"
-  done
-}
 
 # The last commit, in the clone of the time before if there is one, so that only what has changed is compiled.
 update_clone() {
@@ -55,17 +25,6 @@ update_clone() {
   git -C "$clone" checkout --quiet --force --detach "$commit"
 }
 
-mkdir --parents "$root"
-[[ -e $root/complete ]] || bootstrap
-share_network
+set_up "$release" "$root"
 update_clone
-# The mounts are seen by this command alone and end with it.
-exec unshare --mount bash -c '
-  set -e
-  root=$1
-  shift
-  mount --rbind /dev "$root/dev"
-  mount --rbind /sys "$root/sys"
-  mount -t proc proc "$root/proc"
-  exec chroot "$root" /usr/bin/env HOME=/root TMPDIR=/tmp PATH=/usr/sbin:/usr/bin:/sbin:/bin \
-    bash -c "cd && exec implam/setup.sh test \"\$@\"" setup.sh "$@"' enter "$root" "$@"
+inside "$root" bash -c 'cd && exec implam/setup.sh test "$@"' setup.sh "$@"

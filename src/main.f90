@@ -28,14 +28,14 @@ contains
     call exit_process(int(code, c_int))
   end subroutine quit
 
-  !> Ends the process without what libraries have left for the end; what was written so far is kept.
+  !> Ends the process without the exit handlers of libraries; files written so far are kept.
   subroutine leave_at_once(code)
     use, intrinsic :: iso_c_binding, only: c_int, c_null_ptr, c_ptr
     use, intrinsic :: iso_fortran_env, only: error_unit, output_unit
     !> The exit code
     integer, intent(in) :: code
     interface
-      !> C library: hands what was written to the operating system.
+      !> C library: hands buffered output to the operating system.
       integer(c_int) function flush_streams(stream) bind(c, name='fflush')
         import :: c_int, c_ptr
         !> Null: all streams

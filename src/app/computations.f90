@@ -149,8 +149,8 @@ contains
     call read_deck_text(refined_text(deck%text), command%target, finer, problems)
     call accept_deck(command, communicator, finer, problems, code)
     if (code /= exit_done) return
-    call go_on(deck, communicator, profile, error)
-    if (.not. allocated(error)) call go_on(finer, communicator, profile, error)
+    call continue_run(deck, communicator, profile, error)
+    if (.not. allocated(error)) call continue_run(finer, communicator, profile, error)
     if (allocated(error)) then
       if (error%code == exit_stopped) &
         error%message = error%message//', or do all that is left with the same command.'
@@ -160,7 +160,7 @@ contains
   end subroutine verify
 
   !> Continues a run of an earlier command.
-  subroutine go_on(deck, communicator, profile, error)
+  subroutine continue_run(deck, communicator, profile, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
@@ -187,7 +187,7 @@ contains
     case default
       call simulate(deck, communicator, profile, '', error)
     end select
-  end subroutine go_on
+  end subroutine continue_run
 
   !> Reads a deck on the root rank and gives its text to all.
   subroutine read_deck_everywhere(path, communicator, deck, problems)

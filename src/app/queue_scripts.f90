@@ -232,14 +232,14 @@ contains
     if (job%chain) then
       call append(script, 'if ((code == 75 && parts < '//to_text(max_parts)//')); then again; fi')
     else
-      call append(script, 'if ((code == 75)); then echo "Stopped in time, with a checkpoint. To go on: '//go_on(job)// &
-                  '"; fi')
+      call append(script, 'if ((code == 75)); then echo "Stopped in time, with a checkpoint. To continue: '// &
+                  continuation_command(job)//'"; fi')
     end if
     call append(script, 'exit "$code"')
   end subroutine append_body
 
   !> Command that submits a job that continues from the checkpoint.
-  pure function go_on(job) result(words)
+  pure function continuation_command(job) result(words)
     !> The job
     type(queue_job_t), intent(in) :: job
     !> A command
@@ -248,7 +248,7 @@ contains
     words = 'sbatch '//job%name//'.slurm restart'
     if (job%queue == 'pbs') words = 'qsub -v IMPLAM_PARTS=1 '//job%name//'.pbs'
     if (job%tasks > 0) words = 'the same script again'
-  end function go_on
+  end function continuation_command
 
   !> Seconds before the limit that are reserved for the current step and the checkpoint.
   pure integer function kept(job)

@@ -28,7 +28,7 @@ module result_rows
       &and when.']
   !> The low-pass filtered force.
   character(len=result_row_length), parameter :: filter_rows(*) = [character(len=result_row_length) :: &
-    'force_filtered | real | force | Contact force behind the low pass of &output force_filter.']
+    'force_filtered | real | force | Contact force after the low-pass filter force_filter of &output.']
   !> Columns of every history; the first seventeen are the public interface.
   character(len=*), parameter :: plate_rows(*) = [character(len=result_row_length) :: &
     motion_rows, area_rows, ledger_rows, step_rows, release_rows, iteration_rows, operator_rows, ply_rows, &

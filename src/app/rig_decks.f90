@@ -11,19 +11,19 @@ module rig_decks
     '! Drop-weight test after ASTM D7136 on a quasi-isotropic panel: 100 x 150 mm over a window of 75 x 125 mm,', &
     '! [45/0/-45/90]4s of 4 to 6 mm, a hemisphere of 16 mm and 5.5 kg, 6.7 J per mm of thickness. AITM 1-0010 has', &
     '! the same panel, window and nose. `implam explain GROUP` lists all keys of a group, with their defaults,', &
-    '! doc/manual/choosing.md how to choose values.', &
+    '! doc/manual/which_interfaces.md and which_cells.md how to choose values.', &
     '', &
     '&case         units=''SI'' /                   ! m, kg, s, N, Pa, J', &
     '&plate        length=150e-3, 100e-3  edges=''free''  in_plane=''free''', &
-    '              symmetry=''point'' /             ! half is modelled; a turn by 180 degrees makes the whole', &
+    '              symmetry=''point'' /             ! half is modelled; the other half is its image', &
     '&support      window=125e-3, 75e-3  unilateral=.true.  bearing=''edge'' /   ! frame, which it may lift off', &
     '&support      clamps=50e-3,44e-3, -50e-3,44e-3, 50e-3,-44e-3, -50e-3,-44e-3', &
     '              clamp_force=1100 /             ! each, the least that the standard allows', &
     '', &
     '&mesh         elements=20, 30                ! of the modelled half', &
-    '              core=72e-3, 54e-3  cell=3e-3   ! equal cells where it breaks, larger ones outside', &
+    '              core=72e-3, 54e-3  cell=3e-3   ! equal cells at the damage, larger ones outside', &
     '              patch=2e-3 /                   ! least side of the loaded square', &
-    '! 3 mm is for a first look. `implam check` reports which cells the interfaces and plies ask for;', &
+    '! 3 mm is for a first estimate. `implam check` reports which cells the interfaces and plies ask for;', &
     '! cell=1.5e-3 with elements=34, 50 takes some ten times as long.', &
     '', &
     '&material     name=''ply''  library=''im7_8552'' /   ! `implam explain materials` lists values and sources;', &

@@ -52,7 +52,7 @@ contains
 
     if (allocated(stepper%explicit)) then
       associate (partition => model%distribution)
-        unknowns = count(.not. model%held(:, :partition%owned))
+        unknowns = count(.not. model%fixed(:, :partition%owned))
         most = size(partition%elements)
       end associate
       least = most
@@ -83,7 +83,7 @@ contains
     associate (explicit => stepper%explicit, parameters => stepper%explicit%parameters)
       stable = 2/explicit%frequency
       call log%note('Stable step '//rounded_text(stable)//' by element '//to_text(explicit%element)// &
-                    ', less what the contact needs; steps of '//rounded_text(parameters%step_factor)//' of it at most.')
+                    ', shorter during contact; steps are at most '//rounded_text(parameters%step_factor)//' of it.')
       if (parameters%longest > parameters%step_factor*stable) &
         call log%note('The step of the deck, '//rounded_text(parameters%longest)//', is longer and is not taken.')
     end associate

@@ -4,7 +4,7 @@ module run_warnings
   use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
-  use energy_watches, only: energy_watch_t, energy_created, energy_taken, energy_unaccounted
+  use energy_checks, only: energy_check_t, energy_created, energy_taken, energy_unaccounted
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
@@ -35,7 +35,7 @@ module run_warnings
 contains
 
   !> Warns once of each condition that affects the validity; a strict run ends there. Collective.
-  subroutine give_warnings(deck, model, stepper, record, watch, log, error)
+  subroutine give_warnings(deck, model, stepper, record, energy_check, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -44,20 +44,20 @@ contains
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
-    type(energy_watch_t), intent(inout) :: watch
+    type(energy_check_t), intent(inout) :: energy_check
     !> The log
     type(log_t), intent(inout) :: log
     !> Set if the run is strict and exceeds a limit of the model
     type(error_t), allocatable, intent(out) :: error
     type(line_t), allocatable :: warnings(:)
 
-    call find_warnings(deck, model, stepper%now, stepper%errs, record, watch, warnings)
+    call find_warnings(deck, model, stepper%now, stepper%errs, record, energy_check, warnings)
     call give(deck, warnings, log, error)
   end subroutine give_warnings
 
   !> Warns of energies of the last state of a run. Those of a small load are compared with the energy of the full load,
   !> unless the run has ended at that load. Collective.
-  subroutine give_last_warnings(deck, model, now, record, watch, log, error)
+  subroutine give_last_warnings(deck, model, now, record, energy_check, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -66,7 +66,7 @@ contains
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
-    type(energy_watch_t), intent(inout) :: watch
+    type(energy_check_t), intent(inout) :: energy_check
     !> The log
     type(log_t), intent(inout) :: log
     !> Set, unless it is already, if the run is strict and exceeds the limit
@@ -75,7 +75,7 @@ contains
 
     if (deck%load_level(now%time) >= 1) return
     allocate (warnings(0))
-    call add_energy_warnings(deck, watch%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), &
+    call add_energy_warnings(deck, energy_check%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), &
                              now%time, record, warnings)
     call give(deck, warnings, log, error)
   end subroutine give_last_warnings
@@ -102,7 +102,7 @@ contains
   end subroutine give
 
   !> Finds and stores new warnings of an accepted step. Collective.
-  subroutine find_warnings(deck, model, now, step_errs, record, watch, warnings)
+  subroutine find_warnings(deck, model, now, step_errs, record, energy_check, warnings)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -113,12 +113,12 @@ contains
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
-    type(energy_watch_t), intent(inout) :: watch
+    type(energy_check_t), intent(inout) :: energy_check
     !> One sentence each; empty: none
     type(line_t), allocatable, intent(out) :: warnings(:)
     real(wp) :: thickness
     integer :: zone
-    logical :: alarms(3)
+    logical :: exceeded(3)
 
     allocate (warnings(0))
     thickness = deck%expected%scales%thickness
@@ -132,21 +132,21 @@ contains
       if (is_steep(model, now)) call add(warning_slopes, 0)
     end if
     if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
-      if (is_torn(deck, model, now)) call add(warning_torn, 0)
+      if (has_fibre_failure(deck, model, now)) call add(warning_torn, 0)
     end if
     ! After the impactor has left, the check does not apply.
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
-      if (has_hole(model, now)) call add(warning_hole, 0)
+      if (is_perforated(model, now)) call add(warning_hole, 0)
     end if
-    alarms = watch%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), deck%is_static())
-    call record%note_scaled(now%ledger%scaled, watch%largest)
+    exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), deck%is_static())
+    call record%note_scaled(now%ledger%scaled, energy_check%largest)
     if (deck%is_impact() .or. now%time > slow_start*deck%stepping%time%end) then
-      if (record%scaled_energy > max_scaled*watch%largest) call add(warning_scaled, 0)
+      if (record%scaled_energy > max_scaled*energy_check%largest) call add(warning_scaled, 0)
     end if
     if (is_slow_motion(deck) .and. now%time > slow_start*deck%stepping%time%end) then
       if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add(warning_kinetic, 0)
     end if
-    call add_energy_warnings(deck, alarms, now%time, record, warnings)
+    call add_energy_warnings(deck, exceeded, now%time, record, warnings)
 
   contains
 
@@ -160,11 +160,11 @@ contains
   end subroutine find_warnings
 
   !> Adds warnings of energies.
-  subroutine add_energy_warnings(deck, alarms, time, record, warnings)
+  subroutine add_energy_warnings(deck, exceeded, time, record, warnings)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> True for the kinds of errors found
-    logical, intent(in) :: alarms(3)
+    logical, intent(in) :: exceeded(3)
     !> Time or load factor
     real(wp), intent(in) :: time
     !> Receives the warnings
@@ -172,9 +172,9 @@ contains
     !> Receives their sentences
     type(line_t), allocatable, intent(inout) :: warnings(:)
 
-    if (alarms(energy_created)) call add_warning(deck, warning_energy, 0, time, record, warnings)
-    if (alarms(energy_taken)) call add_warning(deck, warning_loss, 0, time, record, warnings)
-    if (alarms(energy_unaccounted)) call add_warning(deck, warning_ledger, 0, time, record, warnings)
+    if (exceeded(energy_created)) call add_warning(deck, warning_energy, 0, time, record, warnings)
+    if (exceeded(energy_taken)) call add_warning(deck, warning_loss, 0, time, record, warnings)
+    if (exceeded(energy_unaccounted)) call add_warning(deck, warning_ledger, 0, time, record, warnings)
   end subroutine add_energy_warnings
 
   !> Adds a warning at its first occurrence.
@@ -230,22 +230,22 @@ contains
 
   !> True: the fibres of every ply have failed over an area as large as the contact, so that the contact force has no
   !> support. Collective.
-  logical function has_hole(model, now)
+  logical function is_perforated(model, now)
     type(model_t), intent(in) :: model
     !> The step reached
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
     real(wp), allocatable :: areas(:, :)
 
-    has_hole = .false.
+    is_perforated = .false.
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
-    has_hole = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounded_off))
-  end function has_hole
+    is_perforated = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounded_off))
+  end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.
-  logical function is_torn(deck, model, now)
+  logical function has_fibre_failure(deck, model, now)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -253,11 +253,11 @@ contains
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
 
-    is_torn = .false.
+    has_fibre_failure = .false.
     if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
     counts = now%plies%counts(model)
-    is_torn = counts(fibre_failure) > 0
-  end function is_torn
+    has_fibre_failure = counts(fibre_failure) > 0
+  end function has_fibre_failure
 
   !> All warnings of a run, with those before a restart.
   function warnings_given(record, deck) result(lines)

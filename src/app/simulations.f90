@@ -31,7 +31,7 @@ module simulations
   use wall_limits, only: wall_limit_t
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
-  use energy_watches, only: energy_watch_t
+  use energy_checks, only: energy_check_t
   use initial_states, only: take_initial_state
   use adaptive_zones, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
@@ -71,7 +71,7 @@ module simulations
     !> True: set up, so that a summary can be written
     logical, private :: is_ready = .false.
     !> The check of energies
-    type(energy_watch_t), private :: energy_watch
+    type(energy_check_t), private :: energy_check
     !> Folder and name that all results share
     character(len=:), allocatable :: base
   contains
@@ -234,7 +234,7 @@ contains
     call self%fields_clock%visit(archive, 'fields')
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call self%record%visit(archive)
-    call self%energy_watch%visit(archive)
+    call self%energy_check%visit(archive)
     call archive%item('history/rows', rows)
     call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
@@ -309,7 +309,7 @@ contains
     call self%stepper%complete_state(self%model, error)
     if (allocated(error)) return
     call self%record%observe_reactions(self%model, self%stepper%now)
-    call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_watch, self%log, error)
+    call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_check, self%log, error)
     row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
     checkpoint_due = .false.
@@ -383,7 +383,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (.not. self%is_ready) return
-    call give_last_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_watch, self%log, error)
+    call give_last_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_check, self%log, error)
     call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
                    wall_time() - self%timers%profile%begun, self%base//summary_ending, self%log, error)
   end subroutine conclude

@@ -57,8 +57,8 @@ contains
     if (struck) call add_impact_energy(lines, deck, now)
     if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
     call add_energies(lines, now%ledger)
-    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'its motions have at most '// &
-                                            rounded_text(100*record%scaled_share(), 2)//' % of the energy')
+    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'kinetic energy at most '// &
+                                            rounded_text(100*record%scaled_share(), 2)//' % of the total')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, record, figures, errors)
     if (deck%has_ply_damage) call add_figure(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
       ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
@@ -95,7 +95,7 @@ contains
               within(errors%peak_force, record%peak_force)//within(errors%peak_time))
     if (record%filter%frequency > 0) &
       call add_figure(lines, 'filtered', rounded_text(record%peak_filtered)//' at time '// &
-                rounded_text(record%peak_filtered_time)//' behind the low pass of '// &
+                rounded_text(record%peak_filtered_time)//' after the low-pass filter of '// &
                 rounded_text(record%filter%frequency))
     if (now%force > 0) then
       call add_figure(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &

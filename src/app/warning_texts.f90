@@ -1,7 +1,7 @@
 !> Sentences of the warnings of a run, with the limits they name.
 module warning_texts
   use deck_contents, only: deck_t
-  use energy_watches, only: energy_tolerance
+  use energy_checks, only: energy_tolerance
   use kinds, only: wp
   use run_records, only: warning_border, warning_core, warning_energy, warning_hole, warning_indentation, &
                          warning_kinetic, warning_ledger, warning_loss, warning_scaled, warning_slopes, &
@@ -56,7 +56,7 @@ contains
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')
     case (warning_loss)
-      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', loss_cure(deck))
+      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
     case (warning_ledger)
       text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
              ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
@@ -89,11 +89,11 @@ contains
   contains
 
     !> Sentence on an energy above its limit, with a remedy.
-    pure function energy_text(what, cure, explicit_cure) result(words)
+    pure function energy_text(what, cure, explicit_remedy) result(words)
       !> created or taken
       character(len=*), intent(in) :: what
       !> Remedies for implicit steps and for central differences
-      character(len=*), intent(in) :: cure, explicit_cure
+      character(len=*), intent(in) :: cure, explicit_remedy
       !> The sentence
       character(len=:), allocatable :: words
 
@@ -104,7 +104,7 @@ contains
       else if (is_explicit(deck%stepping)) then
         words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
           ' % of the energy by '//at &
-                //' (energy_algorithmic): '//explicit_cure
+                //' (energy_algorithmic): '//explicit_remedy
       else
         words = 'The time integrators have '//what//' more than '//short_text(100*energy_tolerance)// &
           ' % of the energy by '//at &
@@ -115,7 +115,7 @@ contains
 
   !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
   !> released is damped.
-  pure function loss_cure(deck) result(cure)
+  pure function dissipation_remedy(deck) result(cure)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> End of a sentence
@@ -124,5 +124,5 @@ contains
     cure = 'take a smaller step_factor.'
     if (any(deck%delaminations%follows)) &
       cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
-  end function loss_cure
+  end function dissipation_remedy
 end module warning_texts

@@ -13,7 +13,7 @@ module errors
   integer, parameter, public :: exit_internal = 5
   integer, parameter, public :: exit_stopped = 75
 
-  !> What went wrong: allocated means failed, unallocated means all is well.
+  !> Description of the error; unallocated: success.
   type :: error_t
     !> Exit code the program ends with if nobody handles the error.
     integer :: code = exit_internal

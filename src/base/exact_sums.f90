@@ -14,7 +14,7 @@ module exact_sums
 
   !> Bits of the fraction, of a place, and unit of the lowest place as a power of two: the smallest denormal number
   integer, parameter :: fraction_bits = 52, place_bits = 32, lowest = -1074
-  !> Bits of the exponent, of which the largest stands for what is not finite
+  !> Bits of the exponent, of which the largest stands for infinities and NaN
   integer, parameter :: not_finite = 2047
   !> Places for exponents up to 2046 with 53 bits behind, then room for the carries of 2^63 terms
   integer, parameter :: highest = not_finite - 1 + fraction_bits
@@ -109,7 +109,7 @@ contains
     integer :: place
 
     do place = 1, places - 1
-      ! An arithmetic shift rounds down, so that what stays is not negative.
+      ! An arithmetic shift rounds down, so that the remainder is not negative.
       self%chunks(place + 1) = self%chunks(place + 1) + shifta(self%chunks(place), place_bits)
       self%chunks(place) = iand(self%chunks(place), place_mask)
     end do
@@ -157,7 +157,7 @@ contains
     leading = shiftr(chunks(place), within)
     if (place < top) leading = leading + shiftl(chunks(place + 1), place_bits - within)
     if (place + 1 < top) leading = leading + shiftl(chunks(place + 2), 2*place_bits - within)
-    ! What was dropped matters only to a tie: one bit stands for all of it.
+    ! Dropped bits matter only to a tie: one bit stands for all of them.
     if (any(chunks(:place - 1) /= 0) .or. trailz(chunks(place)) < within) leading = ibset(leading, 0)
     value = scale(real(leading, wp), dropped + lowest)
   end function rounded_magnitude

@@ -5,7 +5,7 @@ module file_locks
   private
   public :: file_lock_t
 
-  !> What the C side returns if another process holds the lock.
+  !> Return code of the C side if another process holds the lock.
   integer(c_int), parameter :: taken_by_another = -2
 
   !> A lock on one file.
@@ -29,7 +29,7 @@ module file_locks
     !> Ends a lock.
     subroutine implam_unlock_file(descriptor) bind(c)
       import :: c_int
-      !> What implam_lock_file returned
+      !> Return code of implam_lock_file
       integer(c_int), value :: descriptor
     end subroutine implam_unlock_file
   end interface

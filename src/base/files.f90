@@ -1,4 +1,4 @@
-!> What the program needs of the file system and Fortran does not offer.
+!> Operations of the file system that Fortran does not offer.
 module files
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_ptr, c_size_t, c_associated, c_loc
   use errors, only: error_t, fail, exit_files

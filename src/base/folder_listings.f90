@@ -12,7 +12,7 @@ module folder_listings
     !> Name of the file than which so many others are newer: its length, or 0 if there is none.
     integer(c_int) function implam_file_by_age(folder, ending, newer, name) bind(c)
       import :: c_char, c_int
-      !> Zero-terminated path of the folder, and what the name ends with
+      !> Zero-terminated path of the folder, and the ending of the names
       character(kind=c_char), intent(in) :: folder(*), ending(*)
       !> How many are newer
       integer(c_int), value :: newer
@@ -27,7 +27,7 @@ contains
   function file_by_age(folder, ending, newer) result(name)
     !> Path of the folder
     character(len=*), intent(in) :: folder
-    !> What the name ends with, and is longer than
+    !> Ending of the names, which are longer
     character(len=*), intent(in) :: ending
     !> How many files are newer, from 0
     integer, intent(in) :: newer

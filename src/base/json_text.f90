@@ -10,7 +10,7 @@ module json_text
 
   !> A text that grows member by member. Starts with an object that is open.
   type :: json_t
-    !> What has been written
+    !> Text written so far
     character(len=:), allocatable, private :: content
     !> Brackets to close, outermost first
     character(len=:), allocatable, private :: open_brackets
@@ -22,7 +22,7 @@ module json_text
     !> Opens an object or a list; within a list without a name.
     procedure :: open_object
     procedure :: open_list
-    !> Closes what was opened last.
+    !> Closes the innermost object or list.
     procedure :: close => close_bracket
     !> Writes a member.
     generic :: put => put_real, put_reals, put_integer, put_logical, put_text
@@ -79,7 +79,7 @@ contains
     self%at_first = .true.
   end subroutine open_bracket
 
-  !> Closes what was opened last.
+  !> Closes the innermost object or list.
   pure subroutine close_bracket(self)
     !> The text
     class(json_t), intent(inout) :: self
@@ -182,7 +182,7 @@ contains
     content = self%content//new_line('a')
   end subroutine finished
 
-  !> Begins a line with a name and what follows it.
+  !> Begins a line with a name and its value.
   pure subroutine member(self, name, value)
     !> The text
     class(json_t), intent(inout) :: self
@@ -213,7 +213,7 @@ contains
   pure function quoted(value) result(string)
     !> The text
     character(len=*), intent(in) :: value
-    !> With what JSON forbids written in other ways
+    !> With characters that JSON forbids replaced by escape sequences
     character(len=:), allocatable :: string
     logical :: foreign
     integer :: i

@@ -10,7 +10,7 @@ module shortest_digits
   !> Decimal exponents of the numbers it knows; those beyond need powers of ten beyond the range of doubles.
   integer, parameter :: most = 280
   !> Relative distance from a bound within which nothing is decided; the products are good to 1e-15 of a last digit.
-  real(wp), parameter :: doubt = 1.0e-12_wp
+  real(wp), parameter :: tie_tolerance = 1.0e-12_wp
 
 contains
 
@@ -52,8 +52,8 @@ contains
       digits = whole/unit
       if (2*part > unit) digits = digits + 1
       off = min(part, unit - part)
-      if (dropped > 0 .and. off > bound(2)*(1 + doubt)) cycle
-      known = abs(2*part - unit) > doubt*unit .and. (dropped == 0 .or. off < bound(1)*(1 - doubt))
+      if (dropped > 0 .and. off > bound(2)*(1 + tie_tolerance)) cycle
+      known = abs(2*part - unit) > tie_tolerance*unit .and. (dropped == 0 .or. off < bound(1)*(1 - tie_tolerance))
       exit
     end do
     exponent = exponent + dropped

@@ -1,4 +1,4 @@
-!> Courses that set in smoothly, so that a motion prescribed by them strikes nothing.
+!> Smooth ramps: a prescribed motion that follows them excites no vibrations.
 module smooth_starts
   use kinds, only: wp
   implicit none
@@ -35,7 +35,7 @@ contains
     integer, intent(in) :: order
     real(wp) :: s, velocity
 
-    ! The rise covers half of what the full velocity would.
+    ! The rise covers half the distance of the full velocity.
     velocity = 1/(1 - rise/2)
     s = min(max(part/rise, 0.0_wp), 1.0_wp)
     select case (order)

@@ -6,7 +6,7 @@ module case_deck
   use text, only: lower_case
   implicit none
   private
-  public :: fill_case, fill_claims, has_accuracy, needs_coarse_run
+  public :: fill_case, fill_accuracy, has_accuracy, needs_coarse_run
 
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
@@ -33,7 +33,7 @@ module case_deck
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
 
-  !> Permitted errors of the peak force for each `accuracy`, %: what these words mean. doc/studies/defaults.md has their
+  !> Permitted errors of the peak force for each `accuracy`, %. doc/studies/defaults.md has their
   !> cost.
   real(wp), parameter :: draft_error = 5, standard_error = 1, reference_error = 0.2_wp
 
@@ -75,7 +75,7 @@ contains
   end function needs_coarse_run
 
   !> Accuracy that the case requests.
-  pure subroutine fill_claims(settings, accuracy, units, strict, refine)
+  pure subroutine fill_accuracy(settings, accuracy, units, strict, refine)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Permitted error of the peak force, %; 0: mesh and steps are given in the deck
@@ -100,7 +100,7 @@ contains
     case default
       accuracy = settings%real_of(group, key_accuracy)
     end select
-  end subroutine fill_claims
+  end subroutine fill_accuracy
 
   !> File name of a path without folders and extension; invalid characters of a case name become _.
   pure function name_from(path) result(name)

@@ -41,7 +41,7 @@ module deck_contents
     type(stepping_t) :: stepping
     !> The linear solver
     type(linear_solver_parameters_t) :: linear_solver
-    !> What is written
+    !> Parts that are written
     type(output_t) :: output
     !> Warnings on the deck, repeated at the end of its run
     type(line_t), allocatable :: remarks(:)

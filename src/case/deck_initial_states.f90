@@ -98,7 +98,7 @@ contains
     is_mapped = .not. (has_same_lines(deck, old, 1) .and. has_same_lines(deck, old, 2))
   end function is_mapped
 
-  !> What cannot be mapped.
+  !> States that cannot be mapped.
   pure function mapping_objection(deck) result(objection)
     !> The deck, with the plate and the damage of the other run
     type(deck_t), intent(in) :: deck

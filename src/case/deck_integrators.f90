@@ -20,7 +20,7 @@ contains
     character(len=:), allocatable :: softening
 
     if (.not. deck%settings%is_given(time_group, key_integrator)) then
-      softening = what_softens(deck)
+      softening = softening_part(deck)
       if (softening /= '') then
         call deck%settings%derive(time_group, key_integrator, 'central_difference', .true.)
         if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
@@ -34,7 +34,7 @@ contains
   end subroutine choose_integrator
 
   !> The softening part of a dynamic setup; empty: none, or the deck requires implicit steps.
-  function what_softens(deck) result(softening)
+  function softening_part(deck) result(softening)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Plies, interfaces, or nothing
@@ -49,5 +49,5 @@ contains
       if (deck%has_crack_bands()) softening = 'plies'
     end if
     if (any(deck%delaminations%law == law_cohesive)) softening = 'interfaces'
-  end function what_softens
+  end function softening_part
 end module deck_integrators

@@ -36,8 +36,8 @@ contains
                       &angles.', place)
       if (any(beyond_core(deck, deck%delaminations(place)%zone)) .and. .not. deck%delaminations(place)%follows) &
         call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
-                    'where its cells grow to '//short_text(longest_cell(deck, deck%delaminations(place)%zone))// &
-                    '; make the core as large as the zone.', place)
+                    'where cells are up to '//short_text(longest_cell(deck, deck%delaminations(place)%zone))// &
+                    ' long; make the core as large as the zone.', place)
     end do
   end subroutine check_interfaces
 

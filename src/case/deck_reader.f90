@@ -1,7 +1,7 @@
 !> Reads a deck: scan, rules, parameters, checks of combinations. All faults are reported, none stops the reading.
 module deck_reader
   use adapt_deck, only: adapt_group, fill_adapt
-  use case_deck, only: fill_case, fill_claims, has_accuracy
+  use case_deck, only: fill_case, fill_accuracy, has_accuracy
   use controls_deck, only: fill_controls
   use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
@@ -114,7 +114,7 @@ contains
     if (problems%is_full()) return
     call take_library(deck%settings, problems)
     call note_groups(deck)
-    call fill_bodies(deck, problems)
+    call fill_model(deck, problems)
     call choose_integrator(deck)
     call check_left_out(deck%settings, is_explicit(deck%stepping), problems)
     call fill_loads(deck, problems)
@@ -161,14 +161,14 @@ contains
   end subroutine note_groups
 
   !> Case, plate, mesh, materials, plies and interfaces.
-  subroutine fill_bodies(deck, problems)
+  subroutine fill_model(deck, problems)
     !> Receives them
     type(deck_t), intent(inout) :: deck
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
-    call fill_claims(deck%settings, deck%accuracy, deck%units, deck%strict, deck%refine)
+    call fill_accuracy(deck%settings, deck%accuracy, deck%units, deck%strict, deck%refine)
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
@@ -181,7 +181,7 @@ contains
     call fill_ply_damage(deck%settings, deck%ply_damage)
     call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck), changes_of_angle(deck), &
                             deck%delaminations)
-  end subroutine fill_bodies
+  end subroutine fill_model
 
   !> Plies below which the angle or the material changes.
   pure function changes_of_angle(deck) result(between)

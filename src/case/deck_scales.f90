@@ -22,7 +22,7 @@ module deck_scales
   !> The same for the size of the patch, of which twice as much is permitted for the peak, as it is an estimate itself.
   real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
   !> Ratio of estimated to requested error above which it is reported: estimates are 1.2 to 2 times the true errors.
-  real(wp), parameter :: missed = 1.5_wp
+  real(wp), parameter :: max_error_ratio = 1.5_wp
   !> Steps of elastic impacts per rise time of first contact for runs with many more, as by central differences: their
   !> error is below .1 %, and an upper bound of that of the run.
   real(wp), parameter :: fine_steps = 64
@@ -92,7 +92,7 @@ contains
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be verified by preliminary elastic '// &
                     'impacts for this step: so many steps would take them too long.')
-      else if (100*(o%step_error(1) + o%mesh_error(1)) > missed*deck%accuracy) then
+      else if (100*(o%step_error(1) + o%mesh_error(1)) > max_error_ratio*deck%accuracy) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a preliminary elastic '// &
                     'impact the largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')
       end if

@@ -11,7 +11,7 @@ module deck_symmetries
   use line_deck, only: line_group
   use line_loads, only: along_x
   use laminate_parameters, only: shear_five_sixths
-  use mesh_parameters, only: is_bent_alike, is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, &
+  use mesh_parameters, only: has_symmetric_imperfection, is_halved, is_mirrored, symmetry_half_x, symmetry_half_y, &
                              symmetry_none, symmetry_point, &
                              symmetry_quarter
   use plate_deck, only: plate_group, key_symmetry
@@ -47,12 +47,12 @@ contains
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
         coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
         'A45 isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
-      if (struck_aside(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
+      if (impact_is_eccentric(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
       call check_starters(deck, name, problems)
-      if (.not. rigs_alike(deck, symmetry) .and. .not. problems%concern(support_group)) &
+      if (.not. supports_are_symmetric(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
                   '; list all of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
@@ -79,7 +79,7 @@ contains
       if (i > 1) then
         if (deck%delaminations(i)%group == deck%delaminations(i - 1)%group) cycle
       end if
-      if (starter_aside(deck%delaminations(i), deck%plate%symmetry) .and. &
+      if (starter_is_eccentric(deck%delaminations(i), deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_starter_at, &
                     'the starter is not on the lines '// &
@@ -88,15 +88,15 @@ contains
   end subroutine check_starters
 
   !> True if the centre of a starter is not on a line of symmetry.
-  pure logical function starter_aside(delamination, symmetry)
+  pure logical function starter_is_eccentric(delamination, symmetry)
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> The symmetry
     integer, intent(in) :: symmetry
 
-    starter_aside = any(abs(delamination%starter_at) > 0 .and. &
+    starter_is_eccentric = any(abs(delamination%starter_at) > 0 .and. &
                         (is_halved(symmetry) .or. symmetry == symmetry_point))
-  end function starter_aside
+  end function starter_is_eccentric
 
   !> Sentence on the smallest part of the plate that suffices; empty if the deck has it already.
   function symmetry_sentence(deck) result(sentence)
@@ -148,10 +148,10 @@ contains
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
     ! Lines and strips need not have images.
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
-            .not. any([(starter_aside(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
+            .not. any([(starter_is_eccentric(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
-            .not. struck_aside(deck, symmetry) .and. rigs_alike(deck, symmetry) .and. &
-            is_bent_alike(deck%plate, symmetry)
+            .not. impact_is_eccentric(deck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
+            has_symmetric_imperfection(deck%plate, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
       suits = .not. any_front(deck)
@@ -179,17 +179,17 @@ contains
   end function any_strip
 
   !> True if the struck point is not on a line of symmetry.
-  pure logical function struck_aside(deck, symmetry)
+  pure logical function impact_is_eccentric(deck, symmetry)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The part
     integer, intent(in) :: symmetry
 
-    struck_aside = any(abs(deck%mesh%struck) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
-  end function struck_aside
+    impact_is_eccentric = any(abs(deck%mesh%struck) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
+  end function impact_is_eccentric
 
   !> True if each clamp has its images in the rig; windows lie at the centre.
-  pure logical function rigs_alike(deck, symmetry) result(alike)
+  pure logical function supports_are_symmetric(deck, symmetry) result(alike)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The part
@@ -222,7 +222,7 @@ contains
                             j=1, size(clamps, 2))])
       end associate
     end function have_images
-  end function rigs_alike
+  end function supports_are_symmetric
 
   !> Subject of a message on coupling: the laminate, or parts of it.
   pure function coupled_part(deck) result(words)

@@ -83,7 +83,7 @@ contains
 
     !> Adds a line for a known, non-zero value.
     subroutine put(name, value, dimension)
-      !> What it is
+      !> Name of the quantity
       character(len=*), intent(in) :: name
       !> Its size, in the deck's units
       real(wp), intent(in) :: value
@@ -143,7 +143,7 @@ contains
 
   !> A line of the table.
   pure function table_line(name, value, unit) result(line)
-    !> What it is, its value, and its unit or dimension
+    !> Name of the quantity, its value, and its unit or dimension
     character(len=*), intent(in) :: name, value, unit
     !> The line
     character(len=:), allocatable :: line

@@ -25,7 +25,7 @@ module deck_problems
     logical :: is_warning = .false.
     !> Group and key it belongs to, in lower case; empty if none
     character(len=:), allocatable :: group, key
-    !> What the user reads after `file:line:`
+    !> Text after `file:line:`
     character(len=:), allocatable :: message
   end type problem_t
 
@@ -85,7 +85,7 @@ contains
     integer, intent(in) :: line
     !> Group and key it belongs to; empty if none
     character(len=*), intent(in) :: group, key
-    !> What the user reads after `file:line:`
+    !> Text after `file:line:`
     character(len=*), intent(in) :: message
     !> Which of the groups of this name it belongs to; absent: any
     integer, intent(in), optional :: place
@@ -100,7 +100,7 @@ contains
     integer, intent(in) :: line
     !> Group and key it belongs to; empty if none
     character(len=*), intent(in) :: group, key
-    !> What the user reads after `file:line: warning:`
+    !> Text after `file:line: warning:`
     character(len=*), intent(in) :: message
 
     call self%add(.true., line, group, key, message)
@@ -115,7 +115,7 @@ contains
     integer, intent(in) :: line
     !> Group and key it belongs to; empty if none
     character(len=*), intent(in) :: group, key
-    !> What the user reads
+    !> Printed text
     character(len=*), intent(in) :: message
     !> Which of the groups of this name it belongs to; absent: any
     integer, intent(in), optional :: place

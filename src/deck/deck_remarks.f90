@@ -18,7 +18,7 @@ contains
     type(problems_t), intent(inout) :: problems
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The error and what is allowed
+    !> The error and the values allowed
     character(len=*), intent(in) :: fault
     !> Which of the groups of this name
     integer, intent(in), optional :: place

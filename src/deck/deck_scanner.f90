@@ -15,7 +15,7 @@ module deck_scanner
   !> Largest deck in bytes, and longest line.
   integer, parameter, public :: max_bytes = 1000000, longest_line = 4000
 
-  !> What a deck consists of.
+  !> Contents of a deck.
   type :: scan_t
     !> The groups in order
     type(block_t), allocatable :: blocks(:)
@@ -37,7 +37,7 @@ contains
   subroutine scan_deck(content, scan, problems)
     !> Text of the deck
     character(len=*), intent(in) :: content
-    !> What it consists of
+    !> Its contents
     type(scan_t), intent(out) :: scan
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -181,7 +181,7 @@ contains
   subroutine report_missing_slash(scan, event, problems)
     !> The result so far
     type(scan_t), intent(in) :: scan
-    !> What happens instead
+    !> The consequence, end of a sentence
     character(len=*), intent(in) :: event
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -315,7 +315,7 @@ contains
     type(scan_t), intent(inout) :: scan
     !> Line of the fault
     integer, intent(in) :: line
-    !> The error and what is allowed
+    !> The error and the values allowed
     character(len=*), intent(in) :: fault
     !> Faults found are added
     type(problems_t), intent(inout) :: problems

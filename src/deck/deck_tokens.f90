@@ -240,7 +240,7 @@ contains
     cursor = cursor_t(ahead%at + 1, ahead%line)
   end subroutine take_word
 
-  !> Last character of the word that begins here; what stands in parentheses belongs to it.
+  !> Last character of the word that begins here; text in parentheses belongs to it.
   pure integer function end_of_word(deck, start) result(finish)
     !> Text of the deck
     character(len=*), intent(in) :: deck

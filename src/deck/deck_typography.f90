@@ -11,7 +11,7 @@ module deck_typography
     char(226)//char(136)//char(146), char(226)//char(128)//char(147), char(194)//char(160), &
     char(226)//char(128)//char(175), char(226)//char(128)//char(137), char(226)//char(128)//char(152), &
     char(226)//char(128)//char(153), char(226)//char(128)//char(156), char(226)//char(128)//char(157)]
-  !> What each stands for.
+  !> Meaning of each.
   character(len=1), parameter :: plain(*) = ['-', '-', ' ', ' ', ' ', '''', '''', '"', '"']
   !> Its name in messages.
   character(len=40), parameter :: advice(*) = [character(len=40) :: &

@@ -35,7 +35,7 @@ contains
   pure function merged(messages) result(message)
     !> The messages, at least one
     type(line_t), intent(in) :: messages(:)
-    !> The first, with what the others have for its numbers
+    !> The first, with the numbers of the others behind its own
     character(len=:), allocatable :: message
     type(line_t) :: numbers(size(messages))
     integer :: next(size(messages)), start, from, to, i

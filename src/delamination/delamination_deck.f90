@@ -53,7 +53,7 @@ module delamination_deck
     'delamination | starter_strip | real | 2 | length | none | any | &
       &First and last x of a starter across the whole width of the zone, from the struck point; instead of starter.', &
     'delamination | law | choice | 1 | - | = cohesive; front with a starter or without strengths | front cohesive | &
-      &Ties that a front releases by its energy release rate, or tractions against the jumps of the faces.', &
+      &Ties that a front releases by its energy release rate, or tractions that soften with the separation.', &
     'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure opening.', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
@@ -61,7 +61,7 @@ module delamination_deck
     'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner layer | > 0 | &
       &Stiffness of the undamaged cohesive law in opening.', &
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
-      &Coulomb''s coefficient of friction between separated faces, and the damaged part of others.', &
+      &Coulomb''s coefficient of friction of damaged surfaces that are closed.', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
       &Damage starts beside matrix cracks of the neighbouring plies at what the cells resolve of the strengths.', &
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
@@ -71,15 +71,15 @@ module delamination_deck
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
       &Release at a frozen time until no front is above G_c, or one cell a step.', &
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
-      &Intact faces: exactly joined, or by penalty springs as in the paper.', &
+      &Intact surfaces: joined exactly, or by penalty springs as in the paper.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
       &Stiffness of penalty ties; left out: a million times E2 over the thinner layer.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
-      &augmented_lagrangian continuous_penalty none | Contact of separated faces.', &
+      &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
       &Exponent q of the continuous penalty (Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
-      &While the impactor rebounds: real contact, or separated faces move together (Eq. 13b).', &
+      &While the impactor rebounds: contact, or separated surfaces move together (Eq. 13b).', &
     'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the laminate | > 0 | &
       &Distance along a front within which tie forces and openings are averaged before they make its rate.']
 
@@ -315,7 +315,7 @@ contains
 
     if (delamination%law /= law_cohesive) then
       if (.not. (settings%is_given(group, key_law, place) .or. needs_front(settings, place))) &
-        call remark(settings, problems, group, '', 'a front with a starter of the usual size holds the faces, as a '// &
+        call remark(settings, problems, group, '', 'a front with a default starter joins the surfaces, as a '// &
                     'cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
       return
     end if
@@ -374,7 +374,7 @@ contains
     associate (d => delamination)
       if (d%law == law_cohesive) call idle(fronts_only, 'with law = ''cohesive''')
       if (d%law /= law_cohesive) call idle(law_only, 'without law = ''cohesive''')
-      if (d%contact == contact_none) call idle('friction', 'as faces pass through each other')
+      if (d%contact == contact_none) call idle('friction', 'as surfaces pass through each other')
       if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')
       if (d%law == law_cohesive) return

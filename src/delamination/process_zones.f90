@@ -123,7 +123,7 @@ contains
     warning = 'delamination below ply '//to_text(below_ply)//': the process zone is '// &
               short_text(shear/size_of_unit)//unit//' long in shear ('//short_text(opening/size_of_unit)//unit// &
               ' in opening), that is '//in_cells(shear, zone%cell)//' ('// &
-              in_cells(opening, zone%cell)//') cells; below 2.5 cells the load at growth comes out too high '// &
+              in_cells(opening, zone%cell)//') cells; below 2.5 cells the load at growth is too large '// &
               '(4 % at 1.7, 33 % at 0.9). Take cells of at most '// &
               text_at_most(resolving_cell(zone)/size_of_unit)//unit//', or strength_shear <= '// &
               text_at_most(resolved_shear_strength(zone))// &

@@ -7,7 +7,7 @@ module short_numbers
   public :: short_text, text_at_least, text_at_most
 
   !> Numbers this near to one of three digits are meant to be it: a thousand operations lose as much.
-  real(wp), parameter :: blur = 1.0e-12_wp
+  real(wp), parameter :: rounding_tolerance = 1.0e-12_wp
 
 contains
 
@@ -52,7 +52,7 @@ contains
     write (digits, '(rn,es12.2e3)') value
     read (digits, *) rounded
     ! The binary form of 0.005 is above 0.005 and would be rounded up to 0.00501.
-    if (abs(rounded - value) <= blur*abs(value)) return
+    if (abs(rounded - value) <= rounding_tolerance*abs(value)) return
     write (digits, '('//mode//',es12.2e3)') value
     read (digits, *) rounded
   end function rounded

@@ -13,7 +13,7 @@ module virtual_crack_closure
   use packed_matrices, only: unpacked
   implicit none
   private
-  public :: two_state_release, carried_over, segment_mean, closure_moments, closure_rates
+  public :: two_state_release, converted_strains, segment_mean, closure_moments, closure_rates
 
   !> Number of moments of a node for the closure integral: forces times powers 0 to 2 of the distance ahead, powers 2 to
   !> 4 of the distance behind, and jumps times its powers 1 and 2. Components are normal to the front, along it and
@@ -32,7 +32,7 @@ contains
   !> Energy release rate at a node of the front from the strains on both of its sides, Eq. 11 with the sign of Eq. 9
   !> corrected: with the same stiffness on both sides, the sum of N'(E' - E) - (N'E' - NE)/2 is half the square of the
   !> jump of strain. The stiffness is that of the plies with their damage, the same for both sides: two different ones
-  !> would count damage as released energy. Strains of cells of another stiffness are first converted by `carried_over`.
+  !> would count damage as released energy. Strains of cells of another stiffness are converted first.
   pure real(wp) function two_state_release(stiffness, delaminated, intact) result(rate)
     !> Section stiffness of the layers above and below the interface, (21, layers)
     real(wp), intent(in) :: stiffness(:, :)
@@ -53,7 +53,7 @@ contains
   !> Strains of a layer converted across a straight border to plies of another stiffness. Forces and moments on the
   !> border and strains along it are continuous; the strains across it differ. A jump of stiffness alone then causes no
   !> difference between converted states.
-  function carried_over(strains, from, to, direction) result(carried)
+  function converted_strains(strains, from, to, direction) result(carried)
     !> Membrane strains, curvatures, transverse shear strains of the layer
     real(wp), intent(in) :: strains(8)
     !> Section stiffness of the strains, and beyond the border
@@ -76,7 +76,7 @@ contains
       call solve_dense(matrix(n, n), change, singular)
       carried(n) = strains(n) + change
     end associate
-  end function carried_over
+  end function converted_strains
 
   !> Section stiffness as a full matrix.
   pure function full_stiffness(packed) result(full)

@@ -91,14 +91,14 @@ contains
       call new%interfaces%ties%ramp_down(model, self%step)
       self%patch_square = sum((new%contact%weights(new%contact%points)/model%mesh%multiplicity)**2)
       if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
-      self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_bonds)
+      self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_point_stiffness)
       self%keeps_displacement = self%keeps_velocity &
         .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
       self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
         .and. .not. (model%map%layered .or. &
         allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
       if (self%skips_elements) self%skips_elements = self%coupling%forces_agree() &
-        .and. .not. any(operator%numbering%leader > 0)
+        .and. .not. any(operator%numbering%master > 0)
       call predict(self, model, old, new)
       if (.not. self%keeps_velocity) call self%complete(at)
       self%correction_is_costly = .false.

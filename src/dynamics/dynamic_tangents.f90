@@ -40,7 +40,7 @@ contains
 
     associate (model => at%model, operator => at%operator, new => at%new)
       due = required
-      if (model%has_bonds) then
+      if (model%has_point_stiffness) then
         allocate (current_stiffness, mold=operator%added)
         call new%interfaces%added_stiffness(model, operator%diagonal, factors(1), current_stiffness)
         if (.not. due) due = operator%has_outdated_constraints(model, current_stiffness, max_changes)
@@ -49,15 +49,15 @@ contains
       if (allocated(error)) return
       call set_state(tangent, at, factors)
       tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
-                                                                                .or. model%has_bonds)
+                                                                                .or. model%has_point_stiffness)
       tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)
-      if (model%has_bonds) &
+      if (model%has_point_stiffness) &
         call tangent%set_jump_stiffness(operator%added, current_stiffness, new%interfaces%cohesive%cohesive, &
                                         factors(1)*new%interfaces%cohesive%tangents_at( &
                                         model, at%old%interfaces%cohesive, new%motion%displacement))
       if (tangent%is_factored()) return
       tangent%diagonal = operator%diagonal
-      if (model%has_bonds) tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + current_stiffness
+      if (model%has_point_stiffness) tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + current_stiffness
     end associate
   end subroutine find_tangent
 

@@ -151,7 +151,7 @@ contains
     sums(8) = energy
     if (allocated(model%pressure)) &
       sums(9) = model%product(new%motion%displacement - old%motion%displacement, model%pressure)
-    if (model%has_bonds) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
+    if (model%has_point_stiffness) sums(10) = new%interfaces%contact_work(model, new%motion%displacement, &
                                                                 new%motion%displacement - old%motion%displacement)
     if (size(model%lines) > 0) sums(11:12) = line_products(model, old, new)
     if (model%setup%has_crack_bands()) &

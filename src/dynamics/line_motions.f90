@@ -45,12 +45,12 @@ contains
     do i = 1, size(model%lines)
       associate (line => model%lines(i))
         if (.not. line%load%prescribed) cycle
-        values = line%load%course(time, model%setup%ramp_time)
+        values = line%load%motion_at(time, model%setup%ramp_time)
         call line%move_to(values(derivative), change)
       end associate
     end do
     change = change - field
-    where (model%held(:, model%distribution%points)) change = 0
+    where (model%fixed(:, model%distribution%points)) change = 0
     call interfaces%faces%hold(model, change)
     call model%halo%update(change)
     field = field + change

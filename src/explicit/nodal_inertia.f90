@@ -7,7 +7,7 @@
 !> the points that determine their motion.
 module nodal_inertia
   use kinds, only: wp
-  use leading_points, only: find_leading_points
+  use dependent_points, only: find_masters
   use models, only: model_t
   implicit none
   private
@@ -63,16 +63,16 @@ contains
     type(model_t), intent(in) :: model
     !> Receives them
     type(nodal_inertia_t), intent(inout) :: self
-    integer :: leader(model%mesh%points()), i
+    integer :: master(model%mesh%points()), i
     real(wp) :: signs(5, model%mesh%points())
     logical :: held(5, model%mesh%points())
 
-    held = model%held
-    call find_leading_points(model%mesh, leader, signs, held, model%images)
+    held = model%fixed
+    call find_masters(model%mesh, master, signs, held, model%images)
     associate (partition => model%distribution)
       self%held = held(:, partition%points)
-      self%dependents = pack([(i, i=1, partition%owned)], leader(partition%points(:partition%owned)) > 0)
-      self%masters = partition%local(leader(partition%points(self%dependents)))
+      self%dependents = pack([(i, i=1, partition%owned)], master(partition%points(:partition%owned)) > 0)
+      self%masters = partition%local(master(partition%points(self%dependents)))
       self%signs = signs(:, partition%points(self%dependents))
     end associate
   end subroutine find_dependents
@@ -171,8 +171,8 @@ contains
     integer :: i
 
     do i = 1, size(self%dependents)
-      associate (dependent => self%dependents(i), leader => self%masters(i))
-        forces(:, leader) = forces(:, leader) + self%signs(:, i)*forces(:, dependent)
+      associate (dependent => self%dependents(i), master => self%masters(i))
+        forces(:, master) = forces(:, master) + self%signs(:, i)*forces(:, dependent)
         forces(:, dependent) = 0
       end associate
     end do

@@ -183,11 +183,11 @@ contains
     real(wp) :: slope
     ! Relative change of the indentation below which the slope is taken at its end: the quotient loses six digits there,
     ! and the slope changes by a part of 1e-6.
-    real(wp), parameter :: short_way = 1e-6_wp
+    real(wp), parameter :: min_relative_change = 1e-6_wp
 
     slope = indentation_stiffness(law, state, alpha_end)
     if (.not. mean_force) return
-    if (abs(alpha_end - alpha_start) > short_way*abs(alpha_end)) then
+    if (abs(alpha_end - alpha_start) > min_relative_change*abs(alpha_end)) then
       slope = (indentation_force(law, state, alpha_end) - x)/(alpha_end - alpha_start)
     else
       slope = 0.5_wp*slope

@@ -138,7 +138,7 @@ contains
     real(wp) :: force(3)
 
     force = -motion%internal(1:3, i) - motion%inertia(1:3, i)
-    where (model%held(1:3, model%distribution%points(i))) force = 0
+    where (model%fixed(1:3, model%distribution%points(i))) force = 0
   end function tie_force
 
   !> Distance along a front over which forces and jumps are averaged.

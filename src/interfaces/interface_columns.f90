@@ -19,17 +19,18 @@ module interface_columns
   !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of faces.
   character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &
     'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; in a static &
-      &analysis they do not grow whatever it is.', &
-    'energy_released | real | energy | Work done against the fading forces of released ties so far; 0 if all &
+      &analysis fronts do not grow.', &
+    'energy_released | real | energy | Work done against the decreasing forces of released ties so far; 0 if all &
       &interfaces have growth = ''one_per_step''.', &
-    'penetration | real | length | Largest penetration of separated faces, with a cohesive law of all.', &
-    'complementarity | real | - | Largest contact pressure that does not go with its gap, over the largest pressure &
-      &so far.']
+    'penetration | real | length | Largest penetration of separated surfaces, with a cohesive law also of &
+      &intact ones.', &
+    'complementarity | real | - | Largest contact pressure at an open gap, or of a penetration, over the largest &
+      &pressure so far.']
 
   !> Fronts at the border of their zone.
   character(len=result_row_length), parameter, public :: border_rows(*) = [character(len=result_row_length) :: &
-    'border_reached | logical | - | 1 once a front or damage has reached the border of its zone, where it cannot grow &
-      &on; before that 0.', &
+    'border_reached | logical | - | 1 once a front or damage has reached the border of its zone, beyond which it &
+      &cannot grow; else 0.', &
     'projected_area | real | area | Area that a C-scan sees: where several interfaces have delaminated above each &
       &other, the largest of them counts once.']
 
@@ -43,7 +44,7 @@ module interface_columns
     'extent_x_below_N | real | length | Length along x of what has delaminated below ply N, starter included: cells, &
       &or nodes where a cohesive law has failed.', &
     'extent_y_below_N | real | length | The same along y.', &
-    'layered_below_N | real | area | Area of the zone below ply N, where the plate has layers of its own.']
+    'layered_below_N | real | area | Area of the zone of layers at the interface below ply N.']
   !> Forces of the rigs.
   character(len=result_row_length), parameter, public :: rig_rows(*) = [character(len=result_row_length) :: &
     'reaction_1 | real | force | Force of the first &support on the plate, frame and clamps together, positive against &

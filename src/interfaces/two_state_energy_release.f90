@@ -15,7 +15,7 @@ module two_state_energy_release
   use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: nodal_strains
   use delamination_fronts, only: front_segment_t
-  use virtual_crack_closure, only: two_state_release, carried_over, segment_mean
+  use virtual_crack_closure, only: two_state_release, converted_strains, segment_mean
   use motions, only: motion_t
   use models, only: model_t
   implicit none
@@ -73,7 +73,7 @@ contains
           known = stiffness(:, layer, merge(1, side, segments(s)%at_border), s)
           do line = 1, 3
             states(:, line, layer, side, s) = &
-              carried_over(symmetric(model, segments(s)%edge(line), found(:, line, layer, side, s)), known, &
+              converted_strains(symmetric(model, segments(s)%edge(line), found(:, line, layer, side, s)), known, &
                            common(:, layer, s), segments(s)%direction)
           end do
         end do

@@ -1,4 +1,4 @@
-!> Published values of some materials, each with its source: what `library` of &material fills in.
+!> Published values of some materials, each with its source, by which `library` of &material fills in keys left out.
 module material_library
   use text, only: line_t, append, lower_case, words_of
   implicit none

@@ -271,7 +271,7 @@ contains
     next_two = rest(reader)
   end function next_two
 
-  !> What has not been read.
+  !> Text that has not been read.
   pure function rest(reader) result(words)
     !> Where to read
     type(reader_t), intent(in) :: reader
@@ -285,7 +285,7 @@ contains
   pure subroutine object(reader, clause)
     !> Where it is
     type(reader_t), intent(inout) :: reader
-    !> What is wrong
+    !> The error
     character(len=*), intent(in) :: clause
     integer :: i, last
 

@@ -99,7 +99,7 @@ contains
     end do
   end subroutine integrate_layer
 
-  !> Shear stresses between the plies under unit shear forces, and what of these the plies above carry.
+  !> Shear stresses between the plies under unit shear forces, and the share of the forces that the plies above carry.
   pure subroutine find_unit_stresses(z, in_plane, stress, carried)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)

@@ -46,7 +46,7 @@ module layered_meshes
     procedure :: zone_area
     procedure :: mean_cell
     !> Master of a point.
-    procedure :: leader
+    procedure :: master
   end type layered_mesh_t
 
 contains
@@ -191,17 +191,17 @@ contains
   end function lower_point
 
   !> Master point of a point on the cut line of point symmetry; 0: it is independent.
-  pure integer function leader(self, point)
+  pure integer function master(self, point)
     !> The mesh
     class(layered_mesh_t), intent(in) :: self
     !> Point
     integer, intent(in) :: point
 
-    leader = 0
+    master = 0
     associate (node => self%point_node(point))
-      if (self%follows(node)) leader = self%first_point(self%turned_node(node)) + point - self%first_point(node)
+      if (self%follows(node)) master = self%first_point(self%turned_node(node)) + point - self%first_point(node)
     end associate
-  end function leader
+  end function master
 
   !> True if a zone covers a cell.
   pure logical function covers(zone, place)

@@ -57,7 +57,7 @@ contains
     if (halved) whole = [-bounds(size(bounds):2:-1), 0.0_wp, bounds(2:)]
   end function unfolded
 
-  !> What each interval of a line has in common with those of another.
+  !> Overlaps of the intervals of a line with those of another.
   pure function overlaps_of(bounds, others, halved) result(overlaps)
     !> Ascending bounds of the intervals, and of those of the other line; the latter from 0 if halved
     real(wp), intent(in) :: bounds(:), others(:)

@@ -5,7 +5,7 @@ module mesh_parameters
   use plate_options, only: shear_assumed, mass_consistent
   implicit none
   private
-  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, is_bent_alike, initial_deflection, add_lines
+  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, has_symmetric_imperfection, initial_deflection, add_lines
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
@@ -87,7 +87,7 @@ contains
   end function initial_deflection
 
   !> True if the shape without stress is that of the full plate where only a part is modelled.
-  pure logical function is_bent_alike(plate, symmetry) result(alike)
+  pure logical function has_symmetric_imperfection(plate, symmetry) result(alike)
     !> The plate
     type(plate_t), intent(in) :: plate
     !> The part
@@ -96,7 +96,7 @@ contains
     alike = .not. any(is_mirrored(symmetry) .and. mod(plate%half_waves, 2) == 0)
     if (symmetry == symmetry_point) alike = mod(sum(plate%half_waves), 2) == 0
     alike = alike .or. .not. abs(plate%imperfection) > 0
-  end function is_bent_alike
+  end function has_symmetric_imperfection
 
   !> Number of models that make up the full plate.
   pure integer function parts_of(symmetry) result(parts)

@@ -6,7 +6,7 @@
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use leading_points, only: find_leading_points
+  use dependent_points, only: find_masters
   use distributions, only: distribution_t
   use matrix_patterns, only: find_pattern
   use symmetry_images, only: symmetry_images_t
@@ -23,11 +23,11 @@ module numberings
     !> Points that this rank owns
     integer :: owned = 0
     !> Master of each point on this rank, or the point itself if another rank has it; 0: none, (local points)
-    integer, allocatable :: leader(:)
+    integer, allocatable :: master(:)
     !> Signs of its motion, (5, local points)
     real(wp), allocatable :: signs(:, :)
     !> Points that have the same equations, itself among them, (local points)
-    integer, allocatable :: sharers(:)
+    integer, allocatable :: shared_by(:)
     !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
     integer, allocatable :: row_start(:), columns(:)
     !> Point and component of each row of this rank, (2, rows)
@@ -48,50 +48,50 @@ module numberings
 contains
 
   !> Numbers the unconstrained unknowns and finds the pattern of this rank's rows.
-  subroutine number_equations(mesh, distribution, held, self, images)
+  subroutine number_equations(mesh, distribution, fixed, self, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Owners of the points
     type(distribution_t), intent(in) :: distribution
     !> Fixed unknowns of every point of the mesh, (5, points)
-    logical, intent(in) :: held(:, :)
+    logical, intent(in) :: fixed(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
     !> Images of the points, each with all of its own on one rank; left out: none
     type(symmetry_images_t), intent(in), optional :: images
     real(wp) :: signs(5, mesh%points())
-    integer :: equation(5, mesh%points()), leader(mesh%points()), point, i
+    integer :: equation(5, mesh%points()), master(mesh%points()), point, i
     logical :: free(5, mesh%points()), folded
 
     folded = .false.
     if (present(images)) folded = allocated(images%points)
-    free = held
-    call find_leading_points(mesh, leader, signs, free, images)
+    free = fixed
+    call find_masters(mesh, master, signs, free, images)
     free = .not. free
-    do point = 1, size(leader)
-      if (leader(point) > 0) free(:, point) = .false.
+    do point = 1, size(master)
+      if (master(point) > 0) free(:, point) = .false.
     end do
     call number_all(distribution, free, equation)
     self%total = count(free)
     self%owned = distribution%owned
     self%rows = count(free(:, distribution%points(:distribution%owned)))
     self%first_row = first_row_of(equation, distribution)
-    do point = 1, size(leader)
-      if (leader(point) > 0) equation(:, point) = equation(:, leader(point))
+    do point = 1, size(master)
+      if (master(point) > 0) equation(:, point) = equation(:, master(point))
     end do
     self%equation = equation(:, distribution%points)
-    self%leader = leader(distribution%points)
+    self%master = master(distribution%points)
     self%signs = signs(:, distribution%points)
-    do i = 1, size(self%leader)
-      if (self%leader(i) > 0) self%leader(i) = merge(distribution%local(self%leader(i)), i, &
-                                                     distribution%local(self%leader(i)) > 0)
+    do i = 1, size(self%master)
+      if (self%master(i) > 0) self%master(i) = merge(distribution%local(self%master(i)), i, &
+                                                     distribution%local(self%master(i)) > 0)
     end do
-    allocate (self%sharers(size(self%leader)), source=1)
+    allocate (self%shared_by(size(self%master)), source=1)
     do i = 1, distribution%owned
-      if (self%leader(i) > 0) self%sharers(self%leader(i)) = self%sharers(self%leader(i)) + 1
+      if (self%master(i) > 0) self%shared_by(self%master(i)) = self%shared_by(self%master(i)) + 1
     end do
     do i = 1, distribution%owned
-      if (self%leader(i) > 0) self%sharers(i) = self%sharers(self%leader(i))
+      if (self%master(i) > 0) self%shared_by(i) = self%shared_by(self%master(i))
     end do
     call find_places(self)
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
@@ -106,7 +106,7 @@ contains
 
     allocate (self%places(2, self%rows))
     do point = 1, self%owned
-      if (self%leader(point) > 0) cycle
+      if (self%master(point) > 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) cycle
         self%places(:, self%equation(component, point) - self%first_row + 1) = [point, component]
@@ -187,7 +187,7 @@ contains
 
     row = 0
     do point = 1, self%owned
-      if (self%leader(point) > 0) cycle
+      if (self%master(point) > 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) cycle
         row = row + 1
@@ -195,7 +195,7 @@ contains
       end do
     end do
     do point = 1, self%owned
-      if (self%leader(point) == 0) cycle
+      if (self%master(point) == 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) cycle
         row = self%equation(component, point) - self%first_row + 1
@@ -217,7 +217,7 @@ contains
 
     row = 0
     do point = 1, self%owned
-      if (self%leader(point) > 0) cycle
+      if (self%master(point) > 0) cycle
       do component = 1, 5
         if (self%equation(component, point) < 0) then
           field(component, point) = 0
@@ -239,8 +239,8 @@ contains
     integer :: point
 
     do point = 1, self%owned
-      if (self%leader(point) == 0) cycle
-      field(:, self%leader(point)) = field(:, self%leader(point)) + self%signs(:size(field, 1), point)*field(:, point)
+      if (self%master(point) == 0) cycle
+      field(:, self%master(point)) = field(:, self%master(point)) + self%signs(:size(field, 1), point)*field(:, point)
       field(:, point) = 0
     end do
   end subroutine fold
@@ -254,7 +254,7 @@ contains
     integer :: point
 
     do point = 1, self%owned
-      if (self%leader(point) > 0) field(:, point) = self%signs(:, point)*field(:, self%leader(point))
+      if (self%master(point) > 0) field(:, point) = self%signs(:, point)*field(:, self%master(point))
     end do
   end subroutine spread
 end module numberings

@@ -7,8 +7,8 @@ module plate_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, edge_elastic, symmetry_none, &
-                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_bent_alike, &
-                             is_halved
+                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_halved, &
+                             has_symmetric_imperfection
   use text, only: line_t, lower_case, to_text
   implicit none
   private
@@ -39,7 +39,7 @@ module plate_deck
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
       &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of a plate with point symmetry.']
 
-  !> What elastic edges need, against deflection and against rotation.
+  !> Keys of elastic edges: stiffness against deflection and against rotation.
   character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']
   !> Largest ratio of the plate's sides: with one square element across, a thousand along; the most of a mesh are 1e6.
   real(wp), parameter :: max_aspect_ratio = 1.0e3_wp
@@ -94,7 +94,8 @@ contains
                          'has no effect without an elastic edge.')
       end do
     end if
-    if (.not. is_bent_alike(plate, plate%symmetry)) call report(settings, problems, plate_group, key_half_waves, &
+    if (.not. has_symmetric_imperfection(plate, plate%symmetry)) &
+      call report(settings, problems, plate_group, key_half_waves, &
       'this shape is not that of the full plate with symmetry = '''// &
       lower_case(settings%text_of(plate_group, key_symmetry))//'''; take odd half waves along x for ''half_x'', '// &
       'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or ''none''.')

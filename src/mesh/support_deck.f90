@@ -48,7 +48,7 @@ contains
 
   !> All rigs, in the order of the deck.
   subroutine fill_supports(settings, supports)
-    !> Keys in effect; gets what the deck doesn't give
+    !> Keys in effect; receives the defaults of keys left out
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(support_t), allocatable, intent(out) :: supports(:)

@@ -6,12 +6,12 @@ module supports
   use nine_node_grids, only: last_line
   implicit none
   private
-  public :: held_unknowns
+  public :: fixed_unknowns
 
 contains
 
   !> Table of the unknowns fixed by supports and symmetry, and of all in-plane displacements if they are zero.
-  pure function held_unknowns(mesh, plate, membrane_idle, pin_plane) result(held)
+  pure function fixed_unknowns(mesh, plate, membrane_idle, pin_plane) result(fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
@@ -21,20 +21,20 @@ contains
     !> In-plane rigid-body motions without support: along x, along y, rotation
     logical, intent(in) :: pin_plane(3)
     !> (5, points): u, v, w, theta_x, theta_y
-    logical, allocatable :: held(:, :)
+    logical, allocatable :: fixed(:, :)
     integer :: point
 
-    allocate (held(5, mesh%points()), source=.false.)
+    allocate (fixed(5, mesh%points()), source=.false.)
     do point = 1, mesh%points()
-      held(:, point) = held_on_borders(mesh, plate, mesh%lines_of(mesh%point_node(point)))
-      if (mesh%turned_node(mesh%point_node(point)) == mesh%point_node(point)) held([1, 2, 4, 5], point) = .true.
-      if (membrane_idle) held(1:2, point) = .true.
+      fixed(:, point) = fixed_on_borders(mesh, plate, mesh%lines_of(mesh%point_node(point)))
+      if (mesh%turned_node(mesh%point_node(point)) == mesh%point_node(point)) fixed([1, 2, 4, 5], point) = .true.
+      if (membrane_idle) fixed(1:2, point) = .true.
     end do
-    call pin(mesh, pin_plane, held)
-  end function held_unknowns
+    call pin(mesh, pin_plane, fixed)
+  end function fixed_unknowns
 
   !> Unknowns fixed at a node by the borders it is on.
-  pure function held_on_borders(mesh, plate, line) result(held)
+  pure function fixed_on_borders(mesh, plate, line) result(fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
@@ -42,26 +42,26 @@ contains
     !> Lines of nodes along x and y that the node lies on, from 0
     integer, intent(in) :: line(2)
     !> u, v, w, theta_x, theta_y
-    logical :: held(5)
+    logical :: fixed(5)
     integer :: direction
 
-    held = .false.
+    fixed = .false.
     do direction = 1, 2
       if (line(direction) == 0) then
         if (mesh%mirrored(direction)) then
-          held([direction, 3 + direction]) = .true.
+          fixed([direction, 3 + direction]) = .true.
         else if (.not. mesh%halved(direction)) then
-          held = held .or. held_by_edge(plate%edges(2*direction - 1), direction, plate)
+          fixed = fixed .or. fixed_by_edge(plate%edges(2*direction - 1), direction, plate)
         end if
       else if (line(direction) == last_line(mesh%cells(direction))) then
-        held = held .or. held_by_edge(plate%edges(2*direction), direction, plate)
+        fixed = fixed .or. fixed_by_edge(plate%edges(2*direction), direction, plate)
       end if
     end do
-  end function held_on_borders
+  end function fixed_on_borders
 
   !> Unknowns fixed by one edge. A simple support is a hard one: it also fixes the rotation along the edge. An elastic
   !> edge leaves it free.
-  pure function held_by_edge(edge, normal, plate) result(held)
+  pure function fixed_by_edge(edge, normal, plate) result(fixed)
     !> Kind of support
     integer, intent(in) :: edge
     !> Direction of the edge's normal: 1 for x, 2 for y
@@ -69,33 +69,33 @@ contains
     !> The plate
     type(plate_t), intent(in) :: plate
     !> u, v, w, theta_x, theta_y
-    logical :: held(5)
+    logical :: fixed(5)
 
-    held = .false.
+    fixed = .false.
     if (edge == edge_free) return
-    held(3) = edge /= edge_elastic .or. .not. plate%edge_stiffness(1) > 0
-    held(3 + 3 - normal) = held(3)
-    if (edge == edge_clamped) held(4:5) = .true.
-    if (plate%in_plane_fixed) held(1:2) = .true.
-  end function held_by_edge
+    fixed(3) = edge /= edge_elastic .or. .not. plate%edge_stiffness(1) > 0
+    fixed(3 + 3 - normal) = fixed(3)
+    if (edge == edge_clamped) fixed(4:5) = .true.
+    if (plate%in_plane_fixed) fixed(1:2) = .true.
+  end function fixed_by_edge
 
   !> Fixes the in-plane rigid-body motions that symmetry leaves: at the struck node, and the rotation at the node beside
   !> it along x.
-  pure subroutine pin(mesh, motions, held)
+  pure subroutine pin(mesh, motions, fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Those to be fixed: along x, along y, rotation
     logical, intent(in) :: motions(3)
     !> Table of constrained unknowns
-    logical, intent(inout) :: held(:, :)
+    logical, intent(inout) :: fixed(:, :)
     integer :: node
     logical :: left(3)
 
     left = motions .and. .not. [mesh%mirrored, any(mesh%mirrored)]
     node = mesh%struck_node
     associate (here => mesh%first_point(node), beside => mesh%first_point(node + 1))
-      held(1:2, here) = held(1:2, here) .or. left(1:2)
-      held(2, beside) = held(2, beside) .or. left(3)
+      fixed(1:2, here) = fixed(1:2, here) .or. left(1:2)
+      fixed(2, beside) = fixed(2, beside) .or. left(3)
     end associate
   end subroutine pin
 end module supports

@@ -31,13 +31,13 @@ module symmetry_images
 contains
 
   !> The images of a full plate's points. A mesh or supports that are not their own image to the last digit have none.
-  pure function find_images(mesh, symmetry, held) result(self)
+  pure function find_images(mesh, symmetry, fixed) result(self)
     !> The mesh of the full plate
     type(layered_mesh_t), intent(in) :: mesh
     !> Symmetry of the plate, one of `mesh_parameters`
     integer, intent(in) :: symmetry
     !> Unknowns fixed by supports, (5, points of the mesh)
-    logical, intent(in) :: held(:, :)
+    logical, intent(in) :: fixed(:, :)
     !> The images
     type(symmetry_images_t) :: self
     logical, allocatable :: flips(:, :)
@@ -52,7 +52,7 @@ contains
     do k = 1, size(points, 2)
       points(:, k) = image_of_points(mesh, flips(:, k))
       if (any(points(:, k) == 0)) return
-      if (any(held(:, points(:, k)) .neqv. held)) return
+      if (any(fixed(:, points(:, k)) .neqv. fixed)) return
     end do
     self%points = points
     self%signs = reshape([(merge(signs_of(:, 1), 1.0_wp, flips(1, k))*merge(signs_of(:, 2), 1.0_wp, flips(2, k)), &

@@ -64,7 +64,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Deflection of the struck face, (local points)
     real(wp), intent(in) :: deflection(:)
-    !> Indentation; absent: the patch alone is loaded
+    !> Indentation; not positive: the patch alone is loaded
     real(wp), intent(in) :: indentation
     !> (local points); ghosts zero
     real(wp), allocatable :: weights(:)

@@ -33,7 +33,7 @@ module discretizations
     !> This rank's elements
     type(element_batches_t) :: elements
     !> True for constrained unknowns of every point of the mesh, (5, points of the mesh)
-    logical, allocatable :: held(:, :)
+    logical, allocatable :: fixed(:, :)
     !> Images of the points of a full plate that keeps its symmetry during failure
     type(symmetry_images_t) :: images
     !> Motion of stacked layers from their unknowns

@@ -37,7 +37,7 @@ module line_loads
     real(wp) :: rise = 0
   contains
     !> Value at a time, and its first and second derivative.
-    procedure :: course
+    procedure :: motion_at
     !> True: its displacement is applied before a run in time.
     procedure :: precedes
     !> Value at a load factor.
@@ -66,7 +66,7 @@ contains
   end function at_factor
 
   !> Value at a time, and its first and second time derivative.
-  pure function course(self, time, end) result(values)
+  pure function motion_at(self, time, end) result(values)
     !> The line
     class(line_load_t), intent(in) :: self
     !> The time, and the end of the run
@@ -83,7 +83,7 @@ contains
     else if (self%history == line_ramp) then
       values(2) = self%value/end
     end if
-  end function course
+  end function motion_at
 
   !> True: its displacement is applied before a run in time.
   elemental logical function precedes(self)

@@ -149,7 +149,7 @@ contains
 
     load_level = 1
     if (self%is_static()) load_level = time
-    if (self%is_static() .or. self%has_impactor .or. self%has_thermal .or. self%inherits) return
+    if (self%is_static() .or. self%has_impactor .or. self%has_thermal .or. self%initial%is_inherited) return
     level = -1
     if (self%has_pressure) level = self%pressure%amplitude(time)
     if (allocated(self%lines)) then

@@ -18,8 +18,8 @@ module model_building
   use cohesive_laws, only: create_cohesive_law
   use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
   use distributions, only: distribute
-  use supports, only: held_unknowns
-  use rig_models, only: new_rig_model, hold_by_rigs
+  use supports, only: fixed_unknowns
+  use rig_models, only: new_rig_model, fix_by_rigs
   use line_loads, only: along_y
   use placed_lines, only: place_line
   use model_loads, only: build_borders, build_loads, nodal_areas
@@ -62,8 +62,8 @@ contains
     zones = zones_of(setup)
     self%mesh = create_mesh(setup%plate, setup%mesh, size(self%plies), zones)
     self%membrane_idle = is_membrane_idle(setup, size(zones), self%section)
-    self%held = held_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
-    if (allocated(setup%supports)) call hold_by_rigs(self%mesh, setup%plate, setup%supports, self%held)
+    self%held = fixed_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
+    if (allocated(setup%supports)) call fix_by_rigs(self%mesh, setup%plate, setup%supports, self%held)
     self%images = find_images(self%mesh, setup%plate%kept, self%held)
     call distribute(self%mesh, communicator, self%distribution, error, self%images%first_cells(self%mesh))
     if (.not. allocated(error)) call build_elements(self, error)
@@ -77,7 +77,7 @@ contains
     call build_interfaces(self)
     call build_lines(self)
     if (allocated(setup%supports)) call build_rigs(self)
-    self%has_bonds = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
+    self%has_point_stiffness = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
   end subroutine create_model
 

@@ -42,7 +42,7 @@ module models
     !> Cohesive law of each zone; not used where fronts release ties
     type(cohesive_law_t), allocatable :: cohesive_laws(:)
     !> True if layers, frames or clamps add stiffness to the operator's diagonal
-    logical :: has_bonds = .false.
+    logical :: has_point_stiffness = .false.
     !> The deck's patch under the impactor; the state has the present one
     type(contact_patch_t) :: patch
     !> Nose that determines the present patch; unallocated: it is the deck's

@@ -21,7 +21,7 @@ module placed_lines
   !> Total stiffness of a line's springs over that of the section. The plate is mostly more compliant than its section,
   !> so that the relative error of the displacement is 1e-5 at most; round-off of the force decreases with the
   !> stiffness.
-  real(wp), parameter :: hardness = 1.0e5_wp
+  real(wp), parameter :: relative_stiffness = 1.0e5_wp
 
   !> A line on this rank's points.
   type :: placed_line_t
@@ -64,7 +64,7 @@ module placed_lines
 contains
 
   !> Finds nodes and weights of a line on the mesh.
-  pure function place_line(load, mesh, distribution, map, held, plies, section, symmetry) result(self)
+  pure function place_line(load, mesh, distribution, map, fixed, plies, section, symmetry) result(self)
     !> The line
     type(line_load_t), intent(in) :: load
     !> The mesh
@@ -74,7 +74,7 @@ contains
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
     !> True for unknowns constrained by supports, (5, points)
-    logical, intent(in) :: held(:, :)
+    logical, intent(in) :: fixed(:, :)
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
     !> Section of the laminate
@@ -89,7 +89,7 @@ contains
     along = merge(1, 2, load%direction == along_x)
     across = 3 - along
     self%load = load
-    self%stiffness = hardness*section_scale(section, load%component)
+    self%stiffness = relative_stiffness*section_scale(section, load%component)
     crossing = node_line(edges_of(mesh, across), load%at)
     mirrored = is_mirrored(symmetry)
     if (mirrored(along)) self%share = self%share/2
@@ -104,15 +104,15 @@ contains
                         simpson_weight(edges_of(mesh, along), lines(along)))
       end associate
     end do
-    call leave_out_held(self, held)
+    call leave_out_fixed(self, fixed)
   end function place_line
 
   !> Excludes nodes constrained by supports in a prescribed component: its springs would act on the supports.
-  pure subroutine leave_out_held(self, held)
+  pure subroutine leave_out_fixed(self, fixed)
     !> The line
     type(placed_line_t), intent(inout) :: self
     !> True for unknowns constrained by supports, (5, points)
-    logical, intent(in) :: held(:, :)
+    logical, intent(in) :: fixed(:, :)
     logical :: acts(size(self%weight)), kept(size(self%point))
     integer :: node, k
 
@@ -120,7 +120,7 @@ contains
     kept = .true.
     do node = 1, size(acts)
       if (.not. self%load%prescribed) exit
-      acts(node) = any([(any(abs(self%coefficient(:, k)) > 0 .and. .not. held(:, self%point(k))), &
+      acts(node) = any([(any(abs(self%coefficient(:, k)) > 0 .and. .not. fixed(:, self%point(k))), &
                          k=self%first(node), self%first(node + 1) - 1)])
       kept(self%first(node):self%first(node + 1) - 1) = acts(node)
     end do
@@ -132,7 +132,7 @@ contains
     self%height = pack(self%height, acts)
     self%coefficient = self%coefficient(:, pack([(k, k=1, size(kept))], kept))
     self%point = pack(self%point, kept)
-  end subroutine leave_out_held
+  end subroutine leave_out_fixed
 
   !> Stiffness of the section that scales the springs of a component.
   pure real(wp) function section_scale(section, component) result(scale)

@@ -13,7 +13,7 @@ module rig_models
   use support_parameters, only: support_t
   implicit none
   private
-  public :: rig_model_t, new_rig_model, hold_by_rigs
+  public :: rig_model_t, new_rig_model, fix_by_rigs
 
   !> The rigs at this rank's points. They act on the first point of a node only.
   type :: rig_model_t
@@ -243,7 +243,7 @@ contains
   end function springs_of
 
   !> Adds the unknowns fixed by rigs to a table.
-  pure subroutine hold_by_rigs(mesh, plate, supports, held)
+  pure subroutine fix_by_rigs(mesh, plate, supports, fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Plate and symmetry
@@ -251,7 +251,7 @@ contains
     !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> u, v, w, theta_x, theta_y of every point, (5, points)
-    logical, intent(inout) :: held(:, :)
+    logical, intent(inout) :: fixed(:, :)
     logical, allocatable :: on_frame(:)
     integer, allocatable :: nodes(:)
     integer :: i, k
@@ -260,13 +260,13 @@ contains
       if (.not. supports(i)%unilateral) then
         on_frame = nodes_on_frame(mesh, supports(i))
         do k = 1, size(on_frame)
-          if (on_frame(k)) held(3, mesh%first_point(k)) = .true.
+          if (on_frame(k)) fixed(3, mesh%first_point(k)) = .true.
         end do
       end if
       if (supports(i)%clamp_stiffness > 0 .or. supports(i)%clamp_force > 0) cycle
       nodes = clamp_nodes(mesh, plate, supports(i))
-      held(3, mesh%first_point(nodes)) = .true.
-      if (plate%in_plane_fixed) held(1:2, mesh%first_point(nodes)) = .true.
+      fixed(3, mesh%first_point(nodes)) = .true.
+      if (plate%in_plane_fixed) fixed(1:2, mesh%first_point(nodes)) = .true.
     end do
-  end subroutine hold_by_rigs
+  end subroutine fix_by_rigs
 end module rig_models

@@ -5,7 +5,7 @@
 !> those of the other ranks and adds all in ascending order, as a single rank does.
 module border_sums
   use mpi_f08, only: MPI_Comm, MPI_INTEGER, MPI_Alltoall, MPI_Alltoallv
-  use border_traffic, only: traffic_t, new_traffic, exchange, offsets
+  use border_messages, only: message_plan_t, new_message_plan, exchange, offsets
   use communicators, only: communicator_t
   use halos, only: halo_t
   use kinds, only: wp
@@ -24,7 +24,7 @@ module border_sums
     !> Number of ranks
     integer, private :: size = 1
     !> Contributions to ghosts, and those that other ranks send for owned points
-    type(traffic_t), private :: sent, received
+    type(message_plan_t), private :: sent, received
     !> Owned points on a border, and where the terms of each begin in the next, (points + 1)
     integer, allocatable, private :: points(:), first(:)
     !> Column of the field, or minus the number of a received column, in the order of addition
@@ -105,8 +105,8 @@ contains
                        at, coming, offsets(coming), MPI_INTEGER, self%group)
     call MPI_Alltoallv(order(grouped), going, offsets(going), MPI_INTEGER, &
                        place, coming, offsets(coming), MPI_INTEGER, self%group)
-    self%sent = new_traffic(going, grouped)
-    self%received = new_traffic(coming, at)
+    self%sent = new_message_plan(going, grouped)
+    self%received = new_message_plan(coming, at)
   end subroutine exchange_lists
 
   !> Lists the terms of each owned point on a border in the order in which they are added.
@@ -143,7 +143,7 @@ contains
     end do
   end subroutine list_terms
 
-  !> Adds the contributions to their points, behind what these have, and zeroes the ghosts and the columns of the
+  !> Adds the contributions to their points, after those already there, and zeroes the ghosts and the columns of the
   !> contributions. Collective.
   subroutine add(self, field)
     class(border_sum_t), intent(in) :: self

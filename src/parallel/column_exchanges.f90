@@ -1,7 +1,7 @@
 !> Columns of a table, each computed by one rank, that other ranks need as well: neighbours exchange them.
 module column_exchanges
   use mpi_f08, only: MPI_Comm
-  use border_traffic, only: exchange, new_traffic, traffic_t
+  use border_messages, only: exchange, new_message_plan, message_plan_t
   use communicators, only: communicator_t
   use kinds, only: wp
   implicit none
@@ -13,7 +13,7 @@ module column_exchanges
     !> All ranks
     type(MPI_Comm), private :: group
     !> Columns that others need, and those of others that are needed here
-    type(traffic_t), private :: sent, received
+    type(message_plan_t), private :: sent, received
     !> True: there are some
     logical, private :: needed = .false.
   contains
@@ -53,8 +53,8 @@ contains
         inward = [inward, in]
       end associate
     end do
-    self%sent = new_traffic(sent, outward)
-    self%received = new_traffic(received, inward)
+    self%sent = new_message_plan(sent, outward)
+    self%received = new_message_plan(received, inward)
     self%needed = size(outward) + size(inward) > 0
 
   contains

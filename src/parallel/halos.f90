@@ -1,7 +1,7 @@
 !> Points on the border between ranks: each point is owned by one rank and is a ghost on others.
 module halos
   use mpi_f08, only: MPI_Comm, MPI_INTEGER, MPI_Alltoall, MPI_Alltoallv
-  use border_traffic, only: traffic_t, new_traffic, exchange, offsets
+  use border_messages, only: message_plan_t, new_message_plan, exchange, offsets
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_internal
   use kinds, only: wp
@@ -27,7 +27,7 @@ module halos
     !> Number of ranks
     integer, private :: size = 1
     !> Owned points that others see, and ghosts
-    type(traffic_t), private :: shared, ghosts_of_others
+    type(message_plan_t), private :: shared, ghosts_of_others
   contains
     !> Determines the exchange of ghosts between ranks.
     procedure :: define
@@ -88,8 +88,8 @@ contains
     allocate (numbers(sum(requested)))
     call MPI_Alltoallv(ghost_numbers(order), wanted, offsets(wanted), MPI_INTEGER, &
                        numbers, requested, offsets(requested), MPI_INTEGER, self%group)
-    self%ghosts_of_others = new_traffic(wanted, self%owned + order)
-    self%shared = new_traffic(requested, numbers - self%first + 1)
+    self%ghosts_of_others = new_message_plan(wanted, self%owned + order)
+    self%shared = new_message_plan(requested, numbers - self%first + 1)
   end subroutine exchange_lists
 
   !> Copies values of owned points to their ghosts.

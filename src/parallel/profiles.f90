@@ -14,7 +14,7 @@ module profiles
 
   !> One part of a run.
   type :: profile_row_t
-    !> What it does
+    !> Name of the part
     character(len=part_length) :: name = ''
     !> Wall-clock seconds
     real(wp) :: seconds = 0
@@ -88,13 +88,13 @@ contains
   !> Begins a part.
   subroutine enter(self, name)
     class(profile_t), intent(in) :: self
-    !> What it does
+    !> Name of the part
     character(len=*), intent(in) :: name
     integer :: i
 
     if (.not. associated(self%record)) return
     associate (record => self%record)
-      call charge(record)
+      call add_elapsed(record)
       do i = size(record%rows), 1, -1
         if (record%rows(i)%name == name) exit
       end do
@@ -113,29 +113,29 @@ contains
     class(profile_t), intent(in) :: self
 
     if (.not. associated(self%record)) return
-    call charge(self%record)
+    call add_elapsed(self%record)
     self%record%depth = max(1, self%record%depth - 1)
   end subroutine leave
 
   !> Adds time and memory since the last update to the innermost part. Memory is queried at intervals only, as the query
   !> takes longer than small parts.
-  subroutine charge(record)
-    !> What has been found
+  subroutine add_elapsed(record)
+    !> The profile so far
     type(record_t), intent(inout) :: record
     real(wp) :: seconds, megabytes
     ! Seconds: twice what the query takes, which reads a file of the system.
-    real(wp), parameter :: a_while = 1.0e-4_wp
+    real(wp), parameter :: min_query_interval = 1.0e-4_wp
 
     seconds = wall_time()
     megabytes = record%megabytes
-    if (seconds - record%seconds > a_while) megabytes = peak_megabytes()
+    if (seconds - record%seconds > min_query_interval) megabytes = peak_megabytes()
     associate (row => record%rows(record%open(record%depth)))
       row%seconds = row%seconds + seconds - record%seconds
       row%megabytes = row%megabytes + megabytes - record%megabytes
     end associate
     record%seconds = seconds
     record%megabytes = megabytes
-  end subroutine charge
+  end subroutine add_elapsed
 
   !> The parts so far.
   function rows(self)
@@ -145,7 +145,7 @@ contains
 
     allocate (rows(0))
     if (.not. associated(self%record)) return
-    call charge(self%record)
+    call add_elapsed(self%record)
     rows = self%record%rows
   end function rows
 

@@ -11,7 +11,7 @@ module timers
 
   !> One stopwatch.
   type :: timer_t
-    !> What is timed
+    !> Name of the timed part
     character(len=name_length) :: name = ''
     !> Wall-clock seconds and of the processor, summed over all finished runs
     real(wp) :: wall = 0, processor = 0
@@ -25,7 +25,7 @@ module timers
   type :: timer_set_t
     !> The stopwatches in the order of their first start
     type(timer_t), allocatable, private :: list(:)
-    !> What is timed is added to this profile, too
+    !> Profile to which the times are added, too
     type(profile_t) :: profile
   contains
     !> Starts a stopwatch.
@@ -42,7 +42,7 @@ contains
   !> Starts a stopwatch.
   subroutine start(self, name, part)
     class(timer_set_t), intent(inout) :: self
-    !> What is timed
+    !> Name of the timed part
     character(len=*), intent(in) :: name
     !> Part of the profile that it belongs to, if that has another name
     character(len=*), intent(in), optional :: part
@@ -66,7 +66,7 @@ contains
   !> Stops a stopwatch that was started and adds the run.
   subroutine stop_timer(self, name)
     class(timer_set_t), intent(inout) :: self
-    !> What was timed
+    !> Name of the timed part
     character(len=*), intent(in) :: name
     real(wp) :: processor
     integer :: i
@@ -103,7 +103,7 @@ contains
   !> Position of a stopwatch in the list, 0 if there is none of that name.
   pure integer function position(self, name)
     class(timer_set_t), intent(in) :: self
-    !> What is timed
+    !> Name of the timed part
     character(len=*), intent(in) :: name
 
     position = 0

@@ -28,7 +28,7 @@ contains
     integer, intent(in) :: kinematics
     !> Unknowns (5, points), used for von Karman's strains only
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> What multiplies the stiffness, and the mass
+    !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
     !> Matrix of each element (lane, row, column); unknown = 5 (node - 1) + component
     real(wp), intent(out) :: k(lanes, 45, 45)

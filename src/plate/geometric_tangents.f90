@@ -1,4 +1,4 @@
-!> What von Karman's strains add to the stiffness of a batch of elements: the coupling of the slopes with the membrane
+!> Geometric stiffness of a batch of elements by von Karman's strains: the coupling of the slopes with the membrane
 !> strains and curvatures, and the membrane forces acting on the slopes.
 module geometric_tangents
   use kinds, only: wp

@@ -58,7 +58,7 @@ module crack_band_sections
     procedure :: exchange
     !> Accepts the trial state; returns changed sections.
     procedure :: commit
-    procedure :: hand_over
+    procedure :: commit_sections
     !> Energy that the trial dissipates in each mode, on this rank.
     procedure :: dissipation_sums
     !> Energy dissipated so far in each mode, on this rank.
@@ -231,7 +231,7 @@ contains
   end subroutine commit
 
   !> Accepts the trial state, and returns the sections of changed elements.
-  pure subroutine hand_over(self, stiffness, free)
+  pure subroutine commit_sections(self, stiffness, free)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     !> Section stiffness, (lanes, 21, batches)
@@ -247,7 +247,7 @@ contains
       if (allocated(free)) &
         free(lane_of(element), :, batch_of(element)) = self%free(lane_of(element), :, batch_of(element))
     end do
-  end subroutine hand_over
+  end subroutine commit_sections
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
   pure function dissipation_sums(self) result(energies)

@@ -126,7 +126,7 @@ contains
     if (allocated(self%bands)) then
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
-      call self%bands%hand_over(self%stiffness, self%free)
+      call self%bands%commit_sections(self%stiffness, self%free)
     else
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)

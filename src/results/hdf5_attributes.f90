@@ -18,7 +18,7 @@ contains
     character(len=*), intent(in) :: name
     !> Its unit
     character(len=*), intent(in) :: unit
-    !> What it is
+    !> Meaning of the dataset
     character(len=*), intent(in) :: meaning
     integer(hid_t) :: dataset
     integer :: statuses(2), status

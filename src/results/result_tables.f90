@@ -165,7 +165,7 @@ contains
 
   !> A table in Markdown, for the manual.
   subroutine markdown_table(heading, rows, lines)
-    !> What the cells hold, separated by bars
+    !> Contents of the cells, separated by bars
     character(len=*), intent(in) :: heading
     !> The table
     character(len=*), intent(in) :: rows(:)
@@ -183,7 +183,7 @@ contains
 
   !> A table in columns of equal width, for the terminal.
   subroutine plain_table(heading, rows, lines)
-    !> What the cells hold, separated by bars
+    !> Contents of the cells, separated by bars
     character(len=*), intent(in) :: heading
     !> The table
     character(len=*), intent(in) :: rows(:)

@@ -38,7 +38,7 @@ module elastic_impacts
   real(wp), parameter :: waiting = 2
   !> Fraction of the largest force above which a contact is compared with it: errors permitted, at most 5 %, cannot make
   !> a smaller one the largest.
-  real(wp), parameter :: like_peaks = 0.9_wp
+  real(wp), parameter :: min_peak_ratio = 0.9_wp
   !> Halvings and Newton steps for the force; Newton needs five.
   integer, parameter :: max_iterations = 60
 
@@ -58,7 +58,7 @@ contains
     integer, intent(in) :: max_steps
     !> True: all steps are taken; false: the calculation ends once the contact is over
     logical, intent(in) :: to_the_end
-    !> What was found
+    !> The impact
     type(elastic_impact_t) :: elastic
     type(indentation_t) :: contact
     type(patch_response_t) :: patch
@@ -193,7 +193,7 @@ contains
       now = maxval(fine%force(ratio*(i - 1) + 1:ratio*i))
       largest = max(largest, now)
       if (now > 0 .and. i < number) cycle
-      if (largest >= like_peaks*fine%peak) &
+      if (largest >= min_peak_ratio*fine%peak) &
         relative(1) = max(relative(1), abs(maxval(coarse%force(first:i)) - largest)/fine%peak)
       largest = 0
       first = i

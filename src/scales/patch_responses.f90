@@ -39,7 +39,7 @@ module patch_responses
     real(wp), allocatable :: predicted(:)
     !> Transforms of the response by the power of two of the block that they are folded with
     type(spectrum_t) :: spectra(31)
-    !> What transforms of any of these lengths take
+    !> Workspace of the transforms of these lengths
     complex(wp), allocatable :: turns(:)
   end type patch_response_t
 

@@ -29,7 +29,7 @@ module scaled_impacts
   integer, parameter :: max_trials = 8
   !> Part of the bound that a smaller factor aims at: changes grow less than in proportion. It changes the factor by 5 %
   !> and the step by 2.5 %.
-  real(wp), parameter :: aim = 0.95_wp
+  real(wp), parameter :: safety_factor = 0.95_wp
 
 contains
 
@@ -64,7 +64,7 @@ contains
     do trial = 1, max_trials
       found%change = change_of_history(elastic, found%scaling, step, end, exact)
       if (found%change <= bound) exit
-      found%scaling = 1 + (found%scaling - 1)*aim*bound/found%change
+      found%scaling = 1 + (found%scaling - 1)*safety_factor*bound/found%change
     end do
     if (found%change > bound) found = scaled_impact_t()
     found%slowed = (found%scaling - 1)*slowed

@@ -101,7 +101,7 @@ contains
     real(wp), intent(in) :: end
     !> Side of the elements; 0: infinitely fine
     real(wp), intent(in) :: cell
-    !> What was found
+    !> The impacts
     type(elastic_impact_t) :: run
     type(modal_plate_t) :: plate
     integer :: steps
@@ -121,7 +121,7 @@ contains
     type(setup_elastic_impact_t), intent(in) :: self
     !> End of the run; 0: not known
     real(wp), intent(in) :: end
-    !> What was found
+    !> The impacts
     type(elastic_impact_t) :: run
     real(wp) :: horizon
 

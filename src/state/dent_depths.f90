@@ -14,7 +14,7 @@ module dent_depths
   character(len=result_row_length), parameter, public :: dent_rows(*) = [character(len=result_row_length) :: &
     'dent_depth | real | length | Depth of the struck face at its deepest point below the plane of the surface 3 to 4 &
       &radii of the nose away, with dent_indentation; meant for a plate at rest.', &
-    'dent_indentation | real | length | Part of dent_depth that the indentation law keeps.']
+    'dent_indentation | real | length | Permanent indentation by the indentation law, a part of dent_depth.']
 
   !> Distances from the struck point, in radii of the nose, between which the plane is fitted: 24 and 32 mm for a nose
   !> of 16 mm in diameter, the position of a gauge, within the window of the frame.

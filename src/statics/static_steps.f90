@@ -205,7 +205,7 @@ contains
       sums(2) = model%product(change, new%motion%internal + old%motion%internal)/2
       sums(3) = model%product(change, loads + loads_before)/2
       sums(4:5) = 0
-      if (model%has_bonds) then
+      if (model%has_point_stiffness) then
         faces = old%interfaces%contact_work(model, old%motion%displacement, change)
         sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
         sums(5) = faces/2

@@ -30,11 +30,11 @@ module step_columns
     'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
     'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
       &rate times area.', &
-    'energy_ply_damage | real | energy | Strain energy lost as failures of plies took stiffness away.', &
-    'energy_contact | real | energy | Work done against contact of separated faces and penalty ties, and what &
-      &faces and frame lose as they meet.', &
-    'energy_algorithmic | real | energy | Algorithmic dissipation: energy that time integrators, implicit &
-      &interfaces and released ties took out of the motion, less energy_delamination.', &
+    'energy_ply_damage | real | energy | Energy dissipated by the failure of plies.', &
+    'energy_contact | real | energy | Energy lost as surfaces, or plate and frame, meet: minus the work of &
+      &contact forces; with penalty ties also their energy.', &
+    'energy_algorithmic | real | energy | Algorithmic (numerical) dissipation by time integrators, implicit &
+      &interface forces and released ties, without the energy_delamination of fronts.', &
     'energy_error | real | energy | Energy imbalance: the sum of the eight energies before, &
       &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
 
@@ -62,13 +62,13 @@ module step_columns
 
   !> Further entries of the ledger.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
-    'energy_friction | real | energy | Energy that friction between faces has turned into heat.', &
-    'energy_layers | real | energy | Strain and kinetic energy that the plate had more than the layers that took its &
-      &place where a zone grew: rounding.']
+    'energy_friction | real | energy | Heat of sliding by friction between surfaces.', &
+    'energy_layers | real | energy | Strain and kinetic energy lost where layers replaced the plate as a zone grew: &
+      &round-off.']
 
   !> Damping.
   character(len=result_row_length), parameter, public :: damping_rows(*) = [character(len=result_row_length) :: &
-    'energy_damping | real | energy | Kinetic energy that &time settle has taken from the plate.']
+    'energy_damping | real | energy | Kinetic energy removed by settle of &time.']
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &

@@ -51,7 +51,7 @@ contains
     allocate (self%now, source=new_state(model))
     if (is_explicit(stepping)) then
       allocate (self%explicit)
-      self%unknowns = count(.not. model%held)
+      self%unknowns = count(.not. model%fixed)
       if (.not. resumed .and. has_initial_motion(model)) &
         call equilibrate_initial_stresses(self%operator, model, linear_solver, self%now, error)
       if (.not. allocated(error)) call self%explicit%start(model, stepping%central, self%now)

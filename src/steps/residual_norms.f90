@@ -92,7 +92,7 @@ contains
     real(wp) :: squares(2)
     real(wp), allocatable :: folded(:, :)
 
-    if (any(numbering%leader(:numbering%owned) > 0)) then
+    if (any(numbering%master(:numbering%owned) > 0)) then
       folded = force(:, :numbering%owned)
       call numbering%fold(folded)
       squares = plain_sums(numbering, folded)

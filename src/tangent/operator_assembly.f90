@@ -181,8 +181,8 @@ contains
     real(wp), allocatable :: signs(:)
     integer :: a, component
 
-    if (any(numbering%leader(points) > 0)) then
-      signs = [(merge(numbering%signs(:, points(a)), 1.0_wp, numbering%leader(points(a)) > 0), a=1, size(points))]
+    if (any(numbering%master(points) > 0)) then
+      signs = [(merge(numbering%signs(:, points(a)), 1.0_wp, numbering%master(points(a)) > 0), a=1, size(points))]
       call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), &
                       matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)))
     else
@@ -235,7 +235,7 @@ contains
       do k = 1, 3
         coupling(k, k) = 0
       end do
-      if (numbering%leader(i) > 0) coupling = coupling*spread(numbering%signs(:3, i), 1, 3) &
+      if (numbering%master(i) > 0) coupling = coupling*spread(numbering%signs(:3, i), 1, 3) &
                                                  *spread(numbering%signs(:3, i), 2, 3)
       call solver%matrix%add(numbering%equation(1:3, i), coupling)
     end do

@@ -89,7 +89,7 @@ contains
     self%diagonal = self%displacement
     self%added = self%displacement(:3, :)
     self%stiffness = model%elements%stiffness
-    call number_equations(model%mesh, model%distribution, model%held, self%numbering, model%images)
+    call number_equations(model%mesh, model%distribution, model%fixed, self%numbering, model%images)
     self%timers%profile = model%profile
     allocate (self%solver)
     self%solver%factorization = factorization
@@ -138,7 +138,7 @@ contains
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
 
-    if (model%has_bonds) call assemble_diagonal(model, self%numbering, self%added, self%solver)
+    if (model%has_point_stiffness) call assemble_diagonal(model, self%numbering, self%added, self%solver)
     call self%solver%matrix%finish_assembly(error)
     call self%timers%start('factorization')
     if (.not. allocated(error)) call self%solver%factorize(error)
@@ -261,7 +261,7 @@ contains
     call archive%item('operator/mass_factor', self%mass_factor)
     associate (share => model%distribution)
       call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
-      if (model%has_bonds) &
+      if (model%has_point_stiffness) &
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
     if (model%setup%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)

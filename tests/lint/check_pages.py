@@ -8,6 +8,7 @@ check_pages.py [ROOT] [--write] [--sentences]
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
+- doc/testing.md has five questions for each page of theory, manual and tutorial, numbered 1 to 5.
 - Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those referred to exist.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
@@ -40,6 +41,7 @@ DIARY = re.compile(
     r"up to now|until now|has now been)\b",
     re.IGNORECASE,
 )
+QUESTIONS = re.compile(r"^\*\*\[[^\]]+\]\(([^)]+)\)\*\*\n\n((?:\d+\..*\n)+)", re.MULTILINE)
 BEGIN, END = "<!-- lists: written by tests/lint/check_pages.py --write -->", "<!-- end of the lists -->"
 ROW = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
 TERM = re.compile(r"^\*\*(.+?)\*\*(.*?)(?=^\*\*|^#|\Z)", re.MULTILINE | re.DOTALL)
@@ -312,6 +314,21 @@ def check_equations(pages_of_theory):
                     yield f"{page}:{number}: there is no equation ({name})"
 
 
+def check_questions(root):
+    """Breaches by pages without five questions in the reading test."""
+    testing = root / "doc/testing.md"
+    if not testing.exists():
+        return
+    asked = {}
+    for link, numbers in QUESTIONS.findall(testing.read_text(encoding="utf-8")):
+        asked[link] = re.findall(r"^(\d+)\.", numbers, re.MULTILINE)
+    for folder in ("theory", "manual", "tutorial"):
+        for page in sorted((root / "doc" / folder).glob("*.md")):
+            name = f"{folder}/{page.name}"
+            if asked.get(name) != list("12345"):
+                yield f"doc/testing.md:1: {name} has no five questions in the reading test"
+
+
 def main(arguments):
     """Check the pages; return the exit code."""
     folders = [argument for argument in arguments if not argument.startswith("--")]
@@ -323,7 +340,7 @@ def main(arguments):
         total = sum(1 for page in pages(root) for _ in sentences(page))
         print(f"{len(found)} of {total} sentences have more than {LONGEST} words")
         return 0
-    breaches = list(check_index(root, "--write" in arguments))
+    breaches = [*check_index(root, "--write" in arguments), *check_questions(root)]
     breaches += check_equations([root / "doc" / "theory.md", *sorted((root / "doc" / "theory").glob("*.md"))]
                                 if (root / "doc" / "theory.md").exists() else [])
     names = Names(root)

@@ -13,7 +13,7 @@ PLACES = {
     "CITATION.cff": r"^version: (\S+)$",
     "CHANGELOG.md": r"^## (\S+)",
     "postproc/pyproject.toml": r'^version = "(\S+)"$',
-    "packaging/spack/packages/implam/package.py": r'^    version\("(\S+)"\)$',
+    "packaging/spack/spack_repo/implam/packages/implam/package.py": r'^    version\("(\S+)"\)$',
     "packaging/implam.def": r"^  Version (\S+)$",
     "doc/limits.md": r"What version (\S+) does not model",
 }

@@ -118,6 +118,6 @@ contains
         shape(3, i) = sin(m*pi*(x(1) + 0.5_wp))*sin(n*pi*(x(2) + 0.5_wp))
       end associate
     end do
-    where (model%held(:, model%distribution%points)) shape = 0
+    where (model%fixed(:, model%distribution%points)) shape = 0
   end function shaped_like
 end module small_setups

@@ -1,4 +1,4 @@
-"""Nastran's bulk data and what its case control says of them; pyNastran reads the fields."""
+"""Nastran's bulk data and the sets of its case control; pyNastran reads the fields."""
 
 import codecs
 import contextlib
@@ -16,7 +16,7 @@ _CEND = re.compile(r"\s*CEND\b", re.I)
 
 
 class BulkData:
-    """The cards of a file and what its case control says of supports."""
+    """The cards of a file and the supports chosen by its case control."""
 
     def __init__(self, path: Path, text: str) -> None:
         """Split the text into cards."""
@@ -78,7 +78,7 @@ class BulkData:
         self.mass_factor = next(iter(factors), self.mass_factor)
 
     def missing(self, sentence: str) -> DeckError:
-        """Return an error about what isn't there."""
+        """Return an error on a missing card."""
         return DeckError(f"{self.path.name}: {sentence}")
 
     def error(self, card: BulkCard, sentence: str) -> DeckError:

@@ -184,7 +184,7 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
 
 
 def _rest(material: Material) -> tuple[object, ...]:
-    """Return what materials that count as equal may differ in."""
+    """Return the constants in which materials may differ and count as equal."""
     return material.strengths, material.expansion
 
 

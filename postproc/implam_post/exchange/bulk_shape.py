@@ -133,7 +133,7 @@ def read_grids(bulk: BulkData) -> dict[int, tuple[BulkCard, Any]]:
 
 
 def _grid_defaults(bulk: BulkData) -> dict[str, tuple[int, Any]]:
-    """Return what GRDSET gives to grids whose fields are blank: their number in GRID and the value, by name."""
+    """Return the fields of GRDSET for grids with blank ones: their number in GRID and the value, by name."""
     from pyNastran.bdf.cards.nodes import GRDSET
     cards = list(bulk.named("GRDSET"))
     if not cards:
@@ -171,7 +171,7 @@ def _system(bulk: BulkData, card: BulkCard) -> Any:
 
 
 def _without_prints(define: Callable[[], Any], bulk: BulkData, card: BulkCard) -> Any:
-    """Return what defines the axes of a system, without the vectors that pyNastran prints of points on one line."""
+    """Return the axes of a system, without the vectors that pyNastran prints of collinear points."""
     try:
         with contextlib.redirect_stdout(io.StringIO()):
             return define()

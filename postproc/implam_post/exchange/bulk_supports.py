@@ -1,4 +1,4 @@
-"""Supports of the edges out of bulk data: SPC1, SPC and what GRIDs hold by themselves."""
+"""Supports of the edges from bulk data: SPC1, SPC and the constraints of GRID."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -103,7 +103,7 @@ def _constraints(bulk: BulkData, sets: set[int]) -> Iterable[tuple[BulkCard, lis
 
 def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], components: str,
           grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape) -> None:
-    """Note what a card holds, in the panel's axes; the rotation about the normal has no stiffness and doesn't count."""
+    """Note the components that a card constrains, in the panel's axes, without the rotation about the normal."""
     for number in numbers:
         if number not in shape.places:
             continue
@@ -125,7 +125,7 @@ def _edges_of(shape: Shape, place: np.ndarray) -> list[int]:
 
 
 def _common(bulk: BulkData, held: Held, along: list[int], number: int) -> set[int]:
-    """Return what an edge holds all along between its corners; in its plane, what it doesn't hold all along is none."""
+    """Return the components constrained all along an edge between its corners."""
     if not along:
         raise bulk.missing(f"the edge {EDGES[number]} has no grid between its corners that shows its support.")
     each = [set(held.get(grid, {})) for grid in along]
@@ -169,7 +169,7 @@ def _in_plane(kinds: tuple[str, ...], in_plane: list[set[int]]) -> tuple[bool, t
 
 def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]], remarks: Remarks
           ) -> list[tuple[BulkCard, int]]:
-    """Return card and grid of what is held in-plane beyond the edges; corners have to hold what their edges do."""
+    """Return card and grid of in-plane constraints beyond the edges; corners must have those of their edges."""
     pins = []
     for grid, edges in on_edges.items():
         expected = set().union(*(common[number] for number in edges))

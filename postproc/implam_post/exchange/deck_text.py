@@ -15,7 +15,7 @@ _BESIDE_PATCH = 3
 
 
 class Impact(NamedTuple):
-    """What strikes the panel, and for how long it is followed; what is None is left to fill in."""
+    """The impact of the panel and the end of the run; None is left to fill in."""
 
     mass: float | None = None
     velocity: float | None = None
@@ -26,7 +26,7 @@ class Impact(NamedTuple):
 
 def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: Sequence[Ply], impact: Impact,
               thermal: Thermal | None = None) -> str:
-    """Return the deck; groups of the impact are comments unless `impact` gives what they need."""
+    """Return the deck; groups of the impact are comments unless `impact` gives their values."""
     return "\n".join([*_header(source, shape), *_plate(name, shape, supports, impact), *_laminate(plies),
                       *_thermal(thermal), *_impact(impact)]) + "\n"
 

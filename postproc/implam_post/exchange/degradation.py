@@ -37,7 +37,7 @@ class Degradation:
 
 
 def degradation_of(deck: Deck) -> Degradation:
-    """Return what &ply_damage says; its defaults without the group."""
+    """Return the values of &ply_damage; its defaults without the group."""
     rule = Degradation(deck.number("ply_damage", "d", 100.0), deck.number("ply_damage", "e", 1e-3))
     if not (rule.divisor >= 1 and 0 < rule.floor <= 1 and math.isfinite(rule.divisor)):
         raise deck.error("ply_damage", "d must be at least 1, e above 0 and at most 1.")

@@ -1,4 +1,4 @@
-"""Write a panel with what a run left of it for Nastran (`implam-to-nastran`) or Abaqus (`implam-to-abaqus`)."""
+"""Write a panel with the damage of a run for Nastran (`implam-to-nastran`) or Abaqus (`implam-to-abaqus`)."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -12,7 +12,7 @@ from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 
 
 def summary(panel: Panel) -> Iterator[str]:
-    """Return what the panel holds."""
+    """Return the contents of the panel in words."""
     cells = len(panel.stacks)
     delaminated = sum(len(stacks) > 1 for stacks in panel.stacks.values())
     failed = sum(any(any(stack.failures) for stack in stacks) for stacks in panel.stacks.values())

@@ -50,7 +50,7 @@ def _within(angle: float) -> float:
 
 
 def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
-    """Return which cards were taken, what of them wasn't, and which cards weren't, with their lines."""
+    """Return the cards that were read, fields of them that were not, and other cards, with their lines."""
     lines = [card.line for card in bulk.cards]
     if bulk.first_line > 1:
         yield f"lines 1-{bulk.first_line - 1}: executive and case control, of which SPC counts"

@@ -28,7 +28,7 @@ class MaterialState(NamedTuple):
 
     @property
     def failed(self) -> str:
-        """What failed, in words; empty if nothing did."""
+        """Failures in words; empty without any."""
         return failed_modes(self.failures)
 
 
@@ -60,7 +60,7 @@ class Section:
 
     @property
     def title(self) -> str:
-        """Plies by their numbers and what failed in them."""
+        """Plies by their numbers and failures."""
         words = [f"plies {self.first} to {self.first + len(self.layers) - 1}"]
         words += [f"{number} {layer.material.failed}" for number, layer in enumerate(self.layers, self.first)
                   if layer.material.failures]
@@ -110,7 +110,7 @@ class Panel:
         return sorted(count, key=lambda section: (-len(section.layers), -count[section], section.first))
 
     def materials(self) -> dict[MaterialState, Material]:
-        """Return the materials that occur with what failures have left of them, undamaged ones first."""
+        """Return the materials that occur, each with its reduced stiffness, undamaged ones first."""
         originals = {ply.material.name: ply.material for ply in self.plies}
         states = {MaterialState(name, 0) for name in originals}
         states |= {layer.material for section in self.sections() for layer in section.layers}

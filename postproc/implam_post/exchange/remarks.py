@@ -1,4 +1,4 @@
-"""Remarks on the cards that were read: what of them counts otherwise, or doesn't count."""
+"""Remarks on the cards that were read: fields with another effect, or none."""
 
 from collections.abc import Mapping
 

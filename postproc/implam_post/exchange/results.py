@@ -143,7 +143,7 @@ def _starters(deck: Deck, plies: int) -> list[tuple[int, float]]:
 
 
 def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
-    """Put the panel together with what the deck says of supports and load."""
+    """Combine the panel with supports and load of the deck."""
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
         raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
     fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"

@@ -96,7 +96,7 @@ def _element(cell: Cell, stack: Stack, numbers: dict[Place, dict[int, int]]) -> 
 
 
 def _supports(panel: Panel, numbers: dict[Place, dict[int, int]]) -> dict[str, list[int]]:
-    """Return the grids on the edges by what is held there."""
+    """Return the grids on the edges by their constrained components."""
     held: dict[int, set[str]] = {}
     last = tuple(2 * count for count in panel.cells)
     for place, grids in numbers.items():

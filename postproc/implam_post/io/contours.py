@@ -27,7 +27,7 @@ def area(cells: np.ndarray) -> float:
 def areas(cells: np.ndarray) -> np.ndarray:
     """Return the area of each polygon, (polygons, corners, 2)."""
     x, y = cells[..., 0], cells[..., 1]
-    return np.abs(np.sum(x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1), axis=-1)) / 2
+    return np.asarray(np.abs(np.sum(x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1), axis=-1)) / 2)
 
 
 def nine_points(corners: np.ndarray) -> np.ndarray:
@@ -111,4 +111,4 @@ def outline(cells: np.ndarray) -> np.ndarray:
     np.add.at(balance, edge.ravel(), np.where(forward, 1, -1) * (ends[:, 0] != ends[:, 1]))
     kept = balance != 0
     turned = (balance[kept] > 0) != forward[first[kept]]
-    return np.where(turned[:, None, None], edges[first[kept]][:, ::-1], edges[first[kept]])
+    return np.asarray(np.where(turned[:, None, None], edges[first[kept]][:, ::-1], edges[first[kept]]))

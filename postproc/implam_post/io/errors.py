@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from typing import Never
 
 EXIT_DONE, EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_INTERRUPTED = 0, 1, 2, 4, 130
 
@@ -28,7 +29,7 @@ class FileError(ImplamError):
 class CommandParser(argparse.ArgumentParser):
     """Parser of a command line that ends with the solver's exit code for wrong usage."""
 
-    def error(self, message: str) -> None:
+    def error(self, message: str) -> Never:
         """Say what is wrong and end."""
         self.print_usage(sys.stderr)
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")

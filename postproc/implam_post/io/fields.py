@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -86,7 +87,7 @@ class Snapshot:
 
     def of_interface(self, below_ply: int) -> np.ndarray:
         """Return which elements have this interface on top."""
-        return self.mesh.first_ply == below_ply + 1
+        return np.asarray(self.mesh.first_ply == below_ply + 1)
 
     def projected(self) -> tuple[np.ndarray, np.ndarray]:
         """Return cells in plan and the largest of the shares of all interfaces at each of their points."""
@@ -304,15 +305,17 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
     return Snapshot(time, mesh, np.clip(shares, 0, 1), failures, release_ratio, interfaces, projected)
 
 
-def _figures(group: h5py.Group | dict) -> tuple[dict[int, Interface], float | None]:
+def _figures(group: h5py.Group | dict[str, Any]) -> tuple[dict[int, Interface], float | None]:
     """Read the figures of the interfaces and the projected area; files of earlier versions have none."""
     if not len(group):
         return {}, None
     plies, cohesive, stages, sizes = (_finite(group[name][()].ravel(), name) for name in (
         "ply_above", "is_cohesive", "stage", "area"))
     bounds = _finite(group["bounds"][()], "bounds", len(plies))
-    interfaces = {int(ply): Interface(float(size), bool(law), stage > 1, tuple(map(float, box)))
-                  for ply, law, stage, size, box in zip(plies, cohesive, stages, sizes, bounds, strict=True)}
+    interfaces = {int(ply): Interface(float(size), bool(law), bool(stage > 1),
+                                      (float(x_min), float(x_max), float(y_min), float(y_max)))
+                  for ply, law, stage, size, (x_min, x_max, y_min, y_max)
+                  in zip(plies, cohesive, stages, sizes, bounds, strict=True)}
     return interfaces, float(_finite(group["projected_area"][()].ravel(), "projected_area", 1)[0])
 
 

@@ -66,8 +66,8 @@ def read_tokens(text: str, name: str) -> list[Token]:
         match = _TOKEN.match(text, position)
         if match is None:
             raise DeckError(f"{name}:{line}: cannot read {text[position:].splitlines()[0]!r}.")
-        if match.lastgroup != "space":
-            tokens.append(Token(match.lastgroup, match.group(), line, position))
+        if match.lastgroup not in (None, "space"):
+            tokens.append(Token(str(match.lastgroup), match.group(), line, position))
         line += match.group().count("\n")
         position = match.end()
     return tokens

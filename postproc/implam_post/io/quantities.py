@@ -61,13 +61,13 @@ def contacts(history: History) -> list[Contact]:
     return found
 
 
-def _zero(time: np.ndarray, depth: np.ndarray, row: int, inward: int, limit: float) -> float:
+def _zero(time: np.ndarray, depth: np.ndarray, row: np.integer, inward: int, limit: float) -> float:
     """Return when `depth`, extrapolated from `row` and its neighbour in the contact, is zero, between row and limit."""
     neighbour = row + inward
     if not 0 <= neighbour < len(time) or depth[neighbour] <= depth[row]:
         return limit
     zero = time[row] - depth[row] * (time[neighbour] - time[row]) / (depth[neighbour] - depth[row])
-    return np.clip(zero, min(limit, time[row]), max(limit, time[row]))
+    return float(np.clip(zero, min(limit, time[row]), max(limit, time[row])))
 
 
 def contact(history: History, number: int) -> Contact:

@@ -24,7 +24,7 @@ class RunError(ImplamError):
 class StartedRun:
     """A run in a process of its own; what it prints goes into output.txt beside its results."""
 
-    def __init__(self, folder: Path, process: subprocess.Popen) -> None:
+    def __init__(self, folder: Path, process: subprocess.Popen[bytes]) -> None:
         """Watch over a process that writes into a folder."""
         self.folder, self.process = folder, process
 

@@ -12,7 +12,7 @@ class OrNull:
     """A member that may be null, as what a run does not have."""
 
     def __init__(self, kind: object) -> None:
-        """Take the kind of what is there otherwise."""
+        """Take the kind of the other value."""
         self.kind = kind
 
 

@@ -43,7 +43,7 @@ class _Reader:
                 return angles, barred
 
     def _item(self) -> tuple[list[float], bool]:
-        """Read an angle or a pair with its count, or a bracket with what stands behind it."""
+        """Read an angle or a pair with its count, or a bracket with its count and symmetry."""
         opening = self._take("[") or self._take("(")
         if not opening:
             angles = self._angle()

@@ -117,7 +117,7 @@ def height_of(width: float, reach: Sequence[float]) -> float:
 
 
 def frame(axes: Axes, fields: Fields, reach: Sequence[float], style: PictureStyle = _PLAIN) -> None:
-    """Show a rectangle around the struck point with room around what is there, equal scales both ways, with units."""
+    """Show a rectangle around the struck point with a margin, equal scales along both axes, and units."""
     largest, middle = max(reach), struck_point(fields)
     half = (0.5 + _MARGIN) * np.maximum(reach, largest / 3) if largest > 0 else np.ones(2)
     low, high = middle - half, middle + half

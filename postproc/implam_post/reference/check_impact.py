@@ -72,7 +72,7 @@ def find_history(deck: Deck, output: Path | None) -> Path | None:
 
 
 def notes(deck: Deck) -> list[str]:
-    """Return what the deck models and the semi-analytic solution leaves out."""
+    """Return the parts of the deck that the semi-analytic solution does not model."""
     found = []
     if deck.choice("case", "kinematics", ("von_karman", "linear")) != "linear":
         found.append("the deck requires von Karman strains; the semi-analytic plate is linear.")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass
 class IndentationLaw:
-    """Force against indentation: Hertz both ways, or Tan and Sun's law with its dent, and what has happened so far.
+    """Force against indentation: Hertz both ways, or Tan and Sun's law with its dent, and its history.
 
     First loading follows F = k alpha**1.5 up to (alpha_m, F_m). Unloading follows
     F_m [(alpha - alpha_0)/(alpha_m - alpha_0)]**q, and a reversal during contact goes back up the same curve.

@@ -19,7 +19,7 @@ class Plate:
     lengths: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Refuse what the series cannot satisfy."""
+        """Refuse boundary conditions that the series cannot satisfy."""
         if not self.section.is_specially_orthotropic():
             raise DeckError("the laminate couples bending with twisting or stretching (A16, A26, D16, D26, B or the "
                             "eccentricity of its mass isn't zero): Navier's series does not hold.")

@@ -111,7 +111,7 @@ def _kernels(case: ImpactCase, modes: int | None, step: float, count: int) -> tu
 
 
 def _static_rest(case: ImpactCase, dynamic: list[int]) -> np.ndarray:
-    """Return what the modes beyond the dynamic ones add to the compliance of patch and centre, without inertia."""
+    """Return the static compliance of patch and centre by the modes beyond the dynamic ones."""
     plate = case.plate
     area = plate.lengths[0] * plate.lengths[1]
     farthest = [max(few, round(_STATIC_HALF_WAVES * length / (2 * case.patch)))

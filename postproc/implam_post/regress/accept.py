@@ -1,4 +1,4 @@
-"""What was found in a run becomes what is expected of the next."""
+"""Results of a run become the expected values of the next."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""Run decks and compare them with what is expected of them (`implam-regress DIR`)."""
+"""Run decks and compare the results with expected values (`implam-regress DIR`)."""
 
 import argparse
 import shutil
@@ -106,8 +106,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 1 if anything isn't as expected."""
     parser = CommandParser(
         "implam-regress", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
-        description="Run decks and compare them with what is expected of them: NAME.toml beside NAME.nml. A deck of\n"
-        "which nothing is expected fails.")
+        description="Run decks and compare the results with expected values, NAME.toml beside NAME.nml. A deck\n"
+        "without expected values fails.")
     parser.add_argument("paths", nargs="+", type=Path, metavar="DIR",
                         help="folders of decks and expectations, or files of expectations; the format is given below")
     parser.add_argument("--decks", type=Path, metavar="DIR", help="folder of the decks (default: beside each file)")
@@ -115,11 +115,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="folder of the runs (default: one of its own, which stays if something failed)")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
-                        help="runs at a time (default: the processors there are)")
+                        help="runs at a time (default: the number of processors)")
     parser.add_argument("--timeout", type=float, metavar="SECONDS", help="longest time a run may take")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the results as JUnit XML")
     parser.add_argument("--accept", action="store_true",
-                        help="write what is found as what is expected, where it isn't met; tolerances stay, and "
+                        help="replace expected values that are not met by the results; tolerances stay, and "
                         "are 0.1 %% and, of times, a tenth of a step in new files")
     return run(_command, parser, arguments)
 

@@ -1,4 +1,4 @@
-"""Compare a history with what is expected of it (`implam-compare HISTORY.csv EXPECT.toml`)."""
+"""Compare a history with expected values (`implam-compare HISTORY.csv EXPECT.toml`)."""
 
 import argparse
 from collections.abc import Sequence
@@ -84,9 +84,9 @@ def _command(options: argparse.Namespace) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 1 if an expectation isn't met."""
     parser = CommandParser("implam-compare", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
-                           description="Compare a history with what is expected of it.")
+                           description="Compare a history with expected values.")
     parser.add_argument("history", type=Path, metavar="HISTORY.csv", help="history written by implam")
-    parser.add_argument("expect", type=Path, metavar="EXPECT.toml", help="what is expected; the format is given below")
+    parser.add_argument("expect", type=Path, metavar="EXPECT.toml", help="expected values; the format is given below")
     parser.add_argument("--variant", metavar="NAME", help="the variant that was run, if the file has several")
     parser.add_argument("--plot", type=Path, metavar="FILE",
                         help="draw the history over each [[curve]] into a picture (PNG, PDF or SVG)")

@@ -1,4 +1,4 @@
-"""One page a run (`implam-report NAME_summary.json`): what it says, with curves and maps, in one HTML file."""
+"""One page per run (`implam-report NAME_summary.json`): summary, curves and maps in one HTML file."""
 
 import argparse
 import math
@@ -164,7 +164,7 @@ def _range(style: PictureStyle, ends: Sequence[float]) -> str:
 
 
 def _event(event: Mapping[str, float] | None, style: PictureStyle, time: str) -> str:
-    """Return when something was first seen, and under what force."""
+    """Return time and force of an event."""
     if event is None:
         return "none"
     force = f"{shown(style, 'force', event['force'])} " if "force" in event else ""

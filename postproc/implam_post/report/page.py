@@ -11,7 +11,7 @@ from implam_post.plot.style import lay_out
 
 
 def rounded(value: object) -> str:
-    """Return a number rounded to four digits; a dash for what is not there."""
+    """Return a number rounded to four digits; a dash for a missing one."""
     if value is None:
         return "-"
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -60,7 +60,7 @@ def _fibre(axes: Any, angle: float, height: float, depth: float) -> None:
 
 
 def plan_figure(summary: Mapping[str, Any], style: PictureStyle) -> Figure:
-    """Draw the plate in plan with the rectangle around what has failed of each interface, all to scale."""
+    """Draw the plate in plan with the rectangle around the failed points of each interface, all to scale."""
     along, across = summary["plate_size"]
     figure = Figure(figsize=(7, min(max(4.4 * across / along, 1.5), 8) + 0.8), layout="constrained")
     axes = figure.subplots()
@@ -150,7 +150,7 @@ def _curves(history: History, columns: Mapping[str, str], label: str, dimension:
 
 
 def map_pictures(fields: Fields, style: PictureStyle) -> Iterator[tuple[str, Figure]]:
-    """Give what the fields hold of interfaces and plies, in plan."""
+    """Give the maps of interfaces and plies, in plan."""
     last = fields.snapshots[-1]
     if last.mesh.interfaces:
         yield "delamination of each interface", delamination_figure(fields, style)

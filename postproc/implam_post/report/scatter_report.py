@@ -73,7 +73,7 @@ def _page(content: Mapping[str, Any], folder: Path) -> str:
 
 
 def _group(group: Mapping[str, Any], content: Mapping[str, Any], style: PictureStyle) -> dict[str, object]:
-    """Return the tables of a group: the figures shown, all of them, and what was measured."""
+    """Return the tables of a group: the figures shown, all figures, and measured values."""
     rows = _rows_of(content["statistics"], group)
     measured = [(row["figure"], row["measured"], row["aim"], row["mean"], row["error_of_mean"],
                  "within" if row["within"] else "beyond") for row in _rows_of(content.get("measured", []), group)]
@@ -112,7 +112,7 @@ def _differences(rows: Iterable[Mapping[str, Any]], statistics: Iterable[Mapping
 
 
 def _inputs(rows: Iterable[Mapping[str, Any]]) -> list[tuple[str, ...]]:
-    """Return the rows of what scatters."""
+    """Return the rows of the random inputs."""
     def variation(row: Mapping[str, Any]) -> str:
         value = row["variation"]
         return f"{value:.3g} (the deck's units)" if row["kind"] == "place" else f"{100 * value:.3g} %"

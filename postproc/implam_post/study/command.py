@@ -98,16 +98,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "implam-study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
         description="Run problems by several methods (meshes, steps, integrators, rules ...), compare each with a\n"
         "reference, and print errors and processor times in one table and one plot, with the Pareto front.\n"
-        "The same command again goes on where a stopped or killed one was, and runs nothing twice.")
-    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="what is studied; the format is given below")
+        "Repeated, the command continues a stopped or killed study; completed runs are not repeated.")
+    parser.add_argument("study", type=Path, metavar="STUDY.toml", help="file of the study; the format is given below")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of runs and table, instead of the file's")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=1, metavar="N",
                         help="runs at a time (default: 1, since runs beside each other falsify times)")
     parser.add_argument("--error", choices=ERRORS, help="error of the plot and of the front, instead of the file's")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of the plot's file (default: png)")
-    parser.add_argument("--table", action="store_true", help="run nothing; write tables and plot of what is there")
-    parser.add_argument("--retry", action="store_true", help="also run again what found no convergence, all afresh")
+    parser.add_argument("--table", action="store_true", help="run nothing; write tables and plot of existing results")
+    parser.add_argument("--retry", action="store_true", help="repeat runs without convergence, too, from their start")
     return run(_command, parser, arguments)
 
 

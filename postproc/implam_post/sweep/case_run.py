@@ -57,7 +57,7 @@ class Record:
 
 
 def read_record(folder: Path) -> Record | None:
-    """Return the record of a case; None if no part of its run has been seen to end, or if what it left is gone."""
+    """Return the record of a case; None if no part of its run has ended, or if its results are missing."""
     path = folder / _RECORD
     if not path.exists():
         return None
@@ -144,7 +144,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
 
 
 def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lock: int, before: Record) -> Record:
-    """Run from a deck or a checkpoint until the program ends; return what holds of all parts together."""
+    """Run from a deck or a checkpoint until the program ends; return the record of all parts together."""
     from_deck = start.suffix == ".nml"
     words = ["run", str(start), "--output", str(folder)] if from_deck else ["restart", str(start)]
     began, cpu_before = time.monotonic(), _children_time()

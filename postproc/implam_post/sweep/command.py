@@ -29,7 +29,7 @@ _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
 def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
-    """Let the program check every deck, and report what is wrong with any of them before one is run."""
+    """Let the program check every deck, and report all errors before one is run."""
     with ThreadPoolExecutor(jobs) as pool:
         verdicts = list(pool.map(lambda case: check_deck(sweep.program, sweep.deck(case)), cases))
     faulty = [(case, printed) for case, (sound, printed) in zip(cases, verdicts, strict=True) if not sound]
@@ -80,7 +80,7 @@ def _write_array(sweep: Sweep, cases: Sequence[Case]) -> int:
 
 
 def _gather(sweep: Sweep, tables: _Tables) -> int:
-    """Write table and plots, list what failed, and return the exit code."""
+    """Write table and plots, list failed cases, and return the exit code."""
     from implam_post.sweep.plots import plot_table
     from implam_post.sweep.table import write_hdf5
     output = sweep.plan.output
@@ -97,7 +97,7 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
 
 
 def _print_scatter(sweep: Sweep, system: str) -> None:
-    """Write and print what runs with random inputs come to."""
+    """Write and print the statistics of runs with random inputs."""
     from implam_post.plot.style import PictureStyle
     from implam_post.sweep.scatter_plots import plot_scatter
     from implam_post.sweep.scatter_results import curves_of, groups_of, write_statistics
@@ -114,7 +114,7 @@ def _print_scatter(sweep: Sweep, system: str) -> None:
 
 
 def print_outcomes(sweep: Sweep) -> int:
-    """List what failed and what is left, and return the exit code."""
+    """List failed and remaining cases, and return the exit code."""
     total = len(sweep.plan.cases)
     ends = [(case, sweep.failure(case)) for case in sweep.plan.cases]
     left = [case for case, failure in ends if failure in (NOT_RUN, STOPPED)]
@@ -129,7 +129,7 @@ def print_outcomes(sweep: Sweep) -> int:
 
 
 def _work(sweep: Sweep, options: argparse.Namespace) -> int:
-    """Write and check the decks, then do with them what is required."""
+    """Write and check the decks, then run or list them."""
     sweep.write_decks()
     for case in sweep.plan.cases if options.retry else ():
         remove_results(sweep.folder(case))
@@ -173,7 +173,7 @@ def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) 
 
 
 def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
-    """Write the table of both runs and the picture of the strengths, list what failed, and return the exit code."""
+    """Write the table of both runs and the picture of the strengths, list failed cases, and return the exit code."""
     from implam_post.sweep.chain import add_figures
     from implam_post.sweep.chain_plots import plot_strength
     from implam_post.sweep.table import write_csv, write_hdf5
@@ -209,19 +209,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = CommandParser(
         "implam-sweep", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
         description="Run a deck over lists, grids or samples of its keys. All decks are checked before one is run.\n"
-        "The same command again goes on where a stopped or killed one was, and runs nothing twice.")
-    parser.add_argument("sweep", type=Path, metavar="SWEEP.toml", help="what is swept; the format is given below")
+        "Repeated, the command continues a stopped or killed sweep; completed cases are not repeated.")
+    parser.add_argument("sweep", type=Path, metavar="SWEEP.toml", help="file of the sweep; the format is given below")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of cases and table, instead of the file's")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
-                        help="runs at a time (default: the processors there are)")
+                        help="runs at a time (default: the number of processors)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--array", action="store_true",
                       help="run nothing; list decks (decks.txt) and commands (array.txt) for a queue's job array")
-    what.add_argument("--table", action="store_true", help="run nothing; write table and plots of what is there")
+    what.add_argument("--table", action="store_true", help="run nothing; write table and plots of existing results")
     parser.add_argument("--only", nargs="+", metavar="VARIANT",
                         help="of [variants] only these, and the first one, which others are compared with")
-    parser.add_argument("--retry", action="store_true", help="also run again what found no convergence, all afresh")
+    parser.add_argument("--retry", action="store_true", help="repeat cases without convergence, too, from their start")
     return run(_command, parser, arguments)
 
 

@@ -105,7 +105,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Plan:
-    """All cases of a sweep, the text of its file, the names of what is set and derived, and where results go.
+    """All cases of a sweep, the text of its file, the names of swept and derived values, and the folder of the results.
 
     `random` names what is drawn at random of what is set. `scatter` is the table [scatter], `measured` a curve beside
     which histories are drawn, and `notes` say what does not scatter. `then` is the deck of second runs, which begin
@@ -155,7 +155,7 @@ def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | N
 
 
 def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: Sequence["Variant"]) -> list[Case]:
-    """Return the cases: each variant with each row of what is swept, run by run."""
+    """Return the cases: each variant with each row of swept values, run by run."""
     runs = maker.scatter.number if maker.scatter else 1
     swept = any(tables[name] for name in ("grid", "list", "samples"))
     rows = list(combinations(tables)) if swept or not (maker.scatter or variants) else [{}]
@@ -269,7 +269,7 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
 
 
 class CaseMaker:
-    """Makes the cases from the base decks, and keeps in mind which free names a formula uses, and what is drawn."""
+    """Makes the cases from the base decks, and records the free names used by formulas, and random samples."""
 
     def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None,
                  request: Callable[[], Library] = dict) -> None:
@@ -329,7 +329,7 @@ class CaseMaker:
         return self._texts[base]
 
     def _resolve(self, word: str, values: dict[str, object], text: str, name: str) -> object:
-        """Return what a word of a formula stands for: a free name, or a key as the case's deck has it."""
+        """Return the value of a word of a formula: a free name, or a key of the case's deck."""
         path: KeyPath | None = key_path(word)
         if path is not None:
             return number_of(text, path, name)

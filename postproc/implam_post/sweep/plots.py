@@ -23,7 +23,7 @@ _DIMENSIONS = {**_WORDS,
 
 
 def plot_table(table: Table, folder: Path) -> list[Path]:
-    """Draw what the table has numbers for, and return the paths of the pictures."""
+    """Draw the numeric columns of the table, and return the paths of the pictures."""
     drawn = []
     for name, figure in (("area_energy", "delaminated_area"), ("threshold_energy", "first_growth_force")):
         drawing = _against_energy(table, figure)
@@ -34,7 +34,7 @@ def plot_table(table: Table, folder: Path) -> list[Path]:
 
 
 def series(table: Table) -> dict[str, np.ndarray]:
-    """Return rows that differ in the impact energy alone, in its order, by what they have in common.
+    """Return groups of rows that differ in the impact energy alone, in its order, by their common values.
 
     All rows are one series without a name if names say nothing: if there are too many, or none has two rows.
     """
@@ -83,7 +83,7 @@ def _against_energy(table: Table, name: str) -> Drawing | None:
 
 
 def _scatter(table: Table) -> Drawing | None:
-    """Draw figures, row by row, against what is swept, column by column; nothing if there is nothing to see."""
+    """Draw figures, row by row, against the swept values, column by column; nothing without values."""
     figures = [name for name in _SCATTERED if np.any(np.isfinite(table.numbers(name)))]
     swept = _varied(table)[:_MAX_COLUMNS]
     if not figures or not swept:
@@ -103,7 +103,7 @@ def _scatter(table: Table) -> Drawing | None:
 
 
 def _scatter_one(axes: Axes, table: Table, name: str, values: np.ndarray) -> str:
-    """Draw numbers against a swept value, or against what isn't a number side by side; return the axis' label."""
+    """Draw numbers against a swept value, or beside each other for values without a number; return the axis' label."""
     numbers = table.numbers(name)
     if numbers is not None:
         along = axis_of(name, _dimension(name), numbers, table.system)
@@ -123,7 +123,7 @@ def _varied(table: Table) -> list[str]:
 
 
 def _dimension(name: str) -> str:
-    """Return what a swept name is measured in, by its last word."""
+    """Return the dimension of a swept name, by its last word."""
     group, _, word = name.lower().rpartition(".")
     return (_DIMENSIONS if group else _WORDS).get(word, "")
 

@@ -1,4 +1,4 @@
-"""The cases of a sweep on this machine: their folders, what has become of them, and the runs that go on."""
+"""The cases of a sweep on this machine: folders, outcomes, and runs in progress."""
 
 import os
 import signal

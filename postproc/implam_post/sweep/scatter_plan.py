@@ -107,7 +107,7 @@ class Scatter:
                 yield Input(f"place {axis}", KeyPath("impactor", None, "at"), PLACE, spread)
 
     def set(self, text: str, name: str, run: int) -> tuple[str, dict[str, float]]:
-        """Return the deck of a run, counted from 0, and what was drawn for it: factors, and distances of the place."""
+        """Return the deck of a run, counted from 0, and its random samples: factors, and distances of the place."""
         deck, drawn, settings = Deck(text, Path(name)), {}, {}
         for found in self.inputs(deck):
             drawn[found.column] = value = self._values(found)[run]
@@ -124,7 +124,7 @@ class Scatter:
         return set_keys(text, settings, name), drawn
 
     def _values(self, found: Input) -> list[float]:
-        """Return what is drawn of an input, run by run: the same whatever else scatters."""
+        """Return the samples of an input, run by run, which do not depend on the other inputs."""
         column = found.column.replace("G13 factor", "G12 factor")
         return _drawn(column, found.kind == PLACE, found.variation, self.number, self.seed, self.method)
 
@@ -143,7 +143,7 @@ def _drawn(column: str, is_place: bool, variation: float, number: int, seed: int
 
 
 def read_scatter(table: Mapping[str, object] | None) -> Scatter | None:
-    """Return what the table [scatter] says; nothing without one."""
+    """Return the settings of the table [scatter]; none without it."""
     if table is None:
         return None
     if not isinstance(table, Mapping):

@@ -22,7 +22,7 @@ _WIDTH, _WORDS, _CAPTION, _BESIDE, _COLUMNS = 5.6, 2.0, 0.6, 0.9, 3
 
 
 def plot_scatter(groups: Sequence[Group], curves: Sequence[History], style: PictureStyle, folder: Path) -> list[Path]:
-    """Draw what there is, and return the paths of the pictures."""
+    """Draw all pictures that have data, and return their paths."""
     drawn = []
     banded = [group for group in groups if group.band() is not None]
     if banded:
@@ -86,7 +86,7 @@ def share_figure(groups: Sequence[Group], style: PictureStyle) -> Figure:
 
 
 def _draw_share(axes: Axes, regions: Sequence[np.ndarray]) -> object:
-    """Draw the share of regions that a place lies in over what axes show."""
+    """Draw the share of the regions that contain a point, over the area of the axes."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     step = max(right - left, high - low) / _PIXELS
     x, y = (np.arange(start + step / 2, stop, step) for start, stop in ((left, right), (low, high)))

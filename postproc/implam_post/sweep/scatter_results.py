@@ -36,8 +36,8 @@ _ROWS = 1000  # of the band of the force history
 
 @dataclass
 class EndedRun:
-    """A run that has a result: its case, summary and history, its figures, seconds of the processor, and what a C-scan
-    sees of it at its end, as polygons of the full plate; nothing if it has no interface. Fields are not kept."""
+    """A run with a result: case, summary and history, figures, processor seconds, and the area of a C-scan at the
+    end, as polygons of the full plate; None without an interface. Fields are not kept."""
 
     case: Case
     results: Run
@@ -48,7 +48,7 @@ class EndedRun:
 
 @dataclass
 class Group:
-    """Runs that differ in random inputs alone: a variant, or a row of what is swept otherwise.
+    """Runs that differ in random inputs alone: a variant, or a row of swept values.
 
     `plate` are the fields of its first run with an interface.
     """
@@ -93,14 +93,14 @@ class Group:
 
 @dataclass(frozen=True)
 class ComparedMean:
-    """A measured figure beside the mean of the runs: what was expected, and what came out."""
+    """A measured figure and the mean of the runs."""
 
     expected: Expectation
     found: Spread
 
     @property
     def passed(self) -> bool:
-        """Return whether the mean lies within what is aimed at."""
+        """Return whether the mean lies within the tolerance."""
         return abs(self.found.mean - self.expected.value) <= self.expected.tolerance
 
 
@@ -122,7 +122,7 @@ def groups_of(sweep: Sweep) -> list[Group]:
 
 
 def _distinctive(plan: Plan) -> list[str]:
-    """Return the names by which groups differ: the variant, and what differs among the cases of one variant."""
+    """Return the names by which groups differ: the variant, and the swept values that differ within a variant."""
     of_variants: dict[object, list[Case]] = {}
     for case in plan.cases:
         of_variants.setdefault(case.values.get(VARIANT), []).append(case)
@@ -145,7 +145,7 @@ def _run(sweep: Sweep, case: Case, group: Group) -> EndedRun:
 
 
 def against_measured(group: Group, measured: Path) -> list[ComparedMean]:
-    """Return the means of a group beside what a file of expectations or a curve of force against time gives."""
+    """Return means of a group and measured values, from a file of expectations or a curve of force over time."""
     histories = [run.results.columns for run in group.ended if run.results.columns is not None]
     if not histories:
         return []
@@ -196,7 +196,7 @@ def pairs_of(groups: Sequence[Group]) -> list[tuple[Group, dict[str, Difference]
 
 def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
                      variants: Sequence[Sequence[str]] = ()) -> list[Path]:
-    """Write statistics, differences, what was measured, the band and the figures of all runs.
+    """Write statistics, differences, measured values, the force band and the figures of all runs.
 
     `variants` is a table that holds the groups side by side, for the page.
     """
@@ -240,7 +240,7 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
 
 
 def inputs_of(plan: Plan) -> list[dict[str, object]]:
-    """Return what scatters of the first deck, each with its variation and where that comes from."""
+    """Return the random inputs of the first deck, each with its coefficient of variation and its source."""
     if plan.scatter is None:
         return []
     kinds = {kind.name: kind for kind in KINDS}

@@ -14,7 +14,7 @@ _RISK = 0.05
 
 @dataclass(frozen=True)
 class Spread:
-    """What a figure comes to over runs: how many have it, mean, standard deviation, and the 5 and 95 % points."""
+    """Statistics of a figure over runs: their number, mean, standard deviation, and the 5 and 95 % points."""
 
     number: int
     mean: float

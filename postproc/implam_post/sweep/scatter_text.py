@@ -20,7 +20,7 @@ MEASURED = ("", "measured", "aim", "mean", "standard error", "off by", "")
 
 
 def statistics_text(plan: Plan, groups: Sequence[Group], style: PictureStyle) -> str:
-    """Return what is printed at the end of a sweep."""
+    """Return the text printed at the end of a sweep."""
     parts = []
     for group in groups:
         seconds = sum(run.seconds for run in group.ended)
@@ -111,7 +111,7 @@ def words_of(name: str) -> str:
 
 
 def _sayer(style: PictureStyle, dimension: str, *values: float) -> Callable[..., str]:
-    """Return what writes values in the unit that suits the largest of some of them."""
+    """Return a function that writes values in the unit that suits the largest of them."""
     axis = style.axis("", dimension, values)
     unit = axis.label.strip(" []") if style.system and dimension else ""
     return lambda value, digits=4: "-" if value != value else f"{_rounded(axis.factor * value, digits)} {unit}".strip()

@@ -133,7 +133,7 @@ def _row(folder: Path, record: Record | None) -> dict[str, object]:
 
 
 def _notes(rows: Iterable[dict[str, object]]) -> list[str]:
-    """Return what a reader of the table has to know."""
+    """Return the notes below the table."""
     versions = sorted({str(row["version"]) for row in rows if row["version"]})
     notes = [f"the runs are of several versions of Implam: {', '.join(versions)}."] if len(versions) > 1 else []
     return notes + [f"no figures: {row['fault']}" for row in rows if row["fault"]]

@@ -41,7 +41,7 @@ program parallel_solvers
   if (allocated(error)) error stop 'There is no such model.'
   ! PETSc explains what goes wrong, as it does without Implam's own handler.
   call PetscPopErrorHandler(ierr)
-  call number_equations(model%mesh, model%distribution, model%held, numbering, model%images)
+  call number_equations(model%mesh, model%distribution, model%fixed, numbering, model%images)
   call assemble()
   call set_up()
   call measure()

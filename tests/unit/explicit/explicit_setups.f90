@@ -63,7 +63,7 @@ contains
     associate (points => self%model%distribution%points)
       do i = 1, size(points)
         do k = 1, 5
-          if (.not. self%model%held(k, points(i))) &
+          if (.not. self%model%fixed(k, points(i))) &
             self%now%motion%velocity(k, i) = largest(merge(1, 2, k <= 3))*scattered(5*points(i) + k)
         end do
       end do

@@ -1,20 +1,20 @@
 !> Exchange between ranks across their borders: columns of a table, grouped by rank.
-module border_traffic
+module border_messages
   use mpi_f08, only: MPI_Comm, MPI_Request, MPI_DOUBLE_PRECISION, MPI_STATUSES_IGNORE, MPI_Irecv, MPI_Isend, MPI_Waitall
   use kinds, only: wp
   implicit none
   private
-  public :: traffic_t, new_traffic, exchange, offsets
+  public :: message_plan_t, new_message_plan, exchange, offsets
 
   !> Columns exchanged with other ranks in one direction, grouped by rank.
-  type :: traffic_t
+  type :: message_plan_t
     !> The other ranks, ascending
     integer, allocatable :: ranks(:)
     !> Where the columns of each of these ranks begin, shape (ranks + 1)
     integer, allocatable :: start(:)
     !> The columns, grouped by rank
     integer, allocatable :: columns(:)
-  end type traffic_t
+  end type message_plan_t
 
 contains
 
@@ -30,27 +30,27 @@ contains
   end function offsets
 
   !> Columns to exchange, from the number of them for each rank.
-  pure function new_traffic(counts, columns) result(traffic)
+  pure function new_message_plan(counts, columns) result(plan)
     !> Number of columns exchanged with each rank
     integer, intent(in) :: counts(0:)
     !> The columns, grouped by rank
     integer, intent(in) :: columns(:)
     !> The same without the ranks that exchange nothing
-    type(traffic_t) :: traffic
+    type(message_plan_t) :: plan
     integer :: r
 
-    allocate (traffic%ranks(count(counts > 0)), source=pack([(r, r=0, size(counts) - 1)], counts > 0))
-    allocate (traffic%start(size(traffic%ranks) + 1))
-    traffic%start = [1, (1 + sum(counts(:traffic%ranks(r))), r=1, size(traffic%ranks))]
-    allocate (traffic%columns(size(columns)), source=columns)
-  end function new_traffic
+    allocate (plan%ranks(count(counts > 0)), source=pack([(r, r=0, size(counts) - 1)], counts > 0))
+    allocate (plan%start(size(plan%ranks) + 1))
+    plan%start = [1, (1 + sum(counts(:plan%ranks(r))), r=1, size(plan%ranks))]
+    allocate (plan%columns(size(columns)), source=columns)
+  end function new_message_plan
 
   !> Sends the values of some columns while receiving those of others.
   subroutine exchange(group, sent, received, field, values)
     !> All ranks
     type(MPI_Comm), intent(in) :: group
     !> Columns that are sent, and columns of the other ranks' that are received
-    type(traffic_t), intent(in) :: sent, received
+    type(message_plan_t), intent(in) :: sent, received
     !> Values, shape (components, columns)
     real(wp), intent(in) :: field(:, :)
     !> Values received, shape (components, columns received)
@@ -71,4 +71,4 @@ contains
     end do
     call MPI_Waitall(size(requests), requests, MPI_STATUSES_IGNORE)
   end subroutine exchange
-end module border_traffic
+end module border_messages

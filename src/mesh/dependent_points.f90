@@ -1,12 +1,12 @@
 !> Points constrained to the motion of others: on the cut line of point symmetry, and on all of a full plate that keeps
 !> its symmetry.
-module leading_points
+module dependent_points
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use symmetry_images, only: symmetry_images_t
   implicit none
   private
-  public :: find_leading_points
+  public :: find_masters
 
   !> Signs of u, v, w, theta_x, theta_y of a dependent point on the cut of a plate with point symmetry.
   real(wp), parameter :: turned(5) = [-1.0_wp, -1.0_wp, 1.0_wp, -1.0_wp, -1.0_wp]
@@ -14,47 +14,47 @@ module leading_points
 contains
 
   !> Finds the master of each point. Components that a point at the centre would reverse are fixed.
-  pure subroutine find_leading_points(mesh, leader, signs, held, images)
+  pure subroutine find_masters(mesh, master, signs, fixed, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Master of each point; 0: none, (points)
-    integer, intent(out) :: leader(:)
+    integer, intent(out) :: master(:)
     !> Signs by which its motion is multiplied, (5, points)
     real(wp), intent(out) :: signs(:, :)
     !> Fixed unknowns; receives those fixed by symmetry, (5, points)
-    logical, intent(inout) :: held(:, :)
+    logical, intent(inout) :: fixed(:, :)
     !> Images of the points; left out or empty: none
     type(symmetry_images_t), intent(in), optional :: images
     integer :: point
 
-    do point = 1, size(leader)
-      leader(point) = mesh%leader(point)
+    do point = 1, size(master)
+      master(point) = mesh%master(point)
       signs(:, point) = turned
     end do
     if (.not. present(images)) return
-    if (allocated(images%points)) call link_images(images, leader, signs, held)
-  end subroutine find_leading_points
+    if (allocated(images%points)) call link_images(images, master, signs, fixed)
+  end subroutine find_masters
 
   !> Makes each point dependent on the first of its images, if that has a lower number.
-  pure subroutine link_images(images, leader, signs, held)
+  pure subroutine link_images(images, master, signs, fixed)
     !> The images
     type(symmetry_images_t), intent(in) :: images
     !> Receives the masters, (points)
-    integer, intent(inout) :: leader(:)
+    integer, intent(inout) :: master(:)
     !> Receives the signs of the points' motion, (5, points)
     real(wp), intent(inout) :: signs(:, :)
     !> Receives the fixed unknowns, (5, points)
-    logical, intent(inout) :: held(:, :)
+    logical, intent(inout) :: fixed(:, :)
     integer :: point, k
 
-    do point = 1, size(leader)
+    do point = 1, size(master)
       do k = 1, size(images%signs, 2)
-        if (images%points(point, k) == point) held(:, point) = held(:, point) .or. images%signs(:, k) < 0
+        if (images%points(point, k) == point) fixed(:, point) = fixed(:, point) .or. images%signs(:, k) < 0
       end do
       k = minloc(images%points(point, :), dim=1)
       if (images%points(point, k) >= point) cycle
-      leader(point) = images%points(point, k)
+      master(point) = images%points(point, k)
       signs(:, point) = images%signs(:, k)
     end do
   end subroutine link_images
-end module leading_points
+end module dependent_points
