@@ -138,7 +138,8 @@ contains
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (is_perforated(model, now)) call add(warning_hole, 0)
     end if
-    exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), deck%is_static())
+    exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
+                                  deck%is_static())
     call record%note_scaled(now%ledger%scaled, energy_check%largest)
     if (deck%is_impact() .or. now%time > slow_start*deck%stepping%time%end) then
       if (record%scaled_energy > max_scaled*energy_check%largest) call add(warning_scaled, 0)

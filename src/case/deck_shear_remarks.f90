@@ -42,7 +42,8 @@ contains
     end if
     do i = 1, size(deck%delaminations)
       if (all(deck%delaminations(i)%zone >= (1 - rounding)*deck%plate%length)) cycle
-      call remark(deck%settings, problems, delamination_group, key_zone, 'at the border of the zone all layers have '// &
+      call remark(deck%settings, problems, delamination_group, key_zone, &
+                  'at the border of the zone all layers have '// &
                   'one rotation, though plies shear unlike each other: the plate is up to a few per cent too '// &
                   'stiff; take a zone as large as the plate.', i)
       exit

@@ -62,9 +62,9 @@ contains
     zones = zones_of(setup)
     self%mesh = create_mesh(setup%plate, setup%mesh, size(self%plies), zones)
     self%membrane_idle = is_membrane_idle(setup, size(zones), self%section)
-    self%held = fixed_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
-    if (allocated(setup%supports)) call fix_by_rigs(self%mesh, setup%plate, setup%supports, self%held)
-    self%images = find_images(self%mesh, setup%plate%kept, self%held)
+    self%fixed = fixed_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
+    if (allocated(setup%supports)) call fix_by_rigs(self%mesh, setup%plate, setup%supports, self%fixed)
+    self%images = find_images(self%mesh, setup%plate%kept, self%fixed)
     call distribute(self%mesh, communicator, self%distribution, error, self%images%first_cells(self%mesh))
     if (.not. allocated(error)) call build_elements(self, error)
     call communicator%agree(error)
@@ -184,7 +184,7 @@ contains
 
     allocate (self%lines(0))
     if (.not. allocated(self%setup%lines)) return
-    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%held, self%plies, &
+    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%fixed, self%plies, &
                               self%section, self%setup%plate%symmetry), i=1, size(self%setup%lines))]
   end subroutine build_lines
 
