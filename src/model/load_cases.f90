@@ -4,23 +4,16 @@ module load_cases
   use initial_state_parameters, only: initial_state_t
   use kinds, only: wp
   use line_loads, only: line_load_t
+  use load_step_parameters, only: load_stepping_t
   use pressure_loads, only: pressure_t
   use smooth_starts, only: smooth_step
   use support_parameters, only: support_t
   implicit none
   private
-  public :: load_case_t, load_stepping_t
+  public :: load_case_t
 
   !> Kinds of analysis: motion in time, or load steps, each an equilibrium without inertia.
   integer, parameter, public :: analysis_in_time = 1, analysis_by_load_steps = 2
-
-  !> Load steps.
-  type :: load_stepping_t
-    !> Number of equal load steps
-    integer :: steps = 1
-    !> Dissipated energy at which the analysis ends; 0: load control throughout
-    real(wp) :: dissipation = 0
-  end type load_stepping_t
 
   !> A load case. Callers use its procedures instead of the kind of analysis.
   type :: load_case_t

@@ -2,7 +2,7 @@
 module static_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use load_cases, only: load_stepping_t
+  use load_step_parameters, only: load_stepping_t
   implicit none
   private
   public :: fill_static

@@ -44,7 +44,7 @@ class Field:
     first_ply: np.ndarray | None = None
 
 
-class Summary(dict):
+class Summary(dict[str, Any]):
     """Members of NAME_summary.json; one that is not there is a fault of the file."""
 
     def __init__(self, members: Mapping[str, Any], path: Path) -> None:
