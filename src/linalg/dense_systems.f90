@@ -3,7 +3,7 @@ module dense_systems
   use kinds, only: wp
   implicit none
   private
-  public :: solve_dense, invert_dense, pseudo_inverse
+  public :: solve_dense, pseudo_inverse
 
   interface
     !> LAPACK: solves with a general matrix.
@@ -20,25 +20,6 @@ module dense_systems
       !> Greater than 0: singular
       integer, intent(out) :: info
     end subroutine dgesv
-
-    !> LAPACK: Cholesky factorization with pivoting of a semidefinite matrix.
-    subroutine dpstrf(uplo, n, a, lda, pivots, rank, tolerance, work, info)
-      import :: wp
-      !> Triangle used
-      character(len=1), intent(in) :: uplo
-      !> Order, leading dimension
-      integer, intent(in) :: n, lda
-      !> Matrix, overwritten by its factor
-      real(wp), intent(inout) :: a(lda, *)
-      !> Exchanges, rank
-      integer, intent(out) :: pivots(*), rank
-      !> Smallest pivot; below 0: n*epsilon times the largest entry of the diagonal
-      real(wp), intent(in) :: tolerance
-      !> Work space of 2*n
-      real(wp), intent(out) :: work(*)
-      !> Greater than 0: the rank is lower than the order
-      integer, intent(out) :: info
-    end subroutine dpstrf
 
     !> LAPACK: eigenvalues and eigenvectors of a symmetric matrix.
     subroutine dsyev(jobz, uplo, n, a, lda, values, work, lwork, info)
@@ -77,27 +58,6 @@ contains
     if (.not. singular) x = solution
   end subroutine solve_dense
 
-  !> Inverse of a dense matrix; zero if it is singular.
-  function invert_dense(matrix) result(inverse)
-    !> Matrix, (n, n)
-    real(wp), intent(in) :: matrix(:, :)
-    !> Its inverse, (n, n)
-    real(wp) :: inverse(size(matrix, 1), size(matrix, 1))
-    real(wp) :: factors(size(matrix, 1), size(matrix, 1))
-    integer :: pivots(size(matrix, 1)), info, i
-
-    factors = matrix
-    inverse = 0
-    do i = 1, size(matrix, 1)
-      inverse(i, i) = 1
-    end do
-    info = 0
-    associate (n => size(matrix, 1))
-      if (n > 0) call dgesv(n, n, factors, n, pivots, inverse, n, info)
-    end associate
-    if (info /= 0) inverse = 0
-  end function invert_dense
-
   !> Pseudo-inverse of a symmetric positive semidefinite matrix: its inverse if it has one. For a right-hand side in the
   !> range of the matrix it gives the solution of smallest norm. Eigenvalues below n*epsilon of the largest are taken as
   !> zero (G. H. Golub, C. F. Van Loan, Matrix Computations, 2013, section 5.4.1).
@@ -107,22 +67,15 @@ contains
     !> Its pseudo-inverse, (n, n)
     real(wp) :: inverse(size(matrix, 1), size(matrix, 1))
     real(wp) :: vectors(size(matrix, 1), size(matrix, 1)), values(size(matrix, 1)), work(34*size(matrix, 1))
-    integer :: pivots(size(matrix, 1)), rank, info, first
+    integer :: info, first, n
 
-    associate (n => size(matrix, 1))
-      vectors = matrix
-      rank = n
-      if (n > 0) call dpstrf('U', n, vectors, n, pivots, rank, -1.0_wp, work, info)
-      if (rank == n) then
-        inverse = invert_dense(matrix)
-        return
-      end if
-      vectors = matrix
-      call dsyev('V', 'U', n, vectors, n, values, work, size(work), info)
-      inverse = 0
-      if (info /= 0) return
-      first = count(values <= n*epsilon(values)*values(n)) + 1
-      inverse = matmul(vectors(:, first:)/spread(values(first:), 1, n), transpose(vectors(:, first:)))
-    end associate
+    n = size(matrix, 1)
+    inverse = 0
+    if (n == 0) return
+    vectors = matrix
+    call dsyev('V', 'U', n, vectors, n, values, work, size(work), info)
+    if (info /= 0) return
+    first = count(values <= n*epsilon(values)*values(n)) + 1
+    inverse = matmul(vectors(:, first:)/spread(values(first:), 1, n), transpose(vectors(:, first:)))
   end function pseudo_inverse
 end module dense_systems
