@@ -112,6 +112,8 @@ contains
     real(wp) :: moved(3), motion(3), force(3)
 
     moved = jumps - work%start(:, j)
+    ! Jumps that are held, as between prescribed layers, do no work, though flaws may damage them.
+    if (.not. sum(moved**2) > 0) return
     motion = (moved + change)/2
     force = work%secant([1, 1, 2], j)*opened(jumps) + work%given(:, j)
     if (.not. work%closing(j)) then

@@ -19,7 +19,7 @@ module jump_histories
   contains
     !> Takes over force and change of a step.
     procedure :: take
-    !> Multiplies the changes.
+    !> Multiplies the changes and the work done in them.
     procedure :: slow_down
     !> Checkpoint.
     procedure :: visit
@@ -52,7 +52,7 @@ contains
     self%change(:, p) = change
   end subroutine take
 
-  !> Multiplies the changes by the ratio of velocities.
+  !> Multiplies the changes, and the work done in them, by the ratio of velocities.
   pure subroutine slow_down(self, ratio)
     !> The history
     class(jump_history_t), intent(inout) :: self
@@ -61,6 +61,7 @@ contains
 
     self%change = ratio*self%change
     self%earlier = ratio*self%earlier
+    self%work = ratio*self%work
   end subroutine slow_down
 
   !> Writes or reads the history.

@@ -45,6 +45,7 @@ ROUNDED = 1e-11
 # Finer cells of the compression; areas and energies then, relative, are kept to rounding.
 FINER = ["mesh%elements=14, 22"]
 MAPPED = 1e-12
+# Measured: matrix and ply energy 1.0 %, first step +2.1 % of fracture and 3.3e-3 of the energy.
 EXTENDED = 0.02
 GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 5e-3, 1e-6
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
