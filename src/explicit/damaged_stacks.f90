@@ -48,7 +48,11 @@ contains
     do j = 1, work%n
       faces = cohesive%faces_of(model, model%zone(p + j), 1.0_wp)
       work%closing(j) = faces%closing
-      work%friction(j) = faces%friction
+      work%friction(j)%coefficient = faces%friction
+      associate (sticking => stacks%history%sticking(:, p + j))
+        work%friction(j)%past = past_jumps(work%start(1:2, j) - work%points(j)%sliding%slip, sticking(1:2), &
+                                           sticking(3:4))
+      end associate
       associate (change => stacks%history%change(:, p + j), earlier => stacks%history%earlier(:, p + j))
         work%given(:, j) = past_jumps(work%start(:, j), change, earlier)
         if (faces%closing) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))

@@ -12,8 +12,13 @@ module jump_histories
     real(wp), allocatable :: forces(:, :)
     !> Change of the jumps in the last step, and in the one before, (3, points)
     real(wp), allocatable :: change(:, :), earlier(:, :)
-    !> Slip of damaged faces, and work on their cohesive law, in the last step, (points)
-    real(wp), allocatable :: slipped(:), work(:)
+    !> Change of the elastic jumps of sticking faces in the last step, and in the one before, (4, points)
+    real(wp), allocatable :: sticking(:, :)
+    !> Friction: number of steps whose forces depend on the last slip; energy stored in the last step, and negative heat
+    !> of the steps before, per area, (3, points)
+    real(wp), allocatable :: slipped(:, :)
+    !> Work on the cohesive law of damaged faces in the last step, (points)
+    real(wp), allocatable :: work(:)
     !> Energy dissipated by contact of faces, and numerically by the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
@@ -34,8 +39,8 @@ contains
     !> The history
     type(jump_history_t) :: self
 
-    allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%slipped(points), &
-              self%work(points), self%lost(2, points), source=0.0_wp)
+    allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%sticking(4, points), &
+              self%slipped(3, points), self%work(points), self%lost(2, points), source=0.0_wp)
   end function create_jump_history
 
   !> Takes over force and change of a step.
@@ -61,7 +66,9 @@ contains
 
     self%change = ratio*self%change
     self%earlier = ratio*self%earlier
+    self%sticking = ratio*self%sticking
     self%work = ratio*self%work
+    self%slipped(2, :) = ratio*self%slipped(2, :)
   end subroutine slow_down
 
   !> Writes or reads the history.
@@ -72,20 +79,22 @@ contains
     class(archive_t), intent(inout) :: archive
     !> Numbers of this rank's points in the mesh, and number of points of the mesh
     integer, intent(in) :: owned(:), points
-    real(wp) :: values(13, size(self%work))
+    real(wp) :: values(19, size(self%work))
 
     values(1:3, :) = self%forces
     values(4:6, :) = self%change
     values(7:9, :) = self%earlier
     values(10:11, :) = self%lost
-    values(12, :) = self%slipped
-    values(13, :) = self%work
+    values(12:14, :) = self%slipped
+    values(15, :) = self%work
+    values(16:19, :) = self%sticking
     call archive%field('explicit/interfaces', owned, points, values)
     self%forces = values(1:3, :)
     self%change = values(4:6, :)
     self%earlier = values(7:9, :)
     self%lost = values(10:11, :)
-    self%slipped = values(12, :)
-    self%work = values(13, :)
+    self%slipped = values(12:14, :)
+    self%work = values(15, :)
+    self%sticking = values(16:19, :)
   end subroutine visit
 end module jump_histories

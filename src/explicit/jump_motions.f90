@@ -11,7 +11,9 @@ module jump_motions
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use models, only: model_t
+  use stack_solutions, only: rubbing_t
   use step_lengths, only: step_lengths_t
+  use weighted_jumps, only: memory
   implicit none
   private
   public :: advance_intact, advance_points
@@ -68,7 +70,7 @@ contains
   end subroutine advance_intact
 
   !> Updates jumps, damage and friction of a damaged stack, and books the work of the tractions.
-  subroutine advance_points(stacks, i, model, steps, limit, sliding_force, forces, cohesive, u, v)
+  subroutine advance_points(stacks, i, model, steps, friction, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
     !> Index of the stack
@@ -76,10 +78,10 @@ contains
     type(model_t), intent(in) :: model
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Friction limit, force, (n)
-    real(wp), intent(in) :: limit(:)
-    !> Friction forces, (2, n), and all forces on the jumps, (3, n)
-    real(wp), intent(in) :: sliding_force(:, :), forces(:, :)
+    !> Friction, (n)
+    type(rubbing_t), intent(in) :: friction(:)
+    !> Forces on the jumps, (3, n)
+    real(wp), intent(in) :: forces(:, :)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
@@ -99,12 +101,15 @@ contains
       in_contact = 0
       if (faces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
       old = cohesive%points(p)
-      old%sliding%limit = limit(j)/stacks%area(p)
+      old%sliding%limit = friction(j)%limit/stacks%area(p)
       associate (new => cohesive%points(p), area => stacks%area(p))
         call faces%traction(u(1:3, p), old, traction, new)
-        if (faces%friction > 0) call add_heat(faces%law%stiffness_shear, before(1:2), u(1:2, p), &
-          sum(sliding_force(:, j)*(change(1:2) + stacks%history%change(1:2, p)))/(2*area), old%sliding, new%sliding, &
-          stacks%history%slipped(p))
+        if (faces%friction > 0) then
+          call slip_faces(friction(j), u(1:2, p), old%sliding, new%sliding, stacks%history%sticking(:, p), change(1:2))
+          call add_heat(faces%law%stiffness_shear, before(1:2), u(1:2, p), &
+            sum(friction(j)%force*(change(1:2) + stacks%history%change(1:2, p)))/(2*area), old%sliding, new%sliding, &
+            stacks%history%slipped(:, p))
+        end if
         growth = new%dissipated - old%dissipated
         in_contact = in_contact + area*faces%closing_loss(before(3), u(3, p), new%damage - old%damage)
         stacks%history%lost(:, p) = stacks%history%lost(:, p) + [in_contact, work - in_contact - area* &
@@ -148,7 +153,33 @@ contains
                                    + (to - from)*stacks%history%change(3, p)/2 - (to**2 - from**2)/2)
   end function lost_in_contact
 
-  !> Heat of slipping faces: the work of friction beyond what sticking stores.
+  !> Slip of faces, and the change of their elastic jumps.
+  pure subroutine slip_faces(friction, jumps, old, new, sticking, change)
+    !> Friction in the step
+    type(rubbing_t), intent(in) :: friction
+    !> Tangential jumps at the end
+    real(wp), intent(in) :: jumps(2)
+    !> The faces at the start
+    type(sliding_t), intent(in) :: old
+    !> The faces at the end; receive the slip
+    type(sliding_t), intent(inout) :: new
+    !> Change of the elastic jumps in the last two steps; receives that of this one
+    real(wp), intent(inout) :: sticking(4)
+    !> Change of the jumps
+    real(wp), intent(in) :: change(2)
+
+    new%slip = old%slip
+    if (.not. friction%limit > 0) then
+      new%slip = jumps
+      sticking = 0
+      return
+    end if
+    if (friction%slips) new%slip = jumps - friction%elastic
+    sticking = [change + old%slip - new%slip, sticking(1:2)]
+  end subroutine slip_faces
+
+  !> Heat of slipping faces: the work of friction beyond what sticking stores, from a slip until forces forget it. Where
+  !> this is negative in a step, that much less heat follows.
   pure subroutine add_heat(stiffness, from, to, work, old, new, slipped)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness
@@ -160,15 +191,20 @@ contains
     type(sliding_t), intent(in) :: old
     !> The faces at the end; receive the heat
     type(sliding_t), intent(inout) :: new
-    !> Slip in the step before; receives that of this one
-    real(wp), intent(inout) :: slipped
-    real(wp) :: slip
+    !> Number of steps whose forces depend on the last slip; energy stored in the last step, and negative heat of steps
+    !> before, per area
+    real(wp), intent(inout) :: slipped(3)
+    real(wp) :: heat, stored
 
-    slip = norm2(new%slip - old%slip)
+    if (norm2(new%slip - old%slip) > 0) slipped(1) = memory
     new%heat = old%heat
-    ! Forces act over the mean motion of two steps.
-    if (slip > 0 .or. slipped > 0) new%heat = old%heat + &
-      max(0.0_wp, work - friction_energy(stiffness, to, new) + friction_energy(stiffness, from, old))
-    slipped = slip
+    stored = friction_energy(stiffness, to, new) - friction_energy(stiffness, from, old)
+    if (slipped(1) > 0) then
+      heat = work - (stored + slipped(2))/2 - slipped(3)
+      new%heat = old%heat + max(0.0_wp, heat)
+      slipped(1) = slipped(1) - 1
+      slipped(3) = max(0.0_wp, -heat)
+    end if
+    slipped(2) = stored
   end subroutine add_heat
 end module jump_motions

@@ -33,8 +33,7 @@ contains
       work(n)%n = n
       allocate (work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), work(n)%free(3, n), &
                 work(n)%start(3, n), work(n)%points(n), work(n)%closing(n), work(n)%friction(n), work(n)%secant(2, n), &
-                work(n)%given(3, n), work(n)%forces(3, n), work(n)%limit(n), work(n)%sliding_force(2, n), &
-                work(n)%normal_stiffness(n))
+                work(n)%given(3, n), work(n)%forces(3, n), work(n)%normal_stiffness(n))
     end do
   end function new_workspaces
 
@@ -130,7 +129,7 @@ contains
     v(1:3, p + 1:q) = free
     v(4:5, p + 1:q) = layer(4:5, 2:)
     if (stacks%damaged(i)) then
-      call advance_points(stacks, i, model, steps, work%limit, work%sliding_force, forces, cohesive, u, v)
+      call advance_points(stacks, i, model, steps, work%friction, forces, cohesive, u, v)
     else
       call advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
     end if

@@ -1,15 +1,30 @@
 !> Forces between the layers of one node at the end of a step.
 !>
-!> Contact and friction are functions of the jumps at the end of the step, cohesive tractions of weighted jumps with the
+!> Contact is a function of the jumps at the end of the step, cohesive tractions and friction of weighted jumps with the
 !> damage at the start. Their stiffness therefore does not limit the step. Openings are solved first; their pressure
 !> limits friction in the same step (return mapping of the trial shear traction).
 module stack_solutions
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
   use tridiagonal_systems, only: solve_tractions
+  use weighted_jumps, only: newest
   implicit none
   private
-  public :: stack_t, jumps_of, solve_openings, solve_shears
+  public :: rubbing_t, stack_t, jumps_of, solve_openings, solve_shears
+
+  !> Friction of an interface in a step.
+  type :: rubbing_t
+    !> Coefficient of friction
+    real(wp) :: coefficient = 0
+    !> Friction limit of this step, force
+    real(wp) :: limit = 0
+    !> Part of earlier elastic jumps in the weighted mean, and elastic jumps at the end of the step
+    real(wp) :: past(2) = 0, elastic(2) = 0
+    !> Friction force
+    real(wp) :: force(2) = 0
+    !> True: slips in this step
+    logical :: slips = .false.
+  end type rubbing_t
 
   !> The interfaces of one node in a step, from the struck side downwards, (n) each.
   type :: stack_t
@@ -29,14 +44,10 @@ module stack_solutions
     type(cohesive_point_t), allocatable :: points(:)
     !> True: faces do not penetrate each other
     logical, allocatable :: closing(:)
-    !> Coefficient of friction
-    real(wp), allocatable :: friction(:)
+    !> Friction
+    type(rubbing_t), allocatable :: friction(:)
     !> Forces on the jumps, (3, n)
     real(wp), allocatable :: forces(:, :)
-    !> Friction limit of this step, force
-    real(wp), allocatable :: limit(:)
-    !> Friction forces, (2, n)
-    real(wp), allocatable :: sliding_force(:, :)
     !> Force per opening with the contacts found, (n)
     real(wp), allocatable :: normal_stiffness(:)
   end type stack_t
@@ -63,8 +74,11 @@ contains
       if (all((before .eqv. closed) .or. .not. stack%closing)) exit
     end do
     do j = 1, stack%n
-      stack%limit(j) = 0
-      if (stack%closing(j)) stack%limit(j) = stack%friction(j)*stack%points(j)%damage*max(0.0_wp, -stack%forces(3, j))
+      associate (friction => stack%friction(j))
+        friction%limit = 0
+        if (stack%closing(j)) &
+          friction%limit = friction%coefficient*stack%points(j)%damage*max(0.0_wp, -stack%forces(3, j))
+      end associate
     end do
   end subroutine solve_openings
 
@@ -102,36 +116,53 @@ contains
   pure subroutine solve_shears(stack)
     !> The stack with the limits of friction; receives the forces
     type(stack_t), intent(inout) :: stack
-    real(wp) :: stiffness(stack%n), given(2, stack%n), tried(2)
+    real(wp) :: stiffness(stack%n), given(2, stack%n), jumps(3, stack%n)
     integer :: j
-    logical :: slips
 
+    stiffness = stack%secant(1, :)
+    given = stack%given(:2, :)
     do j = 1, stack%n
-      stiffness(j) = stack%secant(1, j)
-      given(:, j) = stack%given(:2, j)
-      if (.not. stack%limit(j) > 0) cycle
-      stiffness(j) = stiffness(j) + stack%stiffness(1, j)
-      given(:, j) = given(:, j) - stack%stiffness(1, j)*stack%points(j)%sliding%slip
+      stack%friction(j)%force = 0
+      stack%friction(j)%slips = .false.
+      if (.not. stack%friction(j)%limit > 0) cycle
+      associate (k => stack%stiffness(1, j))
+        stiffness(j) = stiffness(j) + newest*k
+        given(:, j) = given(:, j) + k*(stack%friction(j)%past - newest*stack%points(j)%sliding%slip)
+      end associate
     end do
     call solve_both(stack, stiffness, given)
-    stack%sliding_force = 0
-    if (.not. any(stack%limit > 0)) return
-    slips = .false.
-    associate (jumps => stack%free(1:2, :) - reshape([jump_reduction(stack, 1), jump_reduction(stack, 2)], &
-                                                     [2, stack%n], order=[2, 1]))
-      do j = 1, stack%n
-        if (.not. stack%limit(j) > 0) cycle
-        tried = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)
-        stack%sliding_force(:, j) = tried
-        if (.not. norm2(tried) > stack%limit(j)) cycle
-        stack%sliding_force(:, j) = stack%limit(j)*(tried/norm2(tried))
-        slips = .true.
+    if (.not. any(stack%friction%limit > 0)) return
+    jumps = jumps_of(stack)
+    do j = 1, stack%n
+      associate (friction => stack%friction(j))
+        if (.not. friction%limit > 0) cycle
+        call return_to_limit(friction, stack%stiffness(1, j), jumps(1:2, j) - stack%points(j)%sliding%slip)
+        if (.not. friction%slips) cycle
         stiffness(j) = stack%secant(1, j)
-        given(:, j) = stack%given(:2, j) + stack%sliding_force(:, j)
-      end do
-    end associate
-    if (slips) call solve_both(stack, stiffness, given)
+        given(:, j) = stack%given(:2, j) + friction%force
+      end associate
+    end do
+    if (any(stack%friction%slips)) call solve_both(stack, stiffness, given)
   end subroutine solve_shears
+
+  !> Friction force of an elastic jump, returned to the limit.
+  pure subroutine return_to_limit(friction, stiffness, elastic)
+    !> The friction of an interface; receives force and elastic jumps
+    type(rubbing_t), intent(inout) :: friction
+    !> Stiffness of sticking faces, force per jump
+    real(wp), intent(in) :: stiffness
+    !> Elastic jumps at the end of the step if the faces stick
+    real(wp), intent(in) :: elastic(2)
+    real(wp) :: tried
+
+    friction%elastic = elastic
+    friction%force = stiffness*(newest*elastic + friction%past)
+    tried = norm2(friction%force)
+    friction%slips = tried > friction%limit
+    if (.not. friction%slips) return
+    friction%force = friction%force*(friction%limit/tried)
+    friction%elastic = (friction%force/stiffness - friction%past)/newest
+  end subroutine return_to_limit
 
   !> Solves along x and along y.
   pure subroutine solve_both(stack, stiffness, given)

@@ -9,7 +9,7 @@ module weighted_jumps
   use kinds, only: wp
   implicit none
   private
-  public :: newest, past_jumps, past_openings
+  public :: memory, newest, past_jumps, past_openings
 
   !> Spectral radius of stiff springs. With 0.5 and 0.8 instead of 0.9 `energy_algorithmic` is up to 3 and 1.5 times
   !> larger, with the same areas and forces (doc/studies/central_differences.md).
@@ -20,6 +20,8 @@ module weighted_jumps
   real(wp), parameter :: weights(0:3) = [1.0_wp, 2*r + q, r**2 + 2*r*q, r**2*q]/((1 + r)**2*(1 + q))
   !> Weight of the jumps at the end of the step
   real(wp), parameter :: newest = weights(0)
+  !> Number of steps whose forces depend on a jump
+  integer, parameter :: memory = size(weights)
 
 contains
 
