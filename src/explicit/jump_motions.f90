@@ -171,15 +171,16 @@ contains
     new%slip = old%slip
     if (.not. friction%limit > 0) then
       new%slip = jumps
-      sticking = 0
-      return
+    else if (friction%slips) then
+      new%slip = jumps - friction%elastic
     end if
-    if (friction%slips) new%slip = jumps - friction%elastic
-    sticking = [change + old%slip - new%slip, sticking(1:2)]
+    sticking = [change, sticking(1:2)]
+    ! Forces of faces that slip do not depend on what they were before.
+    if (friction%slips .or. .not. friction%limit > 0) sticking = 0
   end subroutine slip_faces
 
-  !> Heat of slipping faces: the work of friction beyond what sticking stores, from a slip until forces forget it. Where
-  !> this is negative in a step, that much less heat follows.
+  !> Heat of slipping faces: the work of friction beyond what sticking stores in half of this step and half of the one
+  !> before, while forces depend on a slip. Where this is negative, that much less heat follows.
   pure subroutine add_heat(stiffness, from, to, work, old, new, slipped)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness

@@ -161,7 +161,7 @@ contains
     friction%slips = tried > friction%limit
     if (.not. friction%slips) return
     friction%force = friction%force*(friction%limit/tried)
-    friction%elastic = (friction%force/stiffness - friction%past)/newest
+    friction%elastic = friction%force/stiffness
   end subroutine return_to_limit
 
   !> Solves along x and along y.
