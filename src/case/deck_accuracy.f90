@@ -127,7 +127,7 @@ contains
       elastic = start_elastic_impact(deck%setup_t, scales)
       first = contact_end(elastic, end)
     end if
-    deck%stepping%time%follows_contact = is_explicit(deck%stepping) .and. .not. end > 0
+    deck%stepping%time%extends_to_contact_end = is_explicit(deck%stepping) .and. .not. end > 0
     if (.not. end > 0) then
       call choose_one(deck, time_group, key_end, past_contact*first%last_contact)
       end = deck%settings%real_of(time_group, key_end)
@@ -253,7 +253,7 @@ contains
 
     side = minval(deck%plate%length)
     do i = 1, size(deck%delaminations)
-      if (.not. deck%delaminations(i)%follows) side = min(side, minval(deck%delaminations(i)%zone))
+      if (.not. deck%delaminations(i)%is_adaptive) side = min(side, minval(deck%delaminations(i)%zone))
     end do
   end function smallest_zone
 

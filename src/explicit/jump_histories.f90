@@ -18,9 +18,9 @@ module jump_histories
     real(wp), allocatable :: lost(:, :)
   contains
     !> Takes over force and change of a step.
-    procedure :: take
+    procedure :: record
     !> Multiplies the changes and the work done in them.
-    procedure :: slow_down
+    procedure :: scale_changes
     !> Checkpoint.
     procedure :: visit
   end type jump_history_t
@@ -39,7 +39,7 @@ contains
   end function create_jump_history
 
   !> Takes over force and change of a step.
-  pure subroutine take(self, p, force, change)
+  pure subroutine record(self, p, force, change)
     !> The history
     class(jump_history_t), intent(inout) :: self
     !> The point
@@ -50,10 +50,10 @@ contains
     self%forces(:, p) = force
     self%earlier(:, p) = self%change(:, p)
     self%change(:, p) = change
-  end subroutine take
+  end subroutine record
 
   !> Multiplies the changes, and the work done in them, by the ratio of velocities.
-  pure subroutine slow_down(self, ratio)
+  pure subroutine scale_changes(self, ratio)
     !> The history
     class(jump_history_t), intent(inout) :: self
     !> The ratio
@@ -62,7 +62,7 @@ contains
     self%change = ratio*self%change
     self%earlier = ratio*self%earlier
     self%work = ratio*self%work
-  end subroutine slow_down
+  end subroutine scale_changes
 
   !> Writes or reads the history.
   subroutine visit(self, archive, owned, points)

@@ -21,7 +21,7 @@ module stack_solutions
     !> (3, n)
     real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Jumps at the end of the step without tractions, and those at its start, (3, n)
-    real(wp), allocatable :: free(:, :), start(:, :)
+    real(wp), allocatable :: trial(:, :), start(:, :)
     !> Force per jump at the end of the step, shear and opening, (2, n), and the part of the forces that does not depend
     !> on these jumps, (3, n)
     real(wp), allocatable :: secant(:, :), given(:, :)
@@ -50,14 +50,14 @@ contains
     type(stack_t), intent(inout) :: stack
     logical :: closed(stack%n), before(stack%n)
     real(wp) :: opening(stack%n)
-    integer :: round, j
+    integer :: iteration, j
 
     closed = stack%start(3, :) < 0
-    do round = 0, stack%n + 1
+    do iteration = 0, stack%n + 1
       stack%normal_stiffness = merge(stack%stiffness(2, :), stack%secant(2, :), closed .and. stack%closing)
       call solve_tractions(stack%n, stack%normal_stiffness, stack%given(3, :), stack%diagonal(3, :), &
-                           stack%off_diagonal(3, :), stack%free(3, :), stack%forces(3, :))
-      opening = stack%free(3, :) - jump_reduction(stack, 3)
+                           stack%off_diagonal(3, :), stack%trial(3, :), stack%forces(3, :))
+      opening = stack%trial(3, :) - jump_reduction(stack, 3)
       before = closed
       closed = opening < 0
       if (all((before .eqv. closed) .or. .not. stack%closing)) exit
@@ -77,7 +77,7 @@ contains
     integer :: k
 
     do k = 1, 3
-      jumps(k, :) = stack%free(k, :) - jump_reduction(stack, k)
+      jumps(k, :) = stack%trial(k, :) - jump_reduction(stack, k)
     end do
   end function jumps_of
 
@@ -102,7 +102,7 @@ contains
   pure subroutine solve_shears(stack)
     !> The stack with the limits of friction; receives the forces
     type(stack_t), intent(inout) :: stack
-    real(wp) :: stiffness(stack%n), given(2, stack%n), tried(2)
+    real(wp) :: stiffness(stack%n), given(2, stack%n), trial(2)
     integer :: j
     logical :: slips
 
@@ -117,14 +117,14 @@ contains
     stack%sliding_force = 0
     if (.not. any(stack%limit > 0)) return
     slips = .false.
-    associate (jumps => stack%free(1:2, :) - reshape([jump_reduction(stack, 1), jump_reduction(stack, 2)], &
+    associate (jumps => stack%trial(1:2, :) - reshape([jump_reduction(stack, 1), jump_reduction(stack, 2)], &
                                                      [2, stack%n], order=[2, 1]))
       do j = 1, stack%n
         if (.not. stack%limit(j) > 0) cycle
-        tried = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)
-        stack%sliding_force(:, j) = tried
-        if (.not. norm2(tried) > stack%limit(j)) cycle
-        stack%sliding_force(:, j) = stack%limit(j)*(tried/norm2(tried))
+        trial = stack%stiffness(1, j)*(jumps(:, j) - stack%points(j)%sliding%slip)
+        stack%sliding_force(:, j) = trial
+        if (.not. norm2(trial) > stack%limit(j)) cycle
+        stack%sliding_force(:, j) = stack%limit(j)*(trial/norm2(trial))
         slips = .true.
         stiffness(j) = stack%secant(1, j)
         given(:, j) = stack%given(:2, j) + stack%sliding_force(:, j)
@@ -143,7 +143,7 @@ contains
 
     do k = 1, 2
       call solve_tractions(stack%n, stiffness, given(k, :), stack%diagonal(k, :), stack%off_diagonal(k, :), &
-                           stack%free(k, :), stack%forces(k, :))
+                           stack%trial(k, :), stack%forces(k, :))
     end do
   end subroutine solve_both
 end module stack_solutions

@@ -9,7 +9,7 @@ module mapped_interfaces
   use models, only: model_t
   implicit none
   private
-  public :: put_fractions, take_fractions, take_slips
+  public :: put_fractions, set_damage, set_slips
 
 contains
 
@@ -23,7 +23,7 @@ contains
   end subroutine put_fractions
 
   !> Replaces the dissipated fraction of the toughness by the damage.
-  pure subroutine take_fractions(interfaces, model)
+  pure subroutine set_damage(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
@@ -38,11 +38,11 @@ contains
                                      stiffness_of(model%cohesive_laws(model%zone(i)))
       end associate
     end do
-  end subroutine take_fractions
+  end subroutine set_damage
 
   !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
   !> and elastic energy beyond the limit would be spurious.
-  pure subroutine take_slips(interfaces, model, displacement)
+  pure subroutine set_slips(interfaces, model, displacement)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
@@ -61,5 +61,5 @@ contains
         sliding%slip = new%slip
       end associate
     end do
-  end subroutine take_slips
+  end subroutine set_slips
 end module mapped_interfaces
