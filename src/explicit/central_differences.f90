@@ -2,9 +2,9 @@
 !> global system is solved.
 !>
 !> Velocities are those at the middle of steps, from the forces F at the start of a step,
-!>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n+1)),   u(n+1) = u(n) + h v(n+1/2),
-!> followed by the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions
-!> lambda of the end of the step on the jumps B u).
+!>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n)),   u(n+1) = u(n) + h v(n+1/2),
+!> followed by the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1). The tractions lambda
+!> on the jumps B u are those of weighted jumps, which include the jumps at the end of the step (`weighted_jumps`).
 module central_differences
   use archives, only: archive_t
   use central_difference_parameters, only: central_difference_parameters_t
