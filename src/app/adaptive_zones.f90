@@ -39,7 +39,7 @@ contains
     if (allocated(error) .or. .not. switched) return
     do zone = 1, size(model%mesh%zones)
       associate (interface => model%setup%delaminations(zone))
-        if (interface%follows) call log%note('Layers below ply '//to_text(interface%below_ply)//': '// &
+        if (interface%is_adaptive) call log%note('Layers below ply '//to_text(interface%below_ply)//': '// &
                                              short_text(interface%zone(1))//' x '//short_text(interface%zone(2))// &
                                              ' from '//moment(deck, stepper%now%time)//' on.')
       end associate
@@ -70,7 +70,7 @@ contains
     real(wp), allocatable :: extents(:)
     integer :: zone
 
-    if (.not. any(delaminations%follows)) return
+    if (.not. any(delaminations%is_adaptive)) return
     allocate (extents(2*size(delaminations)))
     do zone = 1, size(delaminations)
       extents(2*zone - 1:2*zone) = delaminations(zone)%zone

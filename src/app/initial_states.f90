@@ -20,7 +20,7 @@ module initial_states
   use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
   use mapped_figures, only: after_mapping, before_mapping, mapped_figures_t
-  use mapped_interfaces, only: limit_jumps, put_fractions, take_fractions, take_slips
+  use mapped_interfaces, only: limit_jumps, put_fractions, set_damage, set_slips
   use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
@@ -66,7 +66,7 @@ contains
       return
     end if
     do i = 1, size(deck%delaminations)
-      if (.not. deck%delaminations(i)%follows) cycle
+      if (.not. deck%delaminations(i)%is_adaptive) cycle
       if (is_mapped(deck, old)) old%delaminations(i)%zone = covering_extents(deck, old, i)
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
@@ -208,9 +208,9 @@ contains
     call visit_inheritance(stepper%now, transfer, model)
     if (.not. is_mapped(deck, old)) return
     associate (now => stepper%now)
-      call take_fractions(now%interfaces%cohesive, model)
+      call set_damage(now%interfaces%cohesive, model)
       call limit_jumps(now%interfaces%cohesive, model, now%motion%displacement)
-      call take_slips(now%interfaces%cohesive, model, now%motion%displacement)
+      call set_slips(now%interfaces%cohesive, model, now%motion%displacement)
     end associate
   end subroutine load_transfer
 end module initial_states

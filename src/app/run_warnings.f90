@@ -51,7 +51,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(line_t), allocatable :: warnings(:)
 
-    call find_warnings(deck, model, stepper%now, stepper%errs, record, energy_check, warnings)
+    call find_warnings(deck, model, stepper%now, stepper%exceeds_tolerance, record, energy_check, warnings)
     call give(deck, warnings, log, error)
   end subroutine give_warnings
 
@@ -215,7 +215,7 @@ contains
     !> The interface, with its present zone
     type(delamination_t), intent(in) :: interface
 
-    leaves = interface%follows .and. deck%mesh%cell > 0 .and. &
+    leaves = interface%is_adaptive .and. deck%mesh%cell > 0 .and. &
              any(interface%zone > deck%mesh%core + 2*((cells_ahead + cells_at_once)*deck%mesh%cell + &
                                                       thicknesses_ahead*deck%expected%scales%thickness))
   end function leaves_core

@@ -38,8 +38,8 @@ module starter_decks
     '&indentation  law=''tan_sun''  alpha_cr=80.3e-6 /        ! indentation of the struck face', &
     '', &
     '! The interface below ply 12, where the lower 0-degree plies begin, delaminates: leave this group out', &
-    '! for a plate that stays whole, add &ply_damage for plies that crack.', &
-    '&delamination below_ply=12  G_Ic=280  G_IIc=790    ! energy per area that growth takes, opening and shear', &
+    '! for a plate that does not delaminate; add &ply_damage for plies that crack.', &
+    '&delamination below_ply=12  G_Ic=280  G_IIc=790    ! fracture energies per area, opening and shear', &
     '              zone=36e-3, 24e-3 /      ! where it may grow', &
     '', &
     '&time         end=4e-3  step=20e-6 /   ! the blow lasts about 3.5 ms', &

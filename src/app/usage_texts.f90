@@ -36,7 +36,7 @@ module usage_texts
       &the figures; the same command resumes where it was stopped', &
     '--profile', 'print in log and summary the time and memory of each part of the run', &
     '--ranks N', 'ranks of the job that queue writes, instead of what the deck''s size suggests', &
-    '--time H:MM:SS', 'its wall-clock limit; a day without', &
+    '--time H:MM:SS', 'its wall-clock limit; default: one day', &
     '--chain', 'the job is submitted again, from its checkpoint, until the run has ended', &
     '--markdown', 'explain as a table for the manual', &
     '-v, --version', 'version, commit, compiler and PETSc, and how to cite', &

@@ -122,7 +122,7 @@ contains
     character(len=:), allocatable :: cure
 
     cure = 'take a smaller step_factor.'
-    if (any(deck%delaminations%follows)) &
+    if (any(deck%delaminations%is_adaptive)) &
       cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
   end function dissipation_remedy
 end module warning_texts

@@ -48,11 +48,11 @@ module deck_accuracy
 contains
 
   !> Checks keys that are optional only with `accuracy`.
-  subroutine check_left_out(settings, explicit, problems)
+  subroutine check_left_out(settings, no_step, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> True: central differences choose the step, and the end by the contact
-    logical, intent(in) :: explicit
+    !> True: no length and end of steps are needed, as central differences choose them and load steps have none
+    logical, intent(in) :: no_step
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
@@ -63,7 +63,7 @@ contains
       call problems%error(0, mesh_group, '', '&'//mesh_group//' is missing; `implam explain '//mesh_group// &
                           '` shows what it takes.')
     end if
-    if (explicit .or. .not. settings%has_group(time_group)) return
+    if (no_step .or. .not. settings%has_group(time_group)) return
     call require(time_group, key_end, '1 real value > 0')
     call require(time_group, key_step, '1 real value > 0')
 
@@ -127,7 +127,7 @@ contains
       elastic = start_elastic_impact(deck%setup_t, scales)
       first = contact_end(elastic, end)
     end if
-    deck%stepping%time%follows_contact = is_explicit(deck%stepping) .and. .not. end > 0
+    deck%stepping%time%extends_to_contact_end = is_explicit(deck%stepping) .and. .not. end > 0
     if (.not. end > 0) then
       call choose_one(deck, time_group, key_end, past_contact*first%last_contact)
       end = deck%settings%real_of(time_group, key_end)
@@ -253,7 +253,7 @@ contains
 
     side = minval(deck%plate%length)
     do i = 1, size(deck%delaminations)
-      if (.not. deck%delaminations(i)%follows) side = min(side, minval(deck%delaminations(i)%zone))
+      if (.not. deck%delaminations(i)%is_adaptive) side = min(side, minval(deck%delaminations(i)%zone))
     end do
   end function smallest_zone
 

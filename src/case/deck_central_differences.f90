@@ -69,7 +69,7 @@ contains
     type(problems_t), intent(inout) :: problems
     type(elastic_impact_t) :: elastic
 
-    deck%stepping%time%follows_contact = .true.
+    deck%stepping%time%extends_to_contact_end = .true.
     if (deck%settings%is_known(time_group, key_end)) return
     if (.not. (deck%is_impact() .and. scales%area_mass > 0)) then
       if (.not. problems%concern(time_group, key_end)) &

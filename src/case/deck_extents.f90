@@ -211,7 +211,7 @@ contains
         if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_zone, place)) &
           call report(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
-        if (d%follows .and. any(d%starter + 2*abs(d%starter_at) >= deck%plate%length) .and. &
+        if (d%is_adaptive .and. any(d%starter + 2*abs(d%starter_at) >= deck%plate%length) .and. &
             are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call report(s, problems, delamination_group, key_starter, 'must lie within the plate.', place)
@@ -254,7 +254,7 @@ contains
       if (repeats(deck, i)) cycle
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
         call extents_of(x_edges, y_edges, d, zone, starter)
-        if (differs(zone, d%zone) .and. .not. d%follows) &
+        if (differs(zone, d%zone) .and. .not. d%is_adaptive) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'a zone is whole cells; this '// &
                       'mesh makes it '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
@@ -332,7 +332,7 @@ contains
       text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
              shown(zone)
       if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
-      if (deck%delaminations(place)%follows) text = text//'. The zone follows the damage'
+      if (deck%delaminations(place)%is_adaptive) text = text//'. The zone follows the damage'
       lines(place)%text = text//'.'
     end do
   end function extent_lines

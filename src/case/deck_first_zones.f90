@@ -83,11 +83,11 @@ contains
         least = deck%mesh%patch
         do i = 1, size(deck%delaminations)
           associate (d => deck%delaminations(i))
-            if (d%follows) least = max(least, d%starter + 2*abs(d%starter_at(direction)))
+            if (d%is_adaptive) least = max(least, d%starter + 2*abs(d%starter_at(direction)))
           end associate
         end do
         do i = 1, size(deck%delaminations)
-          if (deck%delaminations(i)%follows) &
+          if (deck%delaminations(i)%is_adaptive) &
             deck%delaminations(i)%zone(direction) = widened_extent(edges, least, cells_at_once, &
                                                                            thickness)
         end do
@@ -103,11 +103,11 @@ contains
     type(deck_t), intent(inout) :: deck
     integer :: i
 
-    if (.not. any(deck%delaminations%follows)) return
+    if (.not. any(deck%delaminations%is_adaptive)) return
     do i = 1, size(deck%delaminations)
       associate (d => deck%delaminations(i))
-        if (.not. d%follows) cycle
-        d%follows = .false.
+        if (.not. d%is_adaptive) cycle
+        d%is_adaptive = .false.
         d%zone = largest_extents(d%zone, deck%mesh%core, deck%mesh%cell, deck%plate%length)
       end associate
     end do

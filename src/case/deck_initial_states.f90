@@ -199,7 +199,7 @@ contains
         if (k > 0) then
           objection = both('&delamination '//trim(law_names(k))//' below ply '//to_text(mine(i)%below_ply), &
                            to_text(here(k)), to_text(there(k)))
-        else if (.not. mine(i)%follows .and. any(mine(i)%zone < its(i)%zone*(1 - 1.0e-9_wp))) then
+        else if (.not. mine(i)%is_adaptive .and. any(mine(i)%zone < its(i)%zone*(1 - 1.0e-9_wp))) then
           objection = both('&delamination '//key_zone//' below ply '//to_text(mine(i)%below_ply), &
                            short_list(mine(i)%zone), short_list(its(i)%zone))//'; allowed: as large or larger'
         end if

@@ -34,7 +34,7 @@ contains
         call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are of '// &
                     'one material and angle, and act as one thick ply; impacts delaminate plies of different &
                       &angles.', place)
-      if (any(beyond_core(deck, deck%delaminations(place)%zone)) .and. .not. deck%delaminations(place)%follows) &
+      if (any(beyond_core(deck, deck%delaminations(place)%zone)) .and. .not. deck%delaminations(place)%is_adaptive) &
         call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
                     'where cells are up to '//short_text(longest_cell(deck, deck%delaminations(place)%zone))// &
                     ' long; make the core as large as the zone.', place)

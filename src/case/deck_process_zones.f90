@@ -112,7 +112,7 @@ contains
     zone%thickness = thickness_of(layer)
     bending = bending_moduli(layer)
     extents = delamination%zone
-    if (delamination%follows) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
+    if (delamination%is_adaptive) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
     cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), extents(1)), &
              longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
     zone%modulus = largest_modulus(bending)

@@ -116,7 +116,7 @@ contains
     call note_groups(deck)
     call fill_model(deck, problems)
     call choose_integrator(deck)
-    call check_left_out(deck%settings, is_explicit(deck%stepping), problems)
+    call check_left_out(deck%settings, is_explicit(deck%stepping) .or. deck%settings%has_group(static_group), problems)
     call fill_loads(deck, problems)
     call fill_steps(deck)
     call refine(deck)

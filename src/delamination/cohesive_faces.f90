@@ -163,7 +163,7 @@ contains
     type(cohesive_point_t), intent(in) :: point
 
     limit = 0
-    if (pressed(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_opening*jumps(3)
+    if (is_in_contact(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_opening*jumps(3)
   end function friction_limit
 
   !> Derivatives of the friction traction.
@@ -192,12 +192,12 @@ contains
   end function closing_stiffness
 
   !> True if the faces are under contact pressure.
-  pure logical function pressed(self, jumps)
+  pure logical function is_in_contact(self, jumps)
     !> The faces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
 
-    pressed = self%closing .and. jumps(3) < 0
-  end function pressed
+    is_in_contact = self%closing .and. jumps(3) < 0
+  end function is_in_contact
 end module cohesive_faces

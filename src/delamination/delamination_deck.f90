@@ -139,7 +139,7 @@ contains
       d%cracks_as_flaws = s%logical_of(group, key_flaws, place)
       d%shear_cracks = s%logical_of(group, key_shear_cracks, place)
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
-      d%follows = d%law == law_cohesive .and. .not. s%is_given(group, key_zone, place)
+      d%is_adaptive = d%law == law_cohesive .and. .not. s%is_given(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
       d%starter_round = s%text_of(group, 'starter_shape', place) == 'round'

@@ -39,7 +39,7 @@ module delamination_parameters
     !> extents
     real(wp) :: zone(2) = 0
     !> True: the layered rectangle is adaptive
-    logical :: follows = .false.
+    logical :: is_adaptive = .false.
     !> Side of the square starter, or diameter of the round one
     real(wp) :: starter = 0
     !> True: the starter is round

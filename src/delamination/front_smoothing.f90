@@ -39,7 +39,7 @@ module front_smoothing
     !> Weight of a segment in the mean of another.
     procedure :: weight
     !> Nodes near the front.
-    procedure :: beside
+    procedure :: nodes_near
   end type smooth_front_t
 
   !> Nodes near a front, each with its closest edge; a node with several closest edges is repeated.
@@ -184,7 +184,7 @@ contains
   end function weight
 
   !> Nodes within some cells of the front.
-  pure function beside(self, segments, mesh) result(nodes)
+  pure function nodes_near(self, segments, mesh) result(nodes)
     !> The front
     class(smooth_front_t), intent(in) :: self
     !> Its segments
@@ -225,7 +225,7 @@ contains
       end do
       if (pass == 3) allocate (nodes%node(found), nodes%segment(found), nodes%share(found), nodes%distance(found))
     end do
-  end function beside
+  end function nodes_near
 
   !> True for the model, image 0, and for its existing images: 1 across x, 2 across y, 3 both.
   pure logical function is_image(image, mirrored)

@@ -96,14 +96,14 @@ contains
         .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
       self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
         .and. .not. (model%map%layered .or. &
-        allocated(model%rig%held_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
+        allocated(model%rig%constrained_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
       if (self%skips_elements) self%skips_elements = self%coupling%forces_agree() &
         .and. .not. any(operator%numbering%master > 0)
       call predict(self, model, old, new)
       if (.not. self%keeps_velocity) call self%complete(at)
       self%correction_is_costly = .false.
       self%uses_element_tangents = .false.
-      self%searches_lines = allocated(new%interfaces%cohesive%cohesive)
+      self%uses_line_search = allocated(new%interfaces%cohesive%cohesive)
       if (.not. self%keeps_displacement) call self%find_force(at)
     end associate
   end subroutine begin
@@ -122,7 +122,7 @@ contains
       new%motion%displacement = self%guess
     else if (.not. self%keeps_displacement) then
       new%motion%displacement = self%step*old%motion%velocity
-      call new%interfaces%faces%hold(model, new%motion%displacement)
+      call new%interfaces%faces%constrain_correction(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_contact_closed(model, new%motion%displacement)
       if (has_moved_lines(model)) &
@@ -259,7 +259,7 @@ contains
       self%correction_is_costly = .not. converged
       if (has_impactor) call self%coupling%solve(at, tangent%is_factored(), error)
       if (allocated(error)) error%code = exit_convergence
-      call at%new%interfaces%faces%hold(at%model, at%correction)
+      call at%new%interfaces%faces%constrain_correction(at%model, at%correction)
     end associate
   end subroutine find_correction
 

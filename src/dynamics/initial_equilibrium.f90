@@ -110,7 +110,7 @@ contains
       else
         call model%add_holding_lines(state%motion%displacement, residual)
       end if
-      call state%interfaces%act(model, state%motion%displacement, residual)
+      call state%interfaces%add_to_residual(model, state%motion%displacement, residual)
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
                             operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
@@ -122,7 +122,7 @@ contains
       if (allocated(error)) return
       operator%solves = operator%solves + 1
       if (model%setup%has_crack_bands()) call extrapolate(model, residual, aitken, correction)
-      call state%interfaces%faces%hold(model, correction)
+      call state%interfaces%faces%constrain_correction(model, correction)
       state%motion%displacement = state%motion%displacement + correction
     end do
     call state%plies%book(model, damage)

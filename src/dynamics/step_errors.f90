@@ -35,7 +35,7 @@ module step_errors
     !> Error of a trial step.
     procedure :: estimate
     !> Stores a state before it is replaced.
-    procedure :: note
+    procedure :: record
     !> Discards the states before a sudden change.
     procedure :: reset
     !> True: no further contact is expected.
@@ -158,7 +158,7 @@ contains
   end function impact_is_over
 
   !> Stores a state before it is replaced, and updates the largest values by the next one.
-  subroutine note(self, model, now, next)
+  subroutine record(self, model, now, next)
     !> The estimate
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -177,7 +177,7 @@ contains
     if (.not. model%setup%has_impactor) return
     self%force = max(self%force, next%force)
     self%stiffness = max(self%stiffness, stiffness_of(model, next))
-  end subroutine note
+  end subroutine record
 
   !> Discards the states before a sudden change: failed plies or grown fronts change the forces at the end of a step
   !> abruptly. Divided differences across it give a third derivative that grows as the step gets shorter, although the

@@ -105,8 +105,8 @@ contains
         call kinetic%add(plane)
       end associate
     end do
-    do i = 1, size(method%lines%pins)
-      call kinetic%add(method%lines%pins(i)%reaction*method%lines%pins(i)%change/2)
+    do i = 1, size(method%lines%dofs)
+      call kinetic%add(method%lines%dofs(i)%reaction*method%lines%dofs(i)%change/2)
     end do
   end subroutine add_kinetic
 
@@ -124,7 +124,7 @@ contains
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
       do i = 1, model%distribution%owned
         if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
-        if (model%rig%elastic) call stored%add(-model%rig%presses(i)*u(3, i))
+        if (model%rig%elastic) call stored%add(-model%rig%clamp_preload(i)*u(3, i))
         if (.not. allocated(cohesive%cohesive)) cycle
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0) then

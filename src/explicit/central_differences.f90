@@ -2,9 +2,9 @@
 !> global system is solved.
 !>
 !> Velocities are those at the middle of steps, from the forces F at the start of a step,
-!>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n+1)),   u(n+1) = u(n) + h v(n+1/2),
-!> followed by the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1, with the tractions
-!> lambda of the end of the step on the jumps B u).
+!>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n)),   u(n+1) = u(n) + h v(n+1/2),
+!> followed by the forces at its end (K. J. Bathe, Finite Element Procedures, 1996, section 9.2.1). The tractions lambda
+!> on the jumps B u are those of weighted jumps, which include the jumps at the end of the step (`weighted_jumps`).
 module central_differences
   use archives, only: archive_t
   use central_difference_parameters, only: central_difference_parameters_t
@@ -24,20 +24,20 @@ module central_differences
   use stack_motions, only: move_stacks, new_workspaces
   use stack_solutions, only: stack_t
   use states, only: state_t
-  use step_lengths, only: step_lengths_t, whole_step
+  use step_lengths, only: step_lengths_t, commensurate_step
   implicit none
   private
   public :: central_difference_t
 
   !> Steps between two updates of the highest frequency by slopes and membrane tension, and relative allowance for its
   !> growth in between: a slope changes by less than velocity times time over element length, far below a hundredth.
-  integer, parameter :: between_frequencies = 16
+  integer, parameter :: steps_between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
   !> Fraction of that allowance, a squared frequency, below which steps are lengthened again: they are a tenth too short
   !> at most.
-  real(wp), parameter :: relaxed = 0.8_wp
+  real(wp), parameter :: lengthening_ratio = 0.8_wp
   !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
-  real(wp), parameter :: rounded_off = 1.0e-3_wp
+  real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
   !> Data of central differences besides the state. It has many components because inertia, stacks, lines, rigs and
   !> patch each have their own part in a step.
@@ -63,7 +63,7 @@ module central_differences
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
     !> Points of nodes with one layer: unconstrained ones, and those constrained by a frame or a line
-    integer, allocatable, private :: plain(:), guided(:)
+    integer, allocatable, private :: unconstrained(:), constrained(:)
     !> Highest frequency of the undeformed elements, and that allowed for by the step
     real(wp) :: frequency = 0, stiffened = 0
     !> Square of the highest frequency of each undeformed element, (lanes, batches)
@@ -125,7 +125,7 @@ contains
     self%rigs = create_rig_steps(model)
     self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
-    call sort_points(self)
+    call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
     call self%impact%patch%gather(model, self%inertia%inverse(7, :))
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
@@ -136,17 +136,17 @@ contains
   end subroutine start
 
   !> Separates points constrained by a frame or a line from unconstrained ones.
-  subroutine sort_points(self)
+  subroutine separate_constrained_points(self)
     !> The method
     type(central_difference_t), intent(inout) :: self
-    logical :: guided(size(self%stacks%single))
+    logical :: constrained(size(self%stacks%single))
     integer :: i
 
-    guided = [(self%rigs%on_frame(self%stacks%single(i)) .or. self%lines%is_pinned(self%stacks%single(i)), &
-               i=1, size(guided))]
-    self%plain = pack(self%stacks%single, .not. guided)
-    self%guided = pack(self%stacks%single, guided)
-  end subroutine sort_points
+    constrained = [(self%rigs%on_frame(self%stacks%single(i)) .or. self%lines%is_prescribed(self%stacks%single(i)), &
+                   i=1, size(constrained))]
+    self%unconstrained = pack(self%stacks%single, .not. constrained)
+    self%constrained = pack(self%stacks%single, constrained)
+  end subroutine separate_constrained_points
 
   !> Stable step of elements and contact times step_factor. Frequencies of springs added to
   !> each other are at most the root of the sum of their squares.
@@ -158,9 +158,10 @@ contains
     type(state_t), intent(in) :: now
     real(wp) :: square
 
-    if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, between_frequencies) == 0) then
+    if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, steps_between_frequencies) == 0) then
       square = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%motion)
-      if (square > self%stiffened .or. square < relaxed*self%stiffened) self%stiffened = stiffened_reserve*square
+      if (square > self%stiffened .or. square < lengthening_ratio*self%stiffened) &
+        self%stiffened = stiffened_reserve*square
     end if
     square = self%stiffened**2
     if (model%setup%has_impactor) &
@@ -184,7 +185,8 @@ contains
 
     step = self%steps%now
     longest = self%longest_step(model, now)
-    if (.not. (step <= longest .and. step > relaxed*longest)) step = whole_step(model%setup%ramp_time, longest)
+    if (.not. (step <= longest .and. step > lengthening_ratio*longest)) &
+      step = commensurate_step(model%setup%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now)
     call prepare(self, model)
     load_factors = [now%load_factor, model%setup%load_factor_at(now%time + step)]
@@ -193,21 +195,22 @@ contains
     call self%change_length(model, now%motion%velocity, -1)
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
-      if (allocated(self%inertia%springs)) call self%rigs%pull(self%inertia%springs, self%steps, u, v, self%force)
+      if (allocated(self%inertia%springs)) &
+        call self%rigs%add_spring_forces(self%inertia%springs, self%steps, u, v, self%force)
       call move_single(self, model, u, v)
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
                        self%force, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, u, v)
-      call self%circles%hold(model, self%steps, u(3, :), v(3, :))
-      call self%inertia%spread(u)
-      call self%inertia%spread(v)
+      call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
+      call self%inertia%move_dependents(u)
+      call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call self%change_length(model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)
     end associate
     now%time = now%time + step
-    if (abs(now%time - event) <= rounded_off*step) now%time = event
+    if (abs(now%time - event) <= event_tolerance*step) now%time = event
     now%step = now%step + 1
     now%load_factor = load_factors(2)
     call self%impact%move(model, self%steps, now)
@@ -256,12 +259,12 @@ contains
     real(wp) :: before(5)
     integer :: i, p
 
-    call move_points(self%plain, self%inertia%inverse, self%steps%mean(), self%steps%now, self%force, u, v)
-    do i = 1, size(self%guided)
-      p = self%guided(i)
-      if (self%lines%is_pinned(p)) before = v(:, p)
+    call move_points(self%unconstrained, self%inertia%inverse, self%steps%mean(), self%steps%now, self%force, u, v)
+    do i = 1, size(self%constrained)
+      p = self%constrained(i)
+      if (self%lines%is_prescribed(p)) before = v(:, p)
       call accelerate(self%inertia%inverse(:, p), self%steps%mean(), self%force(:, p), v(:, p))
-      if (self%lines%is_pinned(p)) then
+      if (self%lines%is_prescribed(p)) then
         call self%lines%prescribe(p, v(:, p))
         call self%lines%react(p, self%steps, self%inertia%mass(:, p), before, v(:, p), self%force(:, p))
       end if
@@ -289,8 +292,8 @@ contains
     call model%borders%add(self%field)
     self%force = -self%field(:, :size(self%force, 2))
     call model%profile%leave()
-    call self%impact%patch%push(model%mesh%multiplicity, now%force, self%force)
-    if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%presses
+    call self%impact%patch%add_force(model%mesh%multiplicity, now%force, self%force)
+    if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%clamp_preload
     call self%inertia%fold(self%force)
   end subroutine find_forces
 
@@ -310,7 +313,7 @@ contains
     allocate (loads, mold=self%force)
     loads = 0
     change = self%steps%now*model%motion_of(now%motion%velocity)
-    call self%lines%press(model, load_factors, change, loads)
+    call self%lines%add_forces(model, load_factors, change, loads)
     if (allocated(model%pressure)) then
       amplitudes = model%setup%pressure%amplitude([now%time - self%steps%now, now%time])
       loads = loads + amplitudes(2)*model%pressure
@@ -360,7 +363,7 @@ contains
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
-    call sort_points(self)
+    call separate_constrained_points(self)
     self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
     if (self%steps%now > 0) call prepare(self, model)

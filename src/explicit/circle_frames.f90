@@ -29,7 +29,7 @@ module circle_frames
     !> Computes the matrix for an inertia.
     procedure :: prepare
     !> Enforces zero deflection of the points at the end of a step.
-    procedure :: hold
+    procedure :: constrain
   end type circle_frames_t
 
 contains
@@ -124,7 +124,7 @@ contains
   end function gathered
 
   !> Enforces zero deflection of the points at the end of a step. Collective.
-  subroutine hold(self, model, steps, w, rate)
+  subroutine constrain(self, model, steps, w, rate)
     !> The points; receive their forces
     class(circle_frames_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -145,5 +145,5 @@ contains
         w(self%local(k, i)) = w(self%local(k, i)) + steps%now*change
       end do
     end do
-  end subroutine hold
+  end subroutine constrain
 end module circle_frames

@@ -20,7 +20,7 @@ module damaged_stacks
 contains
 
   !> Copies a damaged stack from the state.
-  pure subroutine load_stack(stacks, work, model, cohesive, p, u, free)
+  pure subroutine load_stack(stacks, work, model, cohesive, p, u, trial)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Receives it
@@ -33,7 +33,7 @@ contains
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     !> Jumps without tractions, (3, n)
-    real(wp), intent(in) :: free(:, :)
+    real(wp), intent(in) :: trial(:, :)
     type(cohesive_faces_t) :: faces
     integer :: j
 
@@ -41,7 +41,7 @@ contains
       work%stiffness = stacks%stiffness(:, p + 1:q)
       work%diagonal = stacks%diagonal(:, p + 1:q)
       work%off_diagonal = stacks%off_diagonal(:, p + 1:q)
-      work%free = free
+      work%trial = trial
       work%start = u(1:3, p + 1:q)
       work%points = cohesive%points(p + 1:q)
     end associate

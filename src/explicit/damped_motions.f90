@@ -25,15 +25,15 @@ contains
     type(state_t), intent(inout) :: now
     !> Duration of the damping; motions with a longer period are damped less
     real(wp), intent(in) :: duration
-    real(wp) :: share, before
+    real(wp) :: ratio, before
 
     if (.not. method%steps%now > 0) return
-    share = exp(2*log(final_ratio)*method%steps%now/duration)
+    ratio = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, model, now)
-    now%motion%velocity = share*now%motion%velocity
-    call method%stacks%history%slow_down(share)
-    method%rigs%approach = share*method%rigs%approach
-    method%lines%pins%change = share*method%lines%pins%change
+    now%motion%velocity = ratio*now%motion%velocity
+    call method%stacks%history%scale_changes(ratio)
+    method%rigs%approach = ratio*method%rigs%approach
+    method%lines%dofs%change = ratio*method%lines%dofs%change
     now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now)
   end subroutine damp_motion
 end module damped_motions

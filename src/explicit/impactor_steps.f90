@@ -100,7 +100,7 @@ contains
       now%force = indentation_force(model%setup%indentation, now%indentation, alpha)
       call commit_indentation(model%setup%indentation, now%indentation, alpha)
       impactor%force = now%force
-      call self%patch%spread(w, alpha)
+      call self%patch%update_weights(w, alpha)
       impactor%velocity = self%velocity
       if (parameters%travel > 0) then
         self%work = self%work + (before + now%force)/2*change

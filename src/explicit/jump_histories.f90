@@ -23,9 +23,9 @@ module jump_histories
     real(wp), allocatable :: lost(:, :)
   contains
     !> Takes over force and change of a step.
-    procedure :: take
+    procedure :: record
     !> Multiplies the changes and the work done in them.
-    procedure :: slow_down
+    procedure :: scale_changes
     !> Checkpoint.
     procedure :: visit
   end type jump_history_t
@@ -44,7 +44,7 @@ contains
   end function create_jump_history
 
   !> Takes over force and change of a step.
-  pure subroutine take(self, p, force, change)
+  pure subroutine record(self, p, force, change)
     !> The history
     class(jump_history_t), intent(inout) :: self
     !> The point
@@ -55,10 +55,10 @@ contains
     self%forces(:, p) = force
     self%earlier(:, p) = self%change(:, p)
     self%change(:, p) = change
-  end subroutine take
+  end subroutine record
 
   !> Multiplies the changes, and the work done in them, by the ratio of velocities.
-  pure subroutine slow_down(self, ratio)
+  pure subroutine scale_changes(self, ratio)
     !> The history
     class(jump_history_t), intent(inout) :: self
     !> The ratio
@@ -69,7 +69,7 @@ contains
     self%sticking = ratio*self%sticking
     self%work = ratio*self%work
     self%slipped(2, :) = ratio*self%slipped(2, :)
-  end subroutine slow_down
+  end subroutine scale_changes
 
   !> Writes or reads the history.
   subroutine visit(self, archive, owned, points)

@@ -48,7 +48,7 @@ contains
       stacks%history%lost(2, p) = stacks%history%lost(2, p) + work_of(stacks, p, steps, forces(:, j), change) &
                           - sum(k*change*(u(1:3, p) + jump))/2
       u(1:3, p) = jump
-      call stacks%history%take(p, forces(:, j), change)
+      call stacks%history%record(p, forces(:, j), change)
       if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
       faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
       associate (point => cohesive%points(p))
@@ -116,7 +116,7 @@ contains
           (faces%stored(u(1:3, p), new) - faces%stored(before, old) + growth + new%sliding%heat - old%sliding%heat)]
         stacks%history%work(p) = area*faces%work(before, u(1:3, p), old, new%damage)
       end associate
-      call stacks%history%take(p, forces(:, j), change)
+      call stacks%history%record(p, forces(:, j), change)
     end do
   end subroutine advance_points
 

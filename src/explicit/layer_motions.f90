@@ -4,7 +4,8 @@ module layer_motions
   use kinds, only: wp
   implicit none
   private
-  public :: accelerate, accelerate_layers, find_rates, move_points, pull_on, push_layers, to_layers
+  public :: accelerate, accelerate_by_tractions, accelerate_layers, find_rates, move_points, to_layers, &
+            traction_resultant
 
 contains
 
@@ -108,7 +109,7 @@ contains
   end subroutine find_rates
 
   !> Adds the change of velocity of the layers by the tractions between them during a time.
-  pure subroutine push_layers(n, height, inverse, time, forces, layer)
+  pure subroutine accelerate_by_tractions(n, height, inverse, time, forces, layer)
     !> Interfaces
     integer, intent(in) :: n
     !> Height of the interface above each layer, (n + 1)
@@ -121,24 +122,24 @@ contains
     real(wp), intent(in) :: forces(3, n)
     !> Velocities of the layers, (5, n + 1)
     real(wp), intent(inout) :: layer(5, n + 1)
-    real(wp) :: pull(5)
+    real(wp) :: resultant(5)
     integer :: l
 
-    pull = 0
+    resultant = 0
     do l = 1, n
-      pull(1:3) = pull(1:3) + forces(:, l)
-      pull(4) = pull(4) + height(l + 1)*forces(1, l)
-      pull(5) = pull(5) + height(l + 1)*forces(2, l)
-      call accelerate(inverse(:, l), time, pull, layer(:, l))
-      pull(1:3) = -forces(:, l)
-      pull(4) = -height(l + 1)*forces(1, l)
-      pull(5) = -height(l + 1)*forces(2, l)
+      resultant(1:3) = resultant(1:3) + forces(:, l)
+      resultant(4) = resultant(4) + height(l + 1)*forces(1, l)
+      resultant(5) = resultant(5) + height(l + 1)*forces(2, l)
+      call accelerate(inverse(:, l), time, resultant, layer(:, l))
+      resultant(1:3) = -forces(:, l)
+      resultant(4) = -height(l + 1)*forces(1, l)
+      resultant(5) = -height(l + 1)*forces(2, l)
     end do
-    call accelerate(inverse(:, n + 1), time, pull, layer(:, n + 1))
-  end subroutine push_layers
+    call accelerate(inverse(:, n + 1), time, resultant, layer(:, n + 1))
+  end subroutine accelerate_by_tractions
 
   !> Force of the tractions on a layer.
-  pure function pull_on(n, height, forces, l) result(pull)
+  pure function traction_resultant(n, height, forces, l) result(resultant)
     !> Interfaces
     integer, intent(in) :: n
     !> Height of the interface above each layer, (n + 1)
@@ -148,10 +149,10 @@ contains
     !> The layer
     integer, intent(in) :: l
     !> Forces and moments
-    real(wp) :: pull(5)
+    real(wp) :: resultant(5)
 
-    pull = 0
-    if (l > 1) pull = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
-    if (l <= n) pull = pull + [forces(:, l), height(l + 1)*forces(1:2, l)]
-  end function pull_on
+    resultant = 0
+    if (l > 1) resultant = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
+    if (l <= n) resultant = resultant + [forces(:, l), height(l + 1)*forces(1:2, l)]
+  end function traction_resultant
 end module layer_motions

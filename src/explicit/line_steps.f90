@@ -18,7 +18,7 @@ module line_steps
   public :: line_steps_t, create_line_steps
 
   !> A prescribed component of a layer's motion.
-  type :: pin_t
+  type :: prescribed_dof_t
     !> Point of the layer, and the line
     integer :: point = 0, line = 0
     !> Component of the motion, 1 to 5
@@ -33,19 +33,19 @@ module line_steps
     real(wp) :: offset = 0
     !> Reaction in the last step, and change of the component in it
     real(wp) :: reaction = 0, change = 0
-  end type pin_t
+  end type prescribed_dof_t
 
   !> The lines of a model.
   type :: line_steps_t
     !> Prescribed components, sorted by point
-    type(pin_t), allocatable :: pins(:)
-    !> First of the pins of each point, (points + 1)
+    type(prescribed_dof_t), allocatable :: dofs(:)
+    !> First prescribed component of each point, (points + 1)
     integer, allocatable, private :: first(:)
     !> Work of the lines so far, (points)
     real(wp), allocatable :: work(:)
   contains
     !> True: a component of a point is prescribed.
-    procedure :: is_pinned
+    procedure :: is_prescribed
     !> Projects the prescribed components out of the inverse inertia.
     procedure :: project
     !> Sets the motion from which the prescribed one starts.
@@ -57,7 +57,7 @@ module line_steps
     !> Books the reactions on a point.
     procedure :: react
     !> Adds the forces of lines with a force.
-    procedure :: press
+    procedure :: add_forces
     !> Force of each line on the full plate.
     procedure :: totals
     !> Saves or loads.
@@ -73,37 +73,37 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     !> The lines
     type(line_steps_t) :: self
-    type(pin_t), allocatable :: pins(:)
+    type(prescribed_dof_t), allocatable :: dofs(:)
     logical :: is_dependent(size(model%distribution%points))
     integer :: line, node, p
 
     is_dependent = .false.
     is_dependent(inertia%dependents) = .true.
-    allocate (pins(0), self%work(size(is_dependent)), self%first(size(is_dependent) + 1))
+    allocate (dofs(0), self%work(size(is_dependent)), self%first(size(is_dependent) + 1))
     self%work = 0
     do line = 1, size(model%lines)
       associate (its => model%lines(line))
         if (.not. its%load%prescribed) cycle
         do node = 1, size(its%weight)
           p = its%point(its%first(node))
-          if (is_dependent(p) .or. inertia%held(its%load%component, p)) cycle
-          pins = [pins, pin_t(point=p, line=line, component=its%load%component, &
+          if (is_dependent(p) .or. inertia%constrained(its%load%component, p)) cycle
+          dofs = [dofs, prescribed_dof_t(point=p, line=line, component=its%load%component, &
                               height=merge(its%height(node), 0.0_wp, its%load%component <= 2))]
         end do
       end associate
     end do
-    call sort_pins(self, pins)
+    call sort_dofs(self, dofs)
   end function create_line_steps
 
   !> True: a component of a point is prescribed.
-  pure logical function is_pinned(self, p)
+  pure logical function is_prescribed(self, p)
     !> The lines
     class(line_steps_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
 
-    is_pinned = self%first(p + 1) > self%first(p)
-  end function is_pinned
+    is_prescribed = self%first(p + 1) > self%first(p)
+  end function is_prescribed
 
   !> Projects the prescribed components out of the inverse inertia.
   pure subroutine project(self, inverse)
@@ -114,25 +114,25 @@ contains
     real(wp) :: direction(2), compliance
     integer :: i, from
 
-    do i = 1, size(self%pins)
-      associate (pin => self%pins(i), m => inverse(:, self%pins(i)%point))
-        if (pin%component == 3) then
-          pin%gain = [1.0_wp, 0.0_wp]
+    do i = 1, size(self%dofs)
+      associate (dof => self%dofs(i), m => inverse(:, self%dofs(i)%point))
+        if (dof%component == 3) then
+          dof%gain = [1.0_wp, 0.0_wp]
           m(7) = 0
           cycle
         end if
-        from = merge(1, 4, pin%component == 1 .or. pin%component == 4)
-        direction = merge([1.0_wp, pin%height], [0.0_wp, 1.0_wp], pin%component <= 2)
-        pin%gain = [m(from)*direction(1) + m(from + 1)*direction(2), &
+        from = merge(1, 4, dof%component == 1 .or. dof%component == 4)
+        direction = merge([1.0_wp, dof%height], [0.0_wp, 1.0_wp], dof%component <= 2)
+        dof%gain = [m(from)*direction(1) + m(from + 1)*direction(2), &
                     m(from + 1)*direction(1) + m(from + 2)*direction(2)]
-        compliance = dot_product(pin%gain, direction)
+        compliance = dot_product(dof%gain, direction)
         if (.not. compliance > 0) then
           ! Supported components move only as prescribed.
-          pin%gain = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], pin%component <= 2)
+          dof%gain = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], dof%component <= 2)
           cycle
         end if
-        m(from:from + 2) = m(from:from + 2) - [pin%gain(1)**2, product(pin%gain), pin%gain(2)**2]/compliance
-        pin%gain = pin%gain/compliance
+        m(from:from + 2) = m(from:from + 2) - [dof%gain(1)**2, product(dof%gain), dof%gain(2)**2]/compliance
+        dof%gain = dof%gain/compliance
       end associate
     end do
   end subroutine project
@@ -147,50 +147,50 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
-    type(pin_t), allocatable :: pins(:)
+    type(prescribed_dof_t), allocatable :: dofs(:)
     logical :: is_dependent(size(motion, 2))
     integer :: i, p, component
 
     is_dependent = .false.
     is_dependent(inertia%dependents) = .true.
-    pins = self%pins
+    dofs = self%dofs
     do p = 1, model%distribution%owned
       do component = 1, 5
-        if (inertia%held(component, p) .and. .not. is_dependent(p) .and. abs(motion(component, p)) > 0) &
-          pins = [pins, pin_t(point=p, component=component)]
+        if (inertia%constrained(component, p) .and. .not. is_dependent(p) .and. abs(motion(component, p)) > 0) &
+          dofs = [dofs, prescribed_dof_t(point=p, component=component)]
       end do
     end do
-    call sort_pins(self, pins)
-    do i = 1, size(self%pins)
-      associate (pin => self%pins(i))
-        pin%offset = component_of(pin, motion(:, pin%point))
-        if (pin%line > 0) pin%offset = pin%offset - model%lines(pin%line)%load%at_factor(0.0_wp)
+    call sort_dofs(self, dofs)
+    do i = 1, size(self%dofs)
+      associate (dof => self%dofs(i))
+        dof%offset = component_of(dof, motion(:, dof%point))
+        if (dof%line > 0) dof%offset = dof%offset - model%lines(dof%line)%load%at_factor(0.0_wp)
       end associate
     end do
   end subroutine start_from
 
   !> Sorts prescribed components by point.
-  pure subroutine sort_pins(self, pins)
+  pure subroutine sort_dofs(self, dofs)
     !> The lines
     class(line_steps_t), intent(inout) :: self
     !> Prescribed components, in any order
-    type(pin_t), intent(in) :: pins(:)
-    integer :: order(size(pins)), i, p
+    type(prescribed_dof_t), intent(in) :: dofs(:)
+    integer :: order(size(dofs)), i, p
 
     self%first = 1
-    do i = 1, size(pins)
-      self%first(pins(i)%point + 1:) = self%first(pins(i)%point + 1:) + 1
+    do i = 1, size(dofs)
+      self%first(dofs(i)%point + 1:) = self%first(dofs(i)%point + 1:) + 1
     end do
     order = 0
-    do i = 1, size(pins)
-      p = self%first(pins(i)%point)
+    do i = 1, size(dofs)
+      p = self%first(dofs(i)%point)
       do while (order(p) > 0)
         p = p + 1
       end do
       order(p) = i
     end do
-    self%pins = pins(order)
-  end subroutine sort_pins
+    self%dofs = dofs(order)
+  end subroutine sort_dofs
 
   !> Computes the rates by which each component has its prescribed value at the end of the step.
   pure subroutine find_rates(self, model, steps, load_factor, left, motion)
@@ -208,24 +208,24 @@ contains
     real(wp) :: value
     integer :: i
 
-    do i = 1, size(self%pins)
-      associate (pin => self%pins(i))
-        value = left*pin%offset
-        if (pin%line > 0) value = value + model%lines(pin%line)%load%at_factor(load_factor)
-        pin%rate = (value - component_of(pin, motion(:, pin%point)))/steps%now
+    do i = 1, size(self%dofs)
+      associate (dof => self%dofs(i))
+        value = left*dof%offset
+        if (dof%line > 0) value = value + model%lines(dof%line)%load%at_factor(load_factor)
+        dof%rate = (value - component_of(dof, motion(:, dof%point)))/steps%now
       end associate
     end do
   end subroutine find_rates
 
-  !> The pinned component of a layer's motion.
-  pure real(wp) function component_of(pin, motion) result(value)
-    !> The pin
-    type(pin_t), intent(in) :: pin
+  !> The prescribed component of a layer's motion.
+  pure real(wp) function component_of(dof, motion) result(value)
+    !> The component
+    type(prescribed_dof_t), intent(in) :: dof
     !> Motion or velocity of the layer
     real(wp), intent(in) :: motion(5)
 
-    value = motion(pin%component)
-    if (pin%component <= 2) value = value + pin%height*motion(pin%component + 3)
+    value = motion(dof%component)
+    if (dof%component <= 2) value = value + dof%height*motion(dof%component + 3)
   end function component_of
 
   !> Sets the prescribed velocity of the layer of a point.
@@ -240,14 +240,14 @@ contains
     integer :: i, k
 
     do i = self%first(p), self%first(p + 1) - 1
-      associate (pin => self%pins(i))
-        missing = pin%rate - component_of(pin, velocity)
-        k = pin%component
+      associate (dof => self%dofs(i))
+        missing = dof%rate - component_of(dof, velocity)
+        k = dof%component
         if (k == 3) then
-          velocity(3) = pin%rate
+          velocity(3) = dof%rate
         else
           if (k > 3) k = k - 3
-          velocity([k, k + 3]) = velocity([k, k + 3]) + pin%gain*missing
+          velocity([k, k + 3]) = velocity([k, k + 3]) + dof%gain*missing
         end if
       end associate
     end do
@@ -272,20 +272,20 @@ contains
     missing = [mass(1)*gained(1:2) + mass(2)*gained(4:5), mass(4)*gained(3), &
                mass(2)*gained(1:2) + mass(3)*gained(4:5)] - force
     do i = self%first(p), self%first(p + 1) - 1
-      associate (pin => self%pins(i))
-        reaction = missing(pin%component)
-        if (pin%component <= 2) missing(pin%component + 3) = missing(pin%component + 3) - pin%height*reaction
-        change = steps%now*component_of(pin, after)
-        self%work(p) = self%work(p) + reaction*(change + steps%shift(pin%change, change)) &
-                       + (reaction - pin%reaction)*pin%change/2
-        pin%reaction = reaction
-        pin%change = change
+      associate (dof => self%dofs(i))
+        reaction = missing(dof%component)
+        if (dof%component <= 2) missing(dof%component + 3) = missing(dof%component + 3) - dof%height*reaction
+        change = steps%now*component_of(dof, after)
+        self%work(p) = self%work(p) + reaction*(change + steps%shift(dof%change, change)) &
+                       + (reaction - dof%reaction)*dof%change/2
+        dof%reaction = reaction
+        dof%change = change
       end associate
     end do
   end subroutine react
 
   !> Adds the forces of lines with a force, and their work in a step by the mean of the forces at its ends.
-  pure subroutine press(self, model, load_factors, change, forces)
+  pure subroutine add_forces(self, model, load_factors, change, forces)
     !> The lines
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -297,14 +297,14 @@ contains
     real(wp), intent(inout) :: forces(:, :)
     real(wp) :: values(2), share
     integer :: line, node
-    type(pin_t) :: place
+    type(prescribed_dof_t) :: place
 
     do line = 1, size(model%lines)
       associate (its => model%lines(line))
         if (its%load%prescribed) cycle
         values = its%load%at_factor(load_factors)
         do node = 1, size(its%weight)
-          place = pin_t(point=its%point(its%first(node)), component=its%load%component, &
+          place = prescribed_dof_t(point=its%point(its%first(node)), component=its%load%component, &
                         height=merge(its%height(node), 0.0_wp, its%load%component <= 2))
           share = its%share*its%weight(node)
           associate (p => place%point, k => place%component)
@@ -315,7 +315,7 @@ contains
         end do
       end associate
     end do
-  end subroutine press
+  end subroutine add_forces
 
   !> Force of each line on the full plate. Collective.
   function totals(self, model) result(forces)
@@ -327,9 +327,9 @@ contains
     type(exact_sum_t) :: sums(size(model%lines))
     integer :: i
 
-    do i = 1, size(self%pins)
-      associate (pin => self%pins(i))
-        if (pin%line > 0) call sums(pin%line)%add(pin%reaction/model%lines(pin%line)%share)
+    do i = 1, size(self%dofs)
+      associate (dof => self%dofs(i))
+        if (dof%line > 0) call sums(dof%line)%add(dof%reaction/model%lines(dof%line)%share)
       end associate
     end do
     forces = totals_of(model%communicator, sums)
@@ -348,21 +348,21 @@ contains
 
     fields = 0
     fields(11, :) = self%work
-    do i = 1, size(self%pins)
-      associate (pin => self%pins(i))
-        fields(pin%component, pin%point) = pin%reaction
-        fields(pin%component + 5, pin%point) = pin%change
-        fields(pin%component + 11, pin%point) = pin%offset
+    do i = 1, size(self%dofs)
+      associate (dof => self%dofs(i))
+        fields(dof%component, dof%point) = dof%reaction
+        fields(dof%component + 5, dof%point) = dof%change
+        fields(dof%component + 11, dof%point) = dof%offset
       end associate
     end do
     call archive%field('explicit/lines', owned, points, fields)
     self%work = fields(11, :)
     if (archive%loading) call add_offset(self, fields(12:, :))
-    do i = 1, size(self%pins)
-      associate (pin => self%pins(i))
-        pin%reaction = fields(pin%component, pin%point)
-        pin%change = fields(pin%component + 5, pin%point)
-        pin%offset = fields(pin%component + 11, pin%point)
+    do i = 1, size(self%dofs)
+      associate (dof => self%dofs(i))
+        dof%reaction = fields(dof%component, dof%point)
+        dof%change = fields(dof%component + 5, dof%point)
+        dof%offset = fields(dof%component + 11, dof%point)
       end associate
     end do
   end subroutine visit
@@ -374,20 +374,20 @@ contains
     !> Offset of each component, (5, points)
     real(wp), intent(in) :: offsets(:, :)
     logical :: missing(5, size(offsets, 2))
-    type(pin_t), allocatable :: pins(:)
+    type(prescribed_dof_t), allocatable :: dofs(:)
     integer :: i, p, component
 
     missing = abs(offsets) > 0
-    do i = 1, size(self%pins)
-      missing(self%pins(i)%component, self%pins(i)%point) = .false.
+    do i = 1, size(self%dofs)
+      missing(self%dofs(i)%component, self%dofs(i)%point) = .false.
     end do
     if (.not. any(missing)) return
-    pins = self%pins
+    dofs = self%dofs
     do p = 1, size(offsets, 2)
       do component = 1, 5
-        if (missing(component, p)) pins = [pins, pin_t(point=p, component=component)]
+        if (missing(component, p)) dofs = [dofs, prescribed_dof_t(point=p, component=component)]
       end do
     end do
-    call sort_pins(self, pins)
+    call sort_dofs(self, dofs)
   end subroutine add_offset
 end module line_steps

@@ -21,7 +21,7 @@ module nodal_inertia
     !> Scaled I0, I1, I2 of in-plane motion and rotation, and I0 of w, (4, points); zero at dependent points
     real(wp), allocatable :: mass(:, :)
     !> True for unknowns constrained to zero, (5, points)
-    logical, allocatable :: held(:, :)
+    logical, allocatable :: constrained(:, :)
     !> Stiffness of springs on the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
     real(wp), allocatable :: springs(:, :)
     !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
@@ -35,7 +35,7 @@ module nodal_inertia
     procedure :: invert
     !> Adds forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
-    procedure :: spread
+    procedure :: move_dependents
   end type nodal_inertia_t
 
 contains
@@ -65,12 +65,12 @@ contains
     type(nodal_inertia_t), intent(inout) :: self
     integer :: master(model%mesh%points()), i
     real(wp) :: signs(5, model%mesh%points())
-    logical :: held(5, model%mesh%points())
+    logical :: constrained(5, model%mesh%points())
 
-    held = model%fixed
-    call find_masters(model%mesh, master, signs, held, model%images)
+    constrained = model%fixed
+    call find_masters(model%mesh, master, signs, constrained, model%images)
     associate (partition => model%distribution)
-      self%held = held(:, partition%points)
+      self%constrained = constrained(:, partition%points)
       self%dependents = pack([(i, i=1, partition%owned)], master(partition%points(:partition%owned)) > 0)
       self%masters = partition%local(master(partition%points(self%dependents)))
       self%signs = signs(:, partition%points(self%dependents))
@@ -131,21 +131,21 @@ contains
     added = 0
     do i = 1, size(self%mass, 2)
       if (allocated(self%springs)) added = step_square*self%springs(:, i)
-      associate (m => self%mass(:, i), held => self%held(:, i), inverse => self%inverse(:, i))
-        inverse(1:3) = inverse_block([m(1) + added(1), m(2), m(3) + added(4)], held([1, 4]))
-        inverse(4:6) = inverse_block([m(1) + added(2), m(2), m(3) + added(5)], held([2, 5]))
+      associate (m => self%mass(:, i), constrained => self%constrained(:, i), inverse => self%inverse(:, i))
+        inverse(1:3) = inverse_block([m(1) + added(1), m(2), m(3) + added(4)], constrained([1, 4]))
+        inverse(4:6) = inverse_block([m(1) + added(2), m(2), m(3) + added(5)], constrained([2, 5]))
         inverse(7) = 0
-        if (m(4) > 0 .and. .not. held(3)) inverse(7) = 1/(m(4) + added(3))
+        if (m(4) > 0 .and. .not. constrained(3)) inverse(7) = 1/(m(4) + added(3))
       end associate
     end do
   end subroutine invert
 
   !> Inverse of the inertia of displacement and rotation, without constrained unknowns.
-  pure function inverse_block(mass, held) result(inverse)
+  pure function inverse_block(mass, constrained) result(inverse)
     !> I0, I1, I2
     real(wp), intent(in) :: mass(3)
     !> True for constrained unknowns: displacement, rotation
-    logical, intent(in) :: held(2)
+    logical, intent(in) :: constrained(2)
     !> Entries of displacement, coupling, rotation
     real(wp) :: inverse(3)
     real(wp) :: determinant
@@ -153,11 +153,11 @@ contains
     inverse = 0
     if (.not. mass(1) > 0) return
     determinant = mass(1)*mass(3) - mass(2)**2
-    if (.not. any(held)) then
+    if (.not. any(constrained)) then
       inverse = [mass(3), -mass(2), mass(1)]/determinant
-    else if (held(1) .and. .not. held(2)) then
+    else if (constrained(1) .and. .not. constrained(2)) then
       inverse(3) = 1/mass(3)
-    else if (held(2) .and. .not. held(1)) then
+    else if (constrained(2) .and. .not. constrained(1)) then
       inverse(1) = 1/mass(1)
     end if
   end function inverse_block
@@ -179,7 +179,7 @@ contains
   end subroutine fold
 
   !> Sets the motion of dependent points to that of their masters.
-  pure subroutine spread(self, motion)
+  pure subroutine move_dependents(self, motion)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self
     !> Displacement or velocity, (5, points)
@@ -189,5 +189,5 @@ contains
     do i = 1, size(self%dependents)
       motion(:, self%dependents(i)) = self%signs(:, i)*motion(:, self%masters(i))
     end do
-  end subroutine spread
+  end subroutine move_dependents
 end module nodal_inertia

@@ -27,16 +27,17 @@ contains
     integer :: i
 
     reactions = 0
-    if (.not. allocated(model%rig%held_by)) return
+    if (.not. allocated(model%rig%constrained_by)) return
     do i = 1, model%distribution%owned
-      associate (held_by => model%rig%held_by(i), on_frame => model%rig%frame(i), clamps => model%rig%clamps(i))
-        if (held_by > 0) then
-          call sums(held_by)%add(method%force(3, i))
-          if (has_interface_below(i)) call sums(held_by)%add(method%stacks%history%forces(3, i + 1))
+      associate (constrained_by => model%rig%constrained_by(i), on_frame => model%rig%frame(i), &
+                 clamps => model%rig%clamps(i))
+        if (constrained_by > 0) then
+          call sums(constrained_by)%add(method%force(3, i))
+          if (has_interface_below(i)) call sums(constrained_by)%add(method%stacks%history%forces(3, i + 1))
         else
           if (on_frame > 0) call sums(on_frame)%add(method%rigs%reaction(i))
           if (clamps > 0) &
-            call sums(clamps)%add(model%rig%springs(3, i)*now%motion%displacement(3, i) - model%rig%presses(i))
+            call sums(clamps)%add(model%rig%springs(3, i)*now%motion%displacement(3, i) - model%rig%clamp_preload(i))
         end if
       end associate
     end do

@@ -23,7 +23,7 @@ module rig_steps
     !> Stops a node at its frame.
     procedure :: stop_at_frame
     !> Adds the forces of springs.
-    procedure :: pull
+    procedure :: add_spring_forces
     procedure :: book_springs
     !> Saves or loads.
     procedure :: visit
@@ -59,13 +59,13 @@ contains
     real(wp), intent(in) :: w
     !> Its rate without the frame on entry, with it on return
     real(wp), intent(inout) :: rate
-    real(wp) :: free, reaction
+    real(wp) :: trial, reaction
 
-    free = rate
+    trial = rate
     if (w + steps%now*rate > 0) rate = -w/steps%now
     reaction = 0
-    if (inverse > 0) reaction = (free - rate)/(steps%mean()*inverse)
-    if (.not. w + steps%now*free > 0) reaction = 0
+    if (inverse > 0) reaction = (trial - rate)/(steps%mean()*inverse)
+    if (.not. w + steps%now*trial > 0) reaction = 0
     self%frame_loss(p) = self%frame_loss(p) &
                          + reaction*(steps%now*rate + steps%shift(self%approach(p), steps%now*rate)) &
                          + (reaction - self%reaction(p))*self%approach(p)/2
@@ -74,7 +74,7 @@ contains
   end subroutine stop_at_frame
 
   !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
-  pure subroutine pull(self, springs, steps, u, v, force)
+  pure subroutine add_spring_forces(self, springs, steps, u, v, force)
     !> The springs' state
     class(rig_steps_t), intent(in) :: self
     !> Stiffness, (5, points)
@@ -87,7 +87,7 @@ contains
     real(wp), intent(inout) :: force(:, :)
 
     force = force - springs*(u + steps%now*v)
-  end subroutine pull
+  end subroutine add_spring_forces
 
   !> Books the work of springs in a step beyond their stored energy: half the stiffness times the change in the step,
   !> times the sum of the changes in this and the previous step. The change of the previous step is approximated by that

@@ -20,20 +20,20 @@ module stable_steps
 
   !> Number of Lanczos steps. The estimate converges from below; after these steps congruent elements differ by less
   !> than 1e-6.
-  integer, parameter :: products = 24
+  integer, parameter :: lanczos_steps = 24
   !> Number of bisections for the largest root of the tridiagonal matrix, to round-off.
-  integer, parameter :: halvings = digits(1.0_wp)
+  integer, parameter :: bisections = digits(1.0_wp)
   !> Smallest divisor, for padding elements of a batch, which have no mass.
-  real(wp), parameter :: least = tiny(1.0_wp)**0.25_wp
+  real(wp), parameter :: smallest_divisor = tiny(1.0_wp)**0.25_wp
   !> Largest integral of the squared gradient of nine-node shapes over that of their square, lumped by Simpson's rule,
   !> in an element of sides 2: 6 of the waves along one side, 1.2 of those along the other.
-  real(wp), parameter :: gradient = 7.2_wp
+  real(wp), parameter :: gradient_bound = 7.2_wp
 
 contains
 
   !> Pseudo-random number between -1 and 1 for a seed, the same on every machine (G. Marsaglia, Journal of Statistical
   !> Software 8 (2003) 14, xorshift).
-  pure real(wp) function scattered(number)
+  pure real(wp) function pseudo_random(number)
     !> The seed
     integer, intent(in) :: number
     integer(long) :: bits
@@ -42,8 +42,8 @@ contains
     bits = ieor(bits, ishft(bits, 13))
     bits = ieor(bits, ishft(bits, -7))
     bits = ieor(bits, ishft(bits, 17))
-    scattered = real(iand(bits, 2_long**31 - 1), wp)/2.0_wp**30 - 1
-  end function scattered
+    pseudo_random = real(iand(bits, 2_long**31 - 1), wp)/2.0_wp**30 - 1
+  end function pseudo_random
 
   !> Highest angular frequency of all elements, and the number of the element. Collective.
   subroutine highest_element_frequency(model, stiffness, scaling, omega, element, of_elements)
@@ -83,7 +83,7 @@ contains
   !> Upper bound of the highest frequency with slopes and membrane tension. On a sloped plate membrane stiffness and
   !> tension act on w, whose mass is not scaled: with the derivatives S of the membrane strains by grad w, the energy
   !> per area is grad w^T G grad w / 2, G = S^T A S + N, with the damaged membrane stiffness A. In element coordinates
-  !> of length 2 it is at most `gradient` times the larger eigenvalue of G times the integral of w**2
+  !> of length 2 it is at most `gradient_bound` times the larger eigenvalue of G times the integral of w**2
   !> (`geometric_stiffness`). The energies of strains u and of slopes are at most (omega_u |u| + omega_w |w|)**2, so the
   !> squares of both frequencies are added. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, motion) result(omega)
@@ -104,8 +104,8 @@ contains
       call gather(model%elements%points(:, :, b), motion, r)
       call strains_of_batch(model%elements, b, kinematics_von_karman, r, strains, slopes)
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
-      added = gradient*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), slopes, &
-                                           strains)/max(least, model%elements%mass(:, 1, b))
+      added = gradient_bound*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), &
+                                                 slopes, strains)/max(smallest_divisor, model%elements%mass(:, 1, b))
       omega = max(omega, maxval(of_elements(:, b) + added))
     end do
     call model%communicator%maximum(omega)
@@ -154,29 +154,30 @@ contains
     !> (lane)
     real(wp) :: squares(lanes)
     real(wp) :: inverse(lanes, 9, 4), r(lanes, 9, 5), before(lanes, 9, 5), force(lanes, 9, 5), response(lanes, 9, 5)
-    real(wp) :: diagonal(lanes, products), beside(lanes, 0:products)
-    integer :: product
+    real(wp) :: diagonal(lanes, lanczos_steps), off_diagonal(lanes, 0:lanczos_steps)
+    integer :: lanczos_step
 
     inverse = inverse_inertia(model, b, scaling)
-    force = scattered_motion(inverse)
+    force = start_vector(inverse)
     call batch_force(model%elements, b, stiffness, force)
     before = 0
     r = 0
-    do product = 0, products
-      if (product > 0) then
+    do lanczos_step = 0, lanczos_steps
+      if (lanczos_step > 0) then
         force = response
         call batch_force(model%elements, b, stiffness, force)
-        diagonal(:, product) = sum(sum(force*response, 3), 2)
-        force = force - times_factors(r, diagonal(:, product)) - times_factors(before, beside(:, product - 1))
+        diagonal(:, lanczos_step) = sum(sum(force*response, 3), 2)
+        force = force - times_factors(r, diagonal(:, lanczos_step)) &
+                - times_factors(before, off_diagonal(:, lanczos_step - 1))
       end if
       before = r
       response = force
-      call divide(inverse, response)
-      beside(:, product) = sqrt(max(0.0_wp, sum(sum(force*response, 3), 2)))
-      r = times_factors(force, 1/max(least, beside(:, product)))
-      response = times_factors(response, 1/max(least, beside(:, product)))
+      call multiply_by_inverse_inertia(inverse, response)
+      off_diagonal(:, lanczos_step) = sqrt(max(0.0_wp, sum(sum(force*response, 3), 2)))
+      r = times_factors(force, 1/max(smallest_divisor, off_diagonal(:, lanczos_step)))
+      response = times_factors(response, 1/max(smallest_divisor, off_diagonal(:, lanczos_step)))
     end do
-    squares = largest_roots(diagonal, beside(:, 1:products - 1))
+    squares = largest_roots(diagonal, off_diagonal(:, 1:lanczos_steps - 1))
   end function batch_frequencies
 
   !> Vectors times a factor of each lane.
@@ -210,18 +211,18 @@ contains
 
     associate (mass => model%elements%mass(:, :, b), weight => model%elements%weight(:, :, b))
       do a = 1, 9
-        share = max(least, matmul(weight, gauss_shapes(a, :)))
-        length = scaling*share*max(least, mass(:, 1)*mass(:, 3) - mass(:, 2)**2)
+        share = max(smallest_divisor, matmul(weight, gauss_shapes(a, :)))
+        length = scaling*share*max(smallest_divisor, mass(:, 1)*mass(:, 3) - mass(:, 2)**2)
         inverse(:, a, 1) = mass(:, 3)/length
         inverse(:, a, 2) = -mass(:, 2)/length
         inverse(:, a, 3) = mass(:, 1)/length
-        inverse(:, a, 4) = 1/(share*max(least, mass(:, 1)))
+        inverse(:, a, 4) = 1/(share*max(smallest_divisor, mass(:, 1)))
       end do
     end associate
   end function inverse_inertia
 
   !> Start vector with components of all modes.
-  pure function scattered_motion(inverse) result(r)
+  pure function start_vector(inverse) result(r)
     !> Inverse inertia of the nodes
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> (lane, node, component)
@@ -230,33 +231,33 @@ contains
 
     do k = 1, 5
       do a = 1, 9
-        r(:, a, k) = scattered(5*a + k)
+        r(:, a, k) = pseudo_random(5*a + k)
         if (k > 3) r(:, a, k) = r(:, a, k)*sqrt(inverse(:, a, 3)/inverse(:, a, 4))
       end do
     end do
-  end function scattered_motion
+  end function start_vector
 
   !> Largest eigenvalues of symmetric tridiagonal matrices by Sturm sequences: a positive pivot of the matrix minus x
   !> times identity means an eigenvalue above x.
-  pure function largest_roots(diagonal, beside) result(roots)
+  pure function largest_roots(diagonal, off_diagonal) result(roots)
     !> Diagonals, (lane, row)
-    real(wp), intent(in) :: diagonal(lanes, products)
+    real(wp), intent(in) :: diagonal(lanes, lanczos_steps)
     !> Off-diagonal entries, (lane, row)
-    real(wp), intent(in) :: beside(lanes, products - 1)
+    real(wp), intent(in) :: off_diagonal(lanes, lanczos_steps - 1)
     !> (lane)
     real(wp) :: roots(lanes)
     real(wp) :: low(lanes), middle(lanes), pivot(lanes)
     logical :: above(lanes)
-    integer :: halving, k
+    integer :: bisection, k
 
     low = maxval(diagonal, 2)
-    roots = low + 2*maxval(beside, 2)
-    do halving = 1, halvings
+    roots = low + 2*maxval(off_diagonal, 2)
+    do bisection = 1, bisections
       middle = low + (roots - low)/2
       pivot = diagonal(:, 1) - middle
       above = pivot > 0
-      do k = 2, products
-        pivot = diagonal(:, k) - middle - beside(:, k - 1)**2/sign(max(least, abs(pivot)), pivot)
+      do k = 2, lanczos_steps
+        pivot = diagonal(:, k) - middle - off_diagonal(:, k - 1)**2/sign(max(smallest_divisor, abs(pivot)), pivot)
         above = above .or. pivot > 0
       end do
       low = merge(middle, low, above)
@@ -265,7 +266,7 @@ contains
   end function largest_roots
 
   !> Multiplies forces by the inverse inertia.
-  pure subroutine divide(inverse, r)
+  pure subroutine multiply_by_inverse_inertia(inverse, r)
     !> Inverse inertia of the nodes
     real(wp), intent(in) :: inverse(lanes, 9, 4)
     !> Forces on entry, accelerations on return
@@ -281,5 +282,5 @@ contains
       end do
     end do
     r(:, :, 3) = inverse(:, :, 4)*r(:, :, 3)
-  end subroutine divide
+  end subroutine multiply_by_inverse_inertia
 end module stable_steps

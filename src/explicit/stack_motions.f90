@@ -5,7 +5,7 @@ module stack_motions
   use interface_stacks, only: interface_stacks_t
   use jump_motions, only: advance_intact, advance_points
   use kinds, only: wp
-  use layer_motions, only: accelerate_layers, find_rates, pull_on, push_layers, to_layers
+  use layer_motions, only: accelerate_layers, find_rates, traction_resultant, accelerate_by_tractions, to_layers
   use line_steps, only: line_steps_t
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
@@ -31,7 +31,7 @@ contains
     allocate (work(maxval([1, stacks%layers]) - 1))
     do n = 1, size(work)
       work(n)%n = n
-      allocate (work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), work(n)%free(3, n), &
+      allocate (work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), work(n)%trial(3, n), &
                 work(n)%start(3, n), work(n)%points(n), work(n)%closing(n), work(n)%friction(n), work(n)%secant(2, n), &
                 work(n)%given(3, n), work(n)%forces(3, n), work(n)%normal_stiffness(n))
     end do
@@ -88,45 +88,45 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: layer(5, stacks%layers(i)), free(3, work%n), forces(3, work%n), past(3, work%n)
+    real(wp) :: layer(5, stacks%layers(i)), trial(3, work%n), forces(3, work%n), past(3, work%n)
     integer :: n, p, q, k
-    logical :: pinned
+    logical :: prescribed
 
     n = work%n
     p = stacks%first(i)
     q = p + n
     call to_layers(n, stacks%height(p:q), v(:, p:q), layer)
     call accelerate_layers(n + 1, inertia%inverse(:, p:q), steps%mean(), force(:, p:q), layer)
-    pinned = size(lines%pins) > 0
-    if (pinned) pinned = any([(lines%is_pinned(k), k=p, q)])
-    if (pinned) then
+    prescribed = size(lines%dofs) > 0
+    if (prescribed) prescribed = any([(lines%is_prescribed(k), k=p, q)])
+    if (prescribed) then
       do k = 0, n
-        if (lines%is_pinned(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
+        if (lines%is_prescribed(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
       end do
     end if
-    call find_rates(n, stacks%height(p:q), layer, free)
-    free = u(1:3, p + 1:q) + steps%now*free
+    call find_rates(n, stacks%height(p:q), layer, trial)
+    trial = u(1:3, p + 1:q) + steps%now*trial
     if (stacks%damaged(i)) then
-      call load_stack(stacks, work, model, cohesive, p, u, free)
+      call load_stack(stacks, work, model, cohesive, p, u, trial)
       call solve_damaged(stacks, work, model, cohesive, p)
       forces = work%forces
     else
       past = past_jumps(u(1:3, p + 1:q), stacks%history%change(:, p + 1:q), stacks%history%earlier(:, p + 1:q))
-      call solve_factored(n, stacks%factors(:, :, p + 1:q), free + past/newest, forces)
+      call solve_factored(n, stacks%factors(:, :, p + 1:q), trial + past/newest, forces)
       if (rigs%on_frame(p)) then
         work%normal_stiffness = newest*stacks%stiffness(2, p + 1:q)
         work%given(3, :) = stacks%stiffness(2, p + 1:q)*past(3, :)
       end if
     end if
-    if (rigs%on_frame(p)) call rest_on_frame(stacks, i, work, rigs, inertia, steps, u(3, p), u(3, p + 1), free(3, :), &
-                                          layer, forces(3, :))
-    call push_layers(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
+    if (rigs%on_frame(p)) call stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, u(3, p), u(3, p + 1), &
+                                                   trial(3, :), layer, forces(3, :))
+    call accelerate_by_tractions(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
     if (rigs%on_frame(p)) layer(3, 1) = rigs%approach(p)/steps%now
-    if (pinned) &
+    if (prescribed) &
       call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
-    call find_rates(n, stacks%height(p:q), layer, free)
+    call find_rates(n, stacks%height(p:q), layer, trial)
     v(:, p) = layer(:, 1)
-    v(1:3, p + 1:q) = free
+    v(1:3, p + 1:q) = trial
     v(4:5, p + 1:q) = layer(4:5, 2:)
     if (stacks%damaged(i)) then
       call advance_points(stacks, i, model, steps, work%friction, forces, cohesive, u, v)
@@ -138,7 +138,7 @@ contains
   end subroutine move_stack
 
   !> Stops the first layer at a frame that it would penetrate, independently of the layers below.
-  pure subroutine rest_on_frame(stacks, i, work, rigs, inertia, steps, w, jump, free, layer, forces)
+  pure subroutine stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, w, jump, trial, layer, forces)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Index of the stack
@@ -154,28 +154,28 @@ contains
     !> Deflection of the first layer and jump to the second at the start of the step
     real(wp), intent(in) :: w, jump
     !> Openings without tractions, (n)
-    real(wp), intent(inout) :: free(:)
+    real(wp), intent(inout) :: trial(:)
     !> Velocities of the layers without tractions, (5, n + 1)
     real(wp), intent(in) :: layer(:, :)
     !> Forces on the openings, (n)
     real(wp), intent(inout) :: forces(:)
-    real(wp) :: rate, diagonal(size(free))
+    real(wp) :: rate, diagonal(size(trial))
 
-    associate (p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i)), n => size(free))
+    associate (p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i)), n => size(trial))
       rate = layer(3, 1) + steps%mean()*inverse*forces(1)
       if (w + steps%now*rate > 0) then
         rate = layer(3, 1)
-        free(1) = jump + steps%now*(layer(3, 2) + w/steps%now)
+        trial(1) = jump + steps%now*(layer(3, 2) + w/steps%now)
         diagonal = stacks%diagonal(3, p + 1:p + n)
         diagonal(1) = diagonal(1) - steps%now*steps%mean()*inverse
         call solve_tractions(n, work%normal_stiffness, work%given(3, :), diagonal, &
-                             stacks%off_diagonal(3, p + 1:p + n), free, forces)
+                             stacks%off_diagonal(3, p + 1:p + n), trial, forces)
         rate = rate + steps%mean()*inverse*forces(1)
         if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
       end if
       call rigs%stop_at_frame(p, steps, inverse, w, rate)
     end associate
-  end subroutine rest_on_frame
+  end subroutine stop_stack_at_frame
 
   !> Books the reactions of lines on the layers of a stack.
   pure subroutine book_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)
@@ -200,8 +200,8 @@ contains
       call to_layers(size(forces, 2), height, before, layer)
       do l = 1, size(force, 2)
         p = stacks%first(i) + l - 1
-        if (lines%is_pinned(p)) call lines%react(p, steps, inertia%mass(:, p), layer(:, l), after(:, l), &
-                                                 force(:, l) + pull_on(size(forces, 2), height, forces, l))
+        if (lines%is_prescribed(p)) call lines%react(p, steps, inertia%mass(:, p), layer(:, l), after(:, l), &
+                                                 force(:, l) + traction_resultant(size(forces, 2), height, forces, l))
       end do
     end associate
   end subroutine book_reactions

@@ -36,7 +36,7 @@ module stack_solutions
     !> (3, n)
     real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Jumps at the end of the step without tractions, and those at its start, (3, n)
-    real(wp), allocatable :: free(:, :), start(:, :)
+    real(wp), allocatable :: trial(:, :), start(:, :)
     !> Force per jump at the end of the step, shear and opening, (2, n), and the part of the forces that does not depend
     !> on these jumps, (3, n)
     real(wp), allocatable :: secant(:, :), given(:, :)
@@ -61,14 +61,14 @@ contains
     type(stack_t), intent(inout) :: stack
     logical :: closed(stack%n), before(stack%n)
     real(wp) :: opening(stack%n)
-    integer :: round, j
+    integer :: iteration, j
 
     closed = stack%start(3, :) < 0
-    do round = 0, stack%n + 1
+    do iteration = 0, stack%n + 1
       stack%normal_stiffness = merge(stack%stiffness(2, :), stack%secant(2, :), closed .and. stack%closing)
       call solve_tractions(stack%n, stack%normal_stiffness, stack%given(3, :), stack%diagonal(3, :), &
-                           stack%off_diagonal(3, :), stack%free(3, :), stack%forces(3, :))
-      opening = stack%free(3, :) - jump_reduction(stack, 3)
+                           stack%off_diagonal(3, :), stack%trial(3, :), stack%forces(3, :))
+      opening = stack%trial(3, :) - jump_reduction(stack, 3)
       before = closed
       closed = opening < 0
       if (all((before .eqv. closed) .or. .not. stack%closing)) exit
@@ -91,7 +91,7 @@ contains
     integer :: k
 
     do k = 1, 3
-      jumps(k, :) = stack%free(k, :) - jump_reduction(stack, k)
+      jumps(k, :) = stack%trial(k, :) - jump_reduction(stack, k)
     end do
   end function jumps_of
 
@@ -153,14 +153,14 @@ contains
     real(wp), intent(in) :: stiffness
     !> Elastic jumps at the end of the step if the faces stick
     real(wp), intent(in) :: elastic(2)
-    real(wp) :: tried
+    real(wp) :: trial
 
     friction%elastic = elastic
     friction%force = stiffness*(newest*elastic + friction%past)
-    tried = norm2(friction%force)
-    friction%slips = tried > friction%limit
+    trial = norm2(friction%force)
+    friction%slips = trial > friction%limit
     if (.not. friction%slips) return
-    friction%force = friction%force*(friction%limit/tried)
+    friction%force = friction%force*(friction%limit/trial)
     friction%elastic = friction%force/stiffness
   end subroutine return_to_limit
 
@@ -174,7 +174,7 @@ contains
 
     do k = 1, 2
       call solve_tractions(stack%n, stiffness, given(k, :), stack%diagonal(k, :), stack%off_diagonal(k, :), &
-                           stack%free(k, :), stack%forces(k, :))
+                           stack%trial(k, :), stack%forces(k, :))
     end do
   end subroutine solve_both
 end module stack_solutions

@@ -3,7 +3,7 @@ module step_lengths
   use kinds, only: wp
   implicit none
   private
-  public :: step_lengths_t, whole_step
+  public :: step_lengths_t, commensurate_step
 
   !> A step and the one before it.
   type :: step_lengths_t
@@ -43,7 +43,7 @@ contains
   end function shift
 
   !> Largest step length not above a bound of which an integer number equals a time.
-  pure real(wp) function whole_step(time, longest) result(step)
+  pure real(wp) function commensurate_step(time, longest) result(step)
     !> The time, and the longest step
     real(wp), intent(in) :: time, longest
     real(wp) :: steps
@@ -51,5 +51,5 @@ contains
     steps = aint(time/longest)
     if (steps*longest < time*(1 - 1.0e-9_wp)) steps = steps + 1
     step = time/max(1.0_wp, steps)
-  end function whole_step
+  end function commensurate_step
 end module step_lengths

@@ -23,7 +23,7 @@ module struck_patches
     !> Offset of the mean deflection by earlier changes of the weights
     real(wp) :: offset = 0
     !> True: the distribution follows the shape of the nose
-    logical, private :: follows = .false.
+    logical, private :: depends_on_deflection = .false.
     !> Area of the modelled part of the deck's patch
     real(wp), private :: area = 0
   contains
@@ -34,9 +34,9 @@ module struck_patches
     !> Deflection under the impactor.
     procedure :: mean
     !> Updates the force distribution.
-    procedure :: spread
+    procedure :: update_weights
     !> Adds the nodal forces of a force.
-    procedure :: push
+    procedure :: add_force
     !> Weights at this rank's points.
     procedure :: local_weights
     !> Saves or loads.
@@ -81,8 +81,8 @@ contains
     self%beside = fields(2, reached)
     self%rise = fields(3, reached)
     self%weights = self%under
-    self%follows = allocated(model%nose)
-    if (self%follows) self%area = model%nose%area
+    self%depends_on_deflection = allocated(model%nose)
+    if (self%depends_on_deflection) self%area = model%nose%area
   end function create_struck_patch
 
   !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.
@@ -138,7 +138,7 @@ contains
 
   !> Updates the force distribution by the contact of the nose with the deflected plate. The indentation remains
   !> continuous.
-  pure subroutine spread(self, w, indentation)
+  pure subroutine update_weights(self, w, indentation)
     !> The points
     class(struck_patch_t), intent(inout) :: self
     !> Their deflections, (reached)
@@ -147,7 +147,7 @@ contains
     real(wp), intent(in) :: indentation
     real(wp) :: pressure(size(w)), weights(size(w)), sums(2)
 
-    if (.not. self%follows) return
+    if (.not. self%depends_on_deflection) return
     weights = self%under
     if (indentation > 0) then
       pressure = max(0.0_wp, edge_gap*indentation + minval(w + self%rise) - (w + self%rise))
@@ -156,10 +156,10 @@ contains
     end if
     self%offset = self%offset - dot_product(weights - self%weights, w)
     self%weights = weights
-  end subroutine spread
+  end subroutine update_weights
 
   !> Adds the nodal forces of a force on the full plate.
-  pure subroutine push(self, multiplicity, force, forces)
+  pure subroutine add_force(self, multiplicity, force, forces)
     !> The points
     class(struck_patch_t), intent(in) :: self
     !> Models that make up the full plate
@@ -173,7 +173,7 @@ contains
     do i = 1, size(self%local)
       if (self%local(i) > 0) forces(3, self%local(i)) = forces(3, self%local(i)) + force/multiplicity*self%weights(i)
     end do
-  end subroutine push
+  end subroutine add_force
 
   !> Weights at this rank's points.
   pure function local_weights(self, points) result(weights)

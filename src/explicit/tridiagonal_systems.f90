@@ -12,11 +12,11 @@ module tridiagonal_systems
 contains
 
   !> Factors of the symmetric system (1/k + H C), for stiffnesses that are not zero and g = 0.
-  pure subroutine factorize(stiffness, diagonal, beside, factors)
+  pure subroutine factorize(stiffness, diagonal, off_diagonal, factors)
     !> k, (n)
     real(wp), intent(in) :: stiffness(:)
     !> H C: its diagonal (n), and the off-diagonal entries (n, the last without meaning)
-    real(wp), intent(in) :: diagonal(:), beside(:)
+    real(wp), intent(in) :: diagonal(:), off_diagonal(:)
     !> Inverse pivot, and multiplier to the row below, (2, n)
     real(wp), intent(out) :: factors(:, :)
     real(wp) :: carried
@@ -26,8 +26,8 @@ contains
     do j = 1, size(stiffness)
       factors(1, j) = 1/(1/stiffness(j) + diagonal(j) - carried)
       factors(2, j) = 0
-      if (j < size(stiffness)) factors(2, j) = factors(1, j)*beside(j)
-      carried = factors(2, j)*beside(j)
+      if (j < size(stiffness)) factors(2, j) = factors(1, j)*off_diagonal(j)
+      carried = factors(2, j)*off_diagonal(j)
     end do
   end subroutine factorize
 
@@ -54,13 +54,13 @@ contains
   end subroutine solve_factored
 
   !> Solves for any stiffnesses, including zero, and given parts of the forces.
-  pure subroutine solve_tractions(n, stiffness, given, diagonal, beside, jumps, forces)
+  pure subroutine solve_tractions(n, stiffness, given, diagonal, off_diagonal, jumps, forces)
     !> Interfaces
     integer, intent(in) :: n
     !> k and g, (n)
     real(wp), intent(in) :: stiffness(n), given(n)
     !> H C: its diagonal, and the off-diagonal entries, (n)
-    real(wp), intent(in) :: diagonal(n), beside(n)
+    real(wp), intent(in) :: diagonal(n), off_diagonal(n)
     !> Jumps without tractions, (n)
     real(wp), intent(in) :: jumps(n)
     !> Forces on the jumps, (n)
@@ -71,9 +71,9 @@ contains
     pivot = 1 + stiffness(1)*diagonal(1)
     forces(1) = (stiffness(1)*jumps(1) + given(1))/pivot
     do j = 2, n
-      above(j - 1) = stiffness(j - 1)*beside(j - 1)/pivot
-      pivot = 1 + stiffness(j)*(diagonal(j) - beside(j - 1)*above(j - 1))
-      forces(j) = (stiffness(j)*(jumps(j) - beside(j - 1)*forces(j - 1)) + given(j))/pivot
+      above(j - 1) = stiffness(j - 1)*off_diagonal(j - 1)/pivot
+      pivot = 1 + stiffness(j)*(diagonal(j) - off_diagonal(j - 1)*above(j - 1))
+      forces(j) = (stiffness(j)*(jumps(j) - off_diagonal(j - 1)*forces(j - 1)) + given(j))/pivot
     end do
     do j = n - 1, 1, -1
       forces(j) = forces(j) - above(j)*forces(j + 1)

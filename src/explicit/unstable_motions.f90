@@ -8,16 +8,16 @@ module unstable_motions
   use text, only: rounded_text, to_text
   implicit none
   private
-  public :: refuse_instability
+  public :: check_stability
 
-  !> Energy that nothing accounts for, over all energy that was there or brought in, from which a run ends. An unstable
-  !> mode grows by a factor each step and passes it at once; the watch of the ledger warns from a tenth of it, 1 %.
-  real(wp), parameter :: max_created = 0.1_wp
+  !> Energy error over the largest of initial energy, external work and their sum, above which a run ends. An unstable
+  !> mode grows exponentially, so the value matters little. The check of the ledger warns from a tenth of it, 1 %.
+  real(wp), parameter :: max_energy_error = 0.1_wp
 
 contains
 
   !> Sets an error if the energy error shows unstable growth. Collective.
-  subroutine refuse_instability(model, now, error)
+  subroutine check_stability(model, now, error)
     type(model_t), intent(in) :: model
     !> The state, with its ledger
     type(state_t), intent(in) :: now
@@ -28,14 +28,14 @@ contains
 
     created = now%ledger%error()
     energy = max(now%ledger%initial, now%ledger%external_work, now%ledger%initial + now%ledger%external_work)
-    if (created <= max_created*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
+    if (created <= max_energy_error*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
     amount = 'the energy has become infinite'
     if (abs(created) <= huge(created)) &
       amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
     call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
               ': '//amount//'; the fastest point is '//fastest_point(model, now%motion%velocity)// &
               '. Take a smaller &time step_factor.')
-  end subroutine refuse_instability
+  end subroutine check_stability
 
   !> Point of the largest transverse velocity. Collective.
   function fastest_point(model, velocity) result(place)

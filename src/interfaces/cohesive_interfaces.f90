@@ -112,7 +112,7 @@ contains
         call faces%traction(jumps, start, traction, self%points(i))
         self%stiffness(:, i) = area*faces%diagonal(jumps, start)
         energy = energy + area*faces%stored(jumps, self%points(i))
-        if (allocated(self%tangents)) call take_tangent(self, i, area*faces%slopes(jumps, start))
+        if (allocated(self%tangents)) call store_tangent(self, i, area*faces%slopes(jumps, start))
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
@@ -145,7 +145,7 @@ contains
   end function tangents_at
 
   !> Stores a consistent tangent and its diagonal for the operator.
-  pure subroutine take_tangent(self, i, tangent)
+  pure subroutine store_tangent(self, i, tangent)
     !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
     !> Point of this rank
@@ -156,7 +156,7 @@ contains
 
     self%tangents(:, :, i) = tangent
     self%stiffness(:, i) = [(tangent(k, k), k=1, 3)]
-  end subroutine take_tangent
+  end subroutine store_tangent
 
   !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
   pure subroutine add_dissipation_slopes(self, model, old, displacement, slopes)
@@ -299,19 +299,19 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      if (holds_closed(model, model%zone(i))) &
+      if (prevents_penetration(model, model%zone(i))) &
         pressure(i) = max(0.0_wp, -model%cohesive_laws(model%zone(i))%stiffness_opening*displacement(3, i))
     end do
   end function pressure
 
   !> True if contact prevents penetration of the faces of a zone.
-  pure logical function holds_closed(model, zone)
+  pure logical function prevents_penetration(model, zone)
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
 
-    holds_closed = model%setup%delaminations(zone)%contact /= contact_none
-  end function holds_closed
+    prevents_penetration = model%setup%delaminations(zone)%contact /= contact_none
+  end function prevents_penetration
 
   !> True for zones with a damaged point next to the border, where growth ends. The same on every rank.
   function border_reached(self, model)
@@ -356,7 +356,7 @@ contains
     real(wp), intent(in) :: strength
 
     faces%law = weakened(model%cohesive_laws(zone), strength)
-    faces%closing = holds_closed(model, zone)
+    faces%closing = prevents_penetration(model, zone)
     faces%friction = model%setup%delaminations(zone)%friction
   end function faces_of
 

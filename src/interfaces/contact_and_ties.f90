@@ -26,7 +26,7 @@ module contact_and_ties
     real(wp) :: peak = 0
   contains
     !> Adds contact and penalty forces to a residual and removes the residual of tied jumps.
-    procedure :: act
+    procedure :: add_to_residual
     !> Updates the multipliers by the pressures found.
     procedure :: update_contact
     !> Violation of complementarity of pressures and gaps.
@@ -63,7 +63,7 @@ contains
   end function new_contact_and_ties
 
   !> Adds contact and penalty forces to a residual and removes the residual of tied jumps.
-  subroutine act(self, model, displacement, residual)
+  subroutine add_to_residual(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(contact_and_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -89,7 +89,7 @@ contains
         residual(1:3, i) = residual(1:3, i) + force(self, model, i, displacement(1:3, i))
       end associate
     end do
-  end subroutine act
+  end subroutine add_to_residual
 
   !> Force of contact or a penalty tie on the jumps at a point. Pressures are those of the last residual.
   pure function force(self, model, i, jumps)

@@ -110,7 +110,7 @@ contains
     integer :: i, k
 
     allocate (figures(closure_figures, size(segments)), source=0.0_wp)
-    nodes = line%beside(segments, model%mesh)
+    nodes = line%nodes_near(segments, model%mesh)
     do k = 1, size(nodes%node)
       i = owned_lower_point(model, zone, nodes%node(k))
       if (i == 0) cycle

@@ -36,7 +36,7 @@ module interface_states
     logical, allocatable :: border_reached(:)
   contains
     !> Adds the forces of ties and contact to a residual.
-    procedure :: act
+    procedure :: add_to_residual
     !> Projected delaminated area, as in a C-scan.
     procedure :: projected_area
     !> Sets the multipliers to the contact pressures found.
@@ -71,7 +71,7 @@ contains
   end function new_interface_state
 
   !> Adds the forces of ties and contact to a residual and sets that of tied jumps to zero.
-  subroutine act(self, model, displacement, residual)
+  subroutine add_to_residual(self, model, displacement, residual)
     !> The state
     class(interface_state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -80,10 +80,10 @@ contains
     !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
 
-    call self%ties%act(model, residual)
-    call self%faces%act(model, displacement, residual)
-    call self%rig%act(model, displacement, residual)
-  end subroutine act
+    call self%ties%add_to_residual(model, residual)
+    call self%faces%add_to_residual(model, displacement, residual)
+    call self%rig%add_to_residual(model, displacement, residual)
+  end subroutine add_to_residual
 
   !> Sets the multipliers of faces and frames to the contact pressures found.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)

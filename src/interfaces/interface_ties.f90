@@ -31,7 +31,7 @@ module interface_ties
     !> Owned points with contact of faces.
     procedure :: in_contact
     !> Sets the correction of tied jumps to zero.
-    procedure :: hold
+    procedure :: constrain_correction
     !> Largest penetration.
     procedure :: penetration
     !> Delaminated area of each zone of the full plate.
@@ -125,7 +125,7 @@ contains
   end function in_contact
 
   !> Sets the correction of tied jumps to zero.
-  pure subroutine hold(self, model, correction)
+  pure subroutine constrain_correction(self, model, correction)
     !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -137,7 +137,7 @@ contains
     do i = 1, size(correction, 2)
       if (self%connection(model, i) == connection_exact) correction(1:3, i) = 0
     end do
-  end subroutine hold
+  end subroutine constrain_correction
 
   !> Largest penetration of separated faces, the same on every rank.
   real(wp) function penetration(self, model, displacement)

@@ -9,7 +9,7 @@ module mapped_interfaces
   use models, only: model_t
   implicit none
   private
-  public :: limit_jumps, put_fractions, take_fractions, take_slips
+  public :: limit_jumps, put_fractions, set_damage, set_slips
 
 contains
 
@@ -23,7 +23,7 @@ contains
   end subroutine put_fractions
 
   !> Replaces the dissipated fraction of the toughness by the damage.
-  pure subroutine take_fractions(interfaces, model)
+  pure subroutine set_damage(interfaces, model)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
@@ -38,7 +38,7 @@ contains
                                      stiffness_of(model%cohesive_laws(model%zone(i)))
       end associate
     end do
-  end subroutine take_fractions
+  end subroutine set_damage
 
   !> Reduces jumps that exceed those of the damage: between the old nodes interpolated jumps do, since both vary along
   !> different curves, and would extend the damage in the first step.
@@ -58,21 +58,21 @@ contains
       damage = interfaces%points(i)%damage
       if (.not. damage < 1) cycle
       law = interfaces%law_at(model, i)
-      ! The ratio of jumps beyond failure is that of failure, so that these take several rounds.
-      do
-        associate (separation => separation_of(law, displacement(1:3, i), 0.0_wp))
-          ratio = separation%ratio*(law%failure_ratio - damage*(law%failure_ratio - 1))/law%failure_ratio
-        end associate
-        if (.not. ratio > 1 + 10*epsilon(ratio)) exit
-        displacement(1:2, i) = displacement(1:2, i)/ratio
-        displacement(3, i) = displacement(3, i)/merge(ratio, 1.0_wp, displacement(3, i) > 0)
-      end do
+      associate (separation => separation_of(law, displacement(1:3, i), 0.0_wp))
+        if (.not. separation%size > 0) cycle
+        ! Its ratio ends at failure; that of these jumps does not.
+        ratio = separation%size*sqrt(law%failure_ratio*separation%unit_energy/separation%toughness)
+      end associate
+      ratio = ratio*(law%failure_ratio - damage*(law%failure_ratio - 1))/law%failure_ratio
+      if (.not. ratio > 1) cycle
+      displacement(1:2, i) = displacement(1:2, i)/ratio
+      displacement(3, i) = displacement(3, i)/merge(ratio, 1.0_wp, displacement(3, i) > 0)
     end do
   end subroutine limit_jumps
 
   !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
   !> and elastic energy beyond the limit would be spurious.
-  pure subroutine take_slips(interfaces, model, displacement)
+  pure subroutine set_slips(interfaces, model, displacement)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
@@ -91,5 +91,5 @@ contains
         sliding%slip = new%slip
       end associate
     end do
-  end subroutine take_slips
+  end subroutine set_slips
 end module mapped_interfaces

@@ -36,14 +36,14 @@ contains
     do zone = 1, size(extents, 2)
       extents(:, zone) = model%setup%delaminations(zone)%zone
     end do
-    associate (follows => spread(model%setup%delaminations%follows, 1, 2))
-      if (.not. any(follows)) return
+    associate (is_adaptive => spread(model%setup%delaminations%is_adaptive, 1, 2))
+      if (.not. any(is_adaptive)) return
       needed = max(around_onset(model, stiffness, interfaces, displacement), &
                    with_margin(model, around_damage(model, interfaces), cells_ahead, &
                                thicknesses_ahead*model%thickness))
-      needed = spread(maxval(merge(needed, 0.0_wp, follows), 2), 2, size(needed, 2))
-      if (.not. any(follows .and. needed > extents*(1 + rounded_off))) return
-      where (follows .and. needed > extents*(1 + rounded_off)) &
+      needed = spread(maxval(merge(needed, 0.0_wp, is_adaptive), 2), 2, size(needed, 2))
+      if (.not. any(is_adaptive .and. needed > extents*(1 + rounded_off))) return
+      where (is_adaptive .and. needed > extents*(1 + rounded_off)) &
         extents = with_margin(model, needed, cells_at_once, 0.0_wp)
     end associate
   end function required_extents

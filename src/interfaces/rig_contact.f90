@@ -26,7 +26,7 @@ module rig_contact
     real(wp), allocatable :: found(:)
   contains
     !> Adds the pressure's forces to a residual.
-    procedure :: act
+    procedure :: add_to_residual
     !> Adds the forces of springs to internal forces.
     procedure :: add_springs
     !> Sets the multipliers to the pressures found.
@@ -56,7 +56,8 @@ contains
     allocate (self%multiplier(size(model%rig%frame)), self%pressure(size(model%rig%frame)), &
               self%slope(size(model%rig%frame)), source=0.0_wp)
     where (model%rig%frame > 0) self%slope = -model%rig_law%stiffness
-    where (model%rig%frame > 0 .and. model%rig%presses > 0) self%multiplier = model%rig%presses/model%rig_area
+    where (model%rig%frame > 0 .and. model%rig%clamp_preload > 0) &
+      self%multiplier = model%rig%clamp_preload/model%rig_area
     self%pressure = self%multiplier
   end function new_rig_contact
 
@@ -71,7 +72,7 @@ contains
   end function on_frame
 
   !> Adds the pressure's forces to a residual.
-  pure subroutine act(self, model, displacement, residual)
+  pure subroutine add_to_residual(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(rig_contact_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -91,7 +92,7 @@ contains
         self%slope(i) = -model%rig_law%stiffness
       residual(3, i) = residual(3, i) - model%rig_area(i)*self%pressure(i)
     end do
-  end subroutine act
+  end subroutine add_to_residual
 
   !> Adds the forces of springs and of clamps with a force to internal forces, and their stored energy.
   pure subroutine add_springs(self, model, displacement, force, energy)
@@ -110,8 +111,8 @@ contains
     do i = 1, model%distribution%owned
       force(1:3, i) = force(1:3, i) + model%rig%springs(:, i)*displacement(1:3, i)
       energy = energy + dot_product(model%rig%springs(:, i), displacement(1:3, i)**2)/2
-      force(3, i) = force(3, i) - model%rig%presses(i)
-      energy = energy - model%rig%presses(i)*displacement(3, i)
+      force(3, i) = force(3, i) - model%rig%clamp_preload(i)
+      energy = energy - model%rig%clamp_preload(i)*displacement(3, i)
     end do
   end subroutine add_springs
 
@@ -208,18 +209,19 @@ contains
     integer :: i
 
     reactions = 0
-    if (.not. allocated(model%rig%held_by)) return
+    if (.not. allocated(model%rig%constrained_by)) return
     if (allocated(self%found)) then
       reactions = self%found
       return
     end if
     do i = 1, model%distribution%owned
-      associate (held_by => model%rig%held_by(i), frame => model%rig%frame(i), clamps => model%rig%clamps(i))
-        if (held_by > 0) then
-          call sums(held_by)%add(loads(3, i) - internal(3, i) - inertia(3, i))
+      associate (constrained_by => model%rig%constrained_by(i), frame => model%rig%frame(i), &
+                 clamps => model%rig%clamps(i))
+        if (constrained_by > 0) then
+          call sums(constrained_by)%add(loads(3, i) - internal(3, i) - inertia(3, i))
         else
           if (frame > 0) call sums(frame)%add(model%rig_area(i)*self%pressure(i))
-          if (clamps > 0) call sums(clamps)%add(model%rig%springs(3, i)*displacement(3, i) - model%rig%presses(i))
+          if (clamps > 0) call sums(clamps)%add(model%rig%springs(3, i)*displacement(3, i) - model%rig%clamp_preload(i))
         end if
       end associate
     end do

@@ -32,7 +32,7 @@ module tie_release
     !> Reduces the forces over a step.
     procedure :: ramp_down
     !> Adds the forces to a residual.
-    procedure :: act
+    procedure :: add_to_residual
     !> Books the work against the forces in a step.
     procedure :: book
     !> Saves or loads.
@@ -135,7 +135,7 @@ contains
   end subroutine ramp_down
 
   !> Adds the forces to a residual.
-  pure subroutine act(self, model, residual)
+  pure subroutine add_to_residual(self, model, residual)
     !> The ties
     class(tie_release_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -147,7 +147,7 @@ contains
     do i = 1, model%distribution%owned
       if (self%remaining(i) > 0) residual(1:3, i) = residual(1:3, i) + self%remaining(i)*self%force(:, i)
     end do
-  end subroutine act
+  end subroutine add_to_residual
 
   !> Books the work against the forces in a step: that of the step with the force at its end, and the energy released
   !> with the mean of the forces at its start and end. For ties released in this step the difference is that of

@@ -9,7 +9,8 @@
 !> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
 !> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
 module crack_bands
-  use crack_closures, only: band_strains_t, left_t, left_under, find_strain_alone, compressed_share, find_recovered
+  use crack_closures, only: band_strains_t, remaining_t, remaining_stiffness_under, find_strain_alone, &
+                            compressed_share, find_recovered
   use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -18,11 +19,11 @@ module crack_bands
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
-  use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, taken_by, min_ratio
+  use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by, min_ratio
   implicit none
   private
-  public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
-            longest_element, energy_of_shear, is_touched, stiffness_lost
+  public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, degraded_elasticity, &
+            onset_strain, longest_element, energy_of_shear, is_damaged, stiffness_lost
 
   !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
   !> iterations are usual.
@@ -56,7 +57,7 @@ module crack_bands
     !> Energy dissipated per volume in each mode
     real(wp) :: dissipated(energy_modes) = 0
     !> Loss of G12 by shear before matrix cracking, as a fraction
-    real(wp) :: sheared = 0
+    real(wp) :: shear_damage = 0
     !> Permanent shear strain, and its accumulated magnitude
     real(wp) :: permanent = 0, accumulated = 0
     !> Part of the damage of fibres and matrix that stays when cracks close
@@ -111,7 +112,7 @@ contains
     else
       call shear_band(band, strains, old, new)
     end if
-    call find_damage(sheared_law(band, new%sheared), lengths, strains, old, new)
+    call find_damage(sheared_law(band, new%shear_damage), lengths, strains, old, new)
   end subroutine strain_band
 
   !> Damage of fibres and matrix under trial strains, both found together, and the energy that it dissipates.
@@ -127,13 +128,13 @@ contains
     !> The ply with these strains
     type(band_state_t), intent(inout) :: new
     type(softening_t) :: signs(2, 2)
-    type(left_t) :: left
+    type(remaining_t) :: left
     real(wp) :: before(2), share(2), booked(energy_modes)
     integer :: round, i
 
     do round = 1, max_iterations
       before = new%damage
-      left = parts_left(band, strains, new)
+      left = remaining_fractions(band, strains, new)
       signs(:, 1) = fibre_softening(band, lengths(1), strains, left)
       signs(:, 2) = matrix_softening(band, lengths(2), strains, left)
       do i = 1, 2
@@ -146,15 +147,15 @@ contains
     if (band%crack_closure) share = compressed_share(band%elasticity, strains, left)
     do i = 1, 2
       booked = 0
-      booked(signs(2, i)%mode) = taken_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), new%closed(i))
+      booked(signs(2, i)%mode) = dissipated_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), new%closed(i))
       associate (fall => more_damaged(signs(:, i)))
         booked(fall%mode) = booked(fall%mode) &
-                            + taken_by(fall, (1 - band%remainder)*(1 - share(i)), old%damage(i), new%damage(i))
+                            + dissipated_by(fall, (1 - band%remainder)*(1 - share(i)), old%damage(i), new%damage(i))
       end associate
       new%dissipated = new%dissipated + booked
     end do
     if (band%crack_closure) &
-      new%recovered = find_recovered(band%elasticity, strains%mean, parts_left(band, strains, new))
+      new%recovered = find_recovered(band%elasticity, strains%mean, remaining_fractions(band, strains, new))
   end subroutine find_damage
 
   !> Energy per volume that permanent shear strains of a ply have taken.
@@ -194,9 +195,10 @@ contains
         least = middle
       end if
     end do
-    new%sheared = loss_at(least)
+    new%shear_damage = loss_at(least)
     associate (modulus => band%elasticity%g12, beta => band%shear_beta, booked => new%dissipated(matrix_compression))
-      booked = booked + (energy_of_loss(modulus, beta, new%sheared) - energy_of_loss(modulus, beta, old%sheared))
+      booked = booked + (energy_of_loss(modulus, beta, new%shear_damage) &
+                         - energy_of_loss(modulus, beta, old%shear_damage))
     end associate
 
   contains
@@ -206,7 +208,7 @@ contains
       !> The part
       real(wp), intent(in) :: part
 
-      loss = max(old%sheared, shear_loss(band%elasticity%g12, band%shear_beta, part*sqrt(strains%shear_square)))
+      loss = max(old%shear_damage, shear_loss(band%elasticity%g12, band%shear_beta, part*sqrt(strains%shear_square)))
     end function loss_at
 
     !> True if the matrix cracks at a fraction of the strains.
@@ -215,7 +217,8 @@ contains
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 
-      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, parts_left(band, strains, old))
+      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, &
+                               remaining_fractions(band, strains, old))
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
@@ -227,16 +230,16 @@ contains
     !> From 0 to 1
     real(wp) :: lost(3)
 
-    lost = [state%damage, state%sheared]
+    lost = [state%damage, state%shear_damage]
   end function stiffness_lost
 
   !> True: not the undamaged state.
-  pure logical function is_touched(state)
+  pure logical function is_damaged(state)
     !> The ply
     type(band_state_t), intent(in) :: state
 
-    is_touched = any(stiffness_lost(state) > 0) .or. state%accumulated > 0
-  end function is_touched
+    is_damaged = any(stiffness_lost(state) > 0) .or. state%accumulated > 0
+  end function is_damaged
 
   !> The law with the reduced G12.
   pure function sheared_law(band, loss) result(law)
@@ -252,7 +255,7 @@ contains
   end function sheared_law
 
   !> Elastic constants of a state.
-  pure function elasticity_left(band, state) result(elasticity)
+  pure function degraded_elasticity(band, state) result(elasticity)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> The ply
@@ -261,16 +264,16 @@ contains
     type(elasticity_t) :: elasticity
     real(wp) :: left(2)
 
-    left = stiffness_left(band, state%damage)
+    left = remaining_stiffness(band, state%damage)
     elasticity = band%elasticity
     elasticity%e1 = elasticity%e1*left(1)
     elasticity%nu12 = elasticity%nu12*left(1)
     elasticity%e2 = elasticity%e2*left(2)
-    elasticity%g12 = elasticity%g12*(1 - state%sheared)*left(2)
-  end function elasticity_left
+    elasticity%g12 = elasticity%g12*(1 - state%shear_damage)*left(2)
+  end function degraded_elasticity
 
   !> Remaining fractions of the stiffness along and across the fibres.
-  pure function stiffness_left(band, damage) result(left)
+  pure function remaining_stiffness(band, damage) result(left)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Damage of fibres and matrix
@@ -279,10 +282,10 @@ contains
     real(wp) :: left(2)
 
     left = 1 - (1 - band%remainder)*damage
-  end function stiffness_left
+  end function remaining_stiffness
 
   !> Remaining fractions of the stiffness of a state under strains.
-  pure function parts_left(band, strains, state) result(left)
+  pure function remaining_fractions(band, strains, state) result(left)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Strains of the ply
@@ -290,12 +293,13 @@ contains
     !> The ply
     type(band_state_t), intent(in) :: state
     !> The parts
-    type(left_t) :: left
+    type(remaining_t) :: left
 
-    left = left_t(stiffness_left(band, state%damage), stiffness_left(band, state%damage))
+    left = remaining_t(remaining_stiffness(band, state%damage), remaining_stiffness(band, state%damage))
     if (band%crack_closure) &
-      left = left_under(band%elasticity, strains%mean, left%open, stiffness_left(band, state%closed))
-  end function parts_left
+      left = remaining_stiffness_under(band%elasticity, strains%mean, left%open, &
+                                       remaining_stiffness(band, state%closed))
+  end function remaining_fractions
 
   !> Softening laws of the fibres.
   pure function fibre_softening(band, length, strains, left) result(signs)
@@ -306,7 +310,7 @@ contains
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
-    type(left_t), intent(in) :: left
+    type(remaining_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
     real(wp) :: size, weights(2), energy
@@ -330,7 +334,7 @@ contains
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
-    type(left_t), intent(in) :: left
+    type(remaining_t), intent(in) :: left
     !> Of tension and compression
     type(softening_t) :: signs(2)
     real(wp) :: size, weights(2), shear_energy, energy, toughness, across, shear

@@ -11,7 +11,8 @@ module crack_closures
   use linear_softening, only: weights_of_signs
   implicit none
   private
-  public :: band_strains_t, left_t, left_under, find_strain_alone, compressed_share, find_recovered, closing_resultants
+  public :: band_strains_t, remaining_t, remaining_stiffness_under, find_strain_alone, compressed_share, &
+            find_recovered, closing_resultants
 
   !> Strains of a ply of an element in the ply's axes.
   type :: band_strains_t
@@ -24,18 +25,18 @@ module crack_closures
   end type band_strains_t
 
   !> Remaining fractions of the stiffness along and across the fibres.
-  type :: left_t
+  type :: remaining_t
     !> With open cracks
     real(wp) :: open(2) = 1
     !> For the mean strains, for which cracks may be closed
     real(wp) :: mean(2) = 1
-  end type left_t
+  end type remaining_t
 
 contains
 
   !> Remaining fractions of the stiffness under mean strains: of the four combinations of open and closed cracks the one
   !> whose mean stresses have the assumed signs. The complementary energy is convex, so that there is one.
-  pure function left_under(elasticity, mean, open, closed) result(left)
+  pure function remaining_stiffness_under(elasticity, mean, open, closed) result(left)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
@@ -43,22 +44,22 @@ contains
     !> Remaining fractions along and across the fibres with open and with closed cracks
     real(wp), intent(in) :: open(2), closed(2)
     !> The parts
-    type(left_t) :: left
+    type(remaining_t) :: left
     logical :: compressed(2)
     integer :: combination
 
-    left = left_t(open, open)
+    left = remaining_t(open, open)
     if (.not. any(closed > open)) return
     do combination = 0, 3
       compressed = [btest(combination, 0), btest(combination, 1)]
       left%mean = merge(closed, open, compressed)
-      if (all((alone(elasticity, mean, left%mean) < 0) .eqv. compressed)) return
+      if (all((uniaxial_strains(elasticity, mean, left%mean) < 0) .eqv. compressed)) return
     end do
     left%mean = open
-  end function left_under
+  end function remaining_stiffness_under
 
   !> Mean strains that s11 and s22 would have alone: s11/(E1 left) and s22/(E2 left).
-  pure function alone(elasticity, mean, left) result(strains)
+  pure function uniaxial_strains(elasticity, mean, left) result(strains)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
     !> Mean strains along and across the fibres
@@ -71,7 +72,7 @@ contains
 
     part = coupling(elasticity, left)
     strains = (mean + part*mean([2, 1]))/(1 - product(part))
-  end function alone
+  end function uniaxial_strains
 
   !> Poisson's ratios nu21 and nu12 of a damaged ply.
   pure function coupling(elasticity, left) result(part)
@@ -92,7 +93,7 @@ contains
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
-    type(left_t), intent(in) :: left
+    type(remaining_t), intent(in) :: left
     !> 1: along the fibres, 2: across
     integer, intent(in) :: direction
     !> Its root mean square
@@ -108,7 +109,7 @@ contains
         weights = weights_of_signs((m(i) + part(i)*m(j))/(1 - product(part)), size)
       else
         spread = s - [m(1)**2, m(2)**2, m(1)*m(2)]
-        means = alone(elasticity, m, left%mean)
+        means = uniaxial_strains(elasticity, m, left%mean)
         size = max(0.0_wp, spread(i) + part(i)*(2*spread(3) + part(i)*spread(j)))/(1 - product(part))**2
         size = sqrt(size + means(i)**2)
         weights = weights_of_signs(means(i), size)
@@ -123,13 +124,13 @@ contains
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
-    type(left_t), intent(in) :: left
+    type(remaining_t), intent(in) :: left
     !> From 0 to 1
     real(wp) :: share(2)
     real(wp) :: means(2), energies(2), weights(2), size
     integer :: i
 
-    means = min(0.0_wp, alone(elasticity, strains%mean, left%mean))
+    means = min(0.0_wp, uniaxial_strains(elasticity, strains%mean, left%mean))
     energies = [0.0_wp, elasticity%g12*strains%shear_square]
     do i = 1, 2
       call find_strain_alone(elasticity, strains, left, i, size, weights)
@@ -148,14 +149,14 @@ contains
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
     !> Remaining fractions of the stiffness
-    type(left_t), intent(in) :: left
+    type(remaining_t), intent(in) :: left
     !> Two stresses and an energy per volume
     real(wp) :: recovered(3)
 
     recovered = 0
     if (all(left%mean <= left%open)) return
-    recovered(:2) = [elasticity%e1, elasticity%e2]*(left%mean*alone(elasticity, mean, left%mean) &
-                                                    - left%open*alone(elasticity, mean, left%open))
+    recovered(:2) = [elasticity%e1, elasticity%e2]*(left%mean*uniaxial_strains(elasticity, mean, left%mean) &
+                                                    - left%open*uniaxial_strains(elasticity, mean, left%open))
     recovered(3) = dot_product(recovered(:2), mean)/2
   end function find_recovered
 

@@ -4,7 +4,7 @@ module linear_softening
   use ply_damage_parameters, only: fibre_tension
   implicit none
   private
-  public :: softening_t, linear_softening_of, more_damaged, damage_at, taken_by, weights_of_signs
+  public :: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by, weights_of_signs
 
   !> Smallest ratio of failure strain to onset strain: at 1 the stress falls at once, and a longer element would snap
   !> back. At 1.25 it falls with four times the modulus. The check warns of the energy that is then too large.
@@ -88,7 +88,7 @@ contains
   end function damage_at
 
   !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
-  pure real(wp) function taken_by(softening, part, damage_from, damage_to) result(energy)
+  pure real(wp) function dissipated_by(softening, part, damage_from, damage_to) result(energy)
     !> The fall
     type(softening_t), intent(in) :: softening
     !> Part of it that counts
@@ -98,7 +98,7 @@ contains
 
     energy = 0
     if (damage_to > damage_from) energy = part*softening%energy*fraction_growth(softening%ratio, damage_from, damage_to)
-  end function taken_by
+  end function dissipated_by
 
   !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
   pure real(wp) function fraction_growth(ratio, damage_from, damage_to) result(growth)

@@ -6,20 +6,21 @@ module factor_packages
   use linear_solver_parameters, only: factorization_cholmod, factorization_mumps
   implicit none
   private
-  public :: packages_for, package_title, prepare_mumps, mumps_report, why_not_factored
+  public :: packages_for, package_title, prepare_mumps, mumps_report, failure_message
 
   !> MUMPS' controls: memory beyond the estimate in %, and whether the root of the elimination tree is factorized on one
   !> rank like the other nodes.
-  integer, parameter :: control_room = 14, control_root = 13
+  integer, parameter :: control_memory = 14, control_root = 13
   !> MUMPS' reports: outcome, negative pivots, memory in MB, entries of the factor
   integer, parameter, public :: mumps_outcome = 1, mumps_negative_pivots = 12, mumps_memory = 22, mumps_entries = 29
   !> MUMPS' outcome for a singular matrix
   integer, parameter, public :: mumps_singular = -10
   !> Outcomes of MUMPS for lack of memory, after which the factorization is repeated with more
-  integer, parameter, public :: mumps_short_of_room(*) = [-8, -9, -11, -14, -15, -17, -19, -20]
+  integer, parameter, public :: mumps_lacks_memory(*) = [-8, -9, -11, -14, -15, -17, -19, -20]
 
   !> Outcomes of a factorization
-  integer, parameter, public :: factor_made = 0, factor_not_positive = 1, factor_singular = 2, factor_lacks_memory = 3
+  integer, parameter, public :: factor_succeeded = 0, factor_not_positive = 1, factor_singular = 2, &
+                                factor_lacks_memory = 3
 
   !> Largest number of rows for which one rank factorizes for all. Measured: on two ranks MUMPS takes 1.3 times as long
   !> for a solve as CHOLMOD on one for 59 000 rows, and .93 times for 240 000.
@@ -80,7 +81,7 @@ contains
     codes = 0
     call PCFactorGetMatrix(preconditioner, factor, codes(1))
     if (codes(1) == 0) call MatMumpsSetIcntl(factor, control_root, 1, codes(2))
-    if (codes(1) == 0 .and. memory_margin >= 0) call MatMumpsSetIcntl(factor, control_room, memory_margin, codes(3))
+    if (codes(1) == 0 .and. memory_margin >= 0) call MatMumpsSetIcntl(factor, control_memory, memory_margin, codes(3))
     ierr = maxval(codes)
   end subroutine prepare_mumps
 
@@ -99,7 +100,7 @@ contains
   end function mumps_report
 
   !> Message for a failed factorization.
-  pure function why_not_factored(title, outcome) result(sentence)
+  pure function failure_message(title, outcome) result(sentence)
     !> Name of the package
     character(len=*), intent(in) :: title
     !> One of the factor_* outcomes
@@ -115,5 +116,5 @@ contains
     case default
       sentence = title//' could not factor the stiffness matrix, probably for lack of memory.'
     end select
-  end function why_not_factored
+  end function failure_message
 end module factor_packages

@@ -4,7 +4,7 @@ module linear_solvers
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_convergence, exit_internal, exit_usage
-  use factor_packages, only: packages_for, why_not_factored, factor_made, factor_not_positive, factor_singular
+  use factor_packages, only: packages_for, failure_message, factor_succeeded, factor_not_positive, factor_singular
   use free_mechanisms, only: has_mechanism
   use kinds, only: wp
   use linear_solver_parameters, only: factorization_automatic, factorization_cholmod
@@ -44,7 +44,7 @@ module linear_solvers
     !> True after a factorization
     logical, private :: factored = .false.
     !> True: the caller declares the matrix positive definite
-    logical, private :: promised = .false.
+    logical, private :: declared_definite = .false.
     !> Motion of least stiffness, by which mechanisms of the structure are found
     real(wp), allocatable, private :: mode(:)
   contains
@@ -61,7 +61,7 @@ module linear_solvers
     !> Deallocates matrix and factors.
     procedure :: release
     procedure, private :: set_up_factor
-    procedure, private :: make_factor
+    procedure, private :: factorize_current
   end type linear_solver_t
 
 contains
@@ -87,7 +87,7 @@ contains
     call self%release()
     self%communicator = communicator
     self%total_rows = total_rows
-    self%promised = positive_definite
+    self%declared_definite = positive_definite
     if (self%factorization == factorization_cholmod .and. .not. positive_definite) &
       call fail(error, exit_usage, 'CHOLMOD factorizes positive definite matrices only: choose '// &
                 "'automatic' or 'mumps' for factorization of &solver.")
@@ -123,21 +123,21 @@ contains
 
     self%factorizations = self%factorizations + 1
     self%current = definite
-    call self%make_factor(outcome, error)
-    if (outcome == factor_not_positive .and. self%promised .and. self%factorization /= factorization_cholmod .and. &
-        .not. allocated(error)) then
+    call self%factorize_current(outcome, error)
+    if (outcome == factor_not_positive .and. self%declared_definite .and. &
+        self%factorization /= factorization_cholmod .and. .not. allocated(error)) then
       self%indefinite_matrices = self%indefinite_matrices + 1
       self%current = indefinite
       if (.not. self%factors(indefinite)%defined) call self%set_up_factor(indefinite, .false., error)
-      if (.not. allocated(error)) call self%make_factor(outcome, error)
+      if (.not. allocated(error)) call self%factorize_current(outcome, error)
     end if
-    if (.not. allocated(error) .and. outcome /= factor_made) &
-      call fail(error, exit_convergence, why_not_factored(self%factors(self%current)%title(), outcome))
+    if (.not. allocated(error) .and. outcome /= factor_succeeded) &
+      call fail(error, exit_convergence, failure_message(self%factors(self%current)%title(), outcome))
     self%factored = .not. allocated(error)
   end subroutine factorize
 
   !> Factorizes with the package in use, and tests for mechanisms of the structure.
-  subroutine make_factor(self, outcome, error)
+  subroutine factorize_current(self, outcome, error)
     class(linear_solver_t), intent(inout) :: self
     !> One of the factor_* outcomes
     integer, intent(out) :: outcome
@@ -145,10 +145,10 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call self%factors(self%current)%factorize(self%matrix%object, outcome, error)
-    if (outcome /= factor_made .or. allocated(error)) return
+    if (outcome /= factor_succeeded .or. allocated(error)) return
     if (has_mechanism(self%communicator, self%factors(self%current)%solver, self%matrix, self%mode)) &
       outcome = factor_singular
-  end subroutine make_factor
+  end subroutine factorize_current
 
   !> Solves for one right-hand side with the factor; called by all ranks together.
   subroutine solve(self, right_hand_side, solution, error)

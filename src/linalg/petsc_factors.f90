@@ -5,7 +5,7 @@ module petsc_factors
   use communicators, only: communicator_t
   use errors, only: error_t, fail, exit_usage
   use factor_packages, only: package_title, prepare_mumps, mumps_report, mumps_outcome, mumps_memory, mumps_entries, &
-                             mumps_negative_pivots, mumps_singular, mumps_short_of_room, factor_made, &
+                             mumps_negative_pivots, mumps_singular, mumps_lacks_memory, factor_succeeded, &
                              factor_not_positive, factor_singular, factor_lacks_memory
   use kinds, only: wp
   use petsc_session, only: report_petsc
@@ -198,18 +198,18 @@ contains
     !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr, attempt
-    logical :: short
+    logical :: lacks_memory
 
-    call self%factorize_once(matrix, outcome, short, error)
+    call self%factorize_once(matrix, outcome, lacks_memory, error)
     do attempt = 1, size(larger_margins)
-      if (allocated(error) .or. .not. short) exit
+      if (allocated(error) .or. .not. lacks_memory) exit
       call self%renew(matrix, larger_margins(attempt), error)
-      if (.not. allocated(error)) call self%factorize_once(matrix, outcome, short, error)
+      if (.not. allocated(error)) call self%factorize_once(matrix, outcome, lacks_memory, error)
     end do
     call self%communicator%maximum(outcome)
     call self%communicator%agree(error)
     if (allocated(error)) return
-    if (outcome == factor_made) then
+    if (outcome == factor_succeeded) then
       ! The factors are kept until the next call of this procedure, also while new values are assembled.
       call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
     else
@@ -219,20 +219,20 @@ contains
   end subroutine factorize
 
   !> Factorizes a matrix once.
-  subroutine factorize_once(self, matrix, outcome, short, error)
+  subroutine factorize_once(self, matrix, outcome, lacks_memory, error)
     class(petsc_factor_t), intent(inout) :: self
     !> The matrix
     type(tMat), intent(in) :: matrix
     !> One of the factor_* outcomes
     integer, intent(out) :: outcome
     !> True: MUMPS needs more memory
-    logical, intent(out) :: short
+    logical, intent(out) :: lacks_memory
     !> Set if PETSc fails for another reason than the values of the matrix
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3), failure
 
-    short = .false.
-    outcome = factor_made
+    lacks_memory = .false.
+    outcome = factor_succeeded
     call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
     ! Setting the same matrix again makes the solver check whether its values have changed.
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
@@ -240,29 +240,29 @@ contains
     if (self%gathered .and. ierr(3) == 0) call self%factorize_gathered(ierr(3))
     if (ierr(3) == bad_pivot) outcome = factor_not_positive
     if (any(ierr(3) == no_memory)) outcome = factor_lacks_memory
-    if (outcome /= factor_made) return
+    if (outcome /= factor_succeeded) return
     call report_petsc(ierr, error)
     if (allocated(error)) return
     failure = 0
     call PCGetFailedReason(self%preconditioner, failure, ierr(3))
     if (failure /= 0) outcome = factor_singular
-    if (self%package == 'mumps') call self%check_mumps(outcome, short)
+    if (self%package == 'mumps') call self%check_mumps(outcome, lacks_memory)
   end subroutine factorize_once
 
   !> Outcome of a factorization by MUMPS.
-  subroutine check_mumps(self, outcome, short)
+  subroutine check_mumps(self, outcome, lacks_memory)
     class(petsc_factor_t), intent(in) :: self
     !> One of the factor_* outcomes
     integer, intent(inout) :: outcome
     !> True: it needs more memory
-    logical, intent(out) :: short
+    logical, intent(out) :: lacks_memory
 
     associate (code => mumps_report(self%preconditioner, mumps_outcome))
-      short = any(code == mumps_short_of_room)
+      lacks_memory = any(code == mumps_lacks_memory)
       if (code < 0) outcome = merge(factor_singular, factor_lacks_memory, code == mumps_singular)
     end associate
     ! MUMPS accepts negative pivots of a matrix that was declared positive definite.
-    if (outcome == factor_made .and. self%positive_definite) then
+    if (outcome == factor_succeeded .and. self%positive_definite) then
       if (mumps_report(self%preconditioner, mumps_negative_pivots) > 0) outcome = factor_not_positive
     end if
   end subroutine check_mumps

@@ -35,7 +35,7 @@ module cell_grids
     !> Node with the same motion as a given node on the cut line of point symmetry.
     procedure :: turned_node
     !> True for a dependent node.
-    procedure :: follows
+    procedure :: is_dependent
   end type cell_grid_t
 
 contains
@@ -169,14 +169,14 @@ contains
   end function turned_node
 
   !> True for a dependent node: its image has the lower number and determines its motion.
-  pure logical function follows(self, node)
+  pure logical function is_dependent(self, node)
     !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Node
     integer, intent(in) :: node
 
-    follows = self%turned_node(node) > node
-  end function follows
+    is_dependent = self%turned_node(node) > node
+  end function is_dependent
 
   !> True where a cell lies under the loaded patch.
   pure logical function in_patch(self, cell, patch)

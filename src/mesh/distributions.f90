@@ -150,7 +150,7 @@ contains
     end do
     ! Dependent nodes and their masters belong to one rank.
     do node = 1, mesh%nodes()
-      if (.not. mesh%follows(node)) cycle
+      if (.not. mesh%is_dependent(node)) cycle
       nodes(:2) = [node, mesh%turned_node(node)]
       node_owner(nodes(:2)) = minval(node_owner(nodes(:2)))
     end do

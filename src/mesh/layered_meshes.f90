@@ -199,7 +199,7 @@ contains
 
     master = 0
     associate (node => self%point_node(point))
-      if (self%follows(node)) master = self%first_point(self%turned_node(node)) + point - self%first_point(node)
+      if (self%is_dependent(node)) master = self%first_point(self%turned_node(node)) + point - self%first_point(node)
     end associate
   end function master
 

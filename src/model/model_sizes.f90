@@ -64,7 +64,7 @@ contains
     if (is_membrane_idle(setup, size(zones), section_of(stacked_plies(setup%laminate, setup%materials), &
                                                         setup%laminate%shear_correction))) a_node = 3
     pairs = nodes
-    if (allocated(setup%delaminations)) size_found%at_most = any(setup%delaminations%follows)
+    if (allocated(setup%delaminations)) size_found%at_most = any(setup%delaminations%is_adaptive)
     size_found%elements = product(real(cells, wp))
     size_found%unknowns = nint(a_node*nodes)
     ! A node has an additional layer for each zone that contains it: (1 + sum)**2 pairs, summed over pairs of zones.
@@ -99,7 +99,7 @@ contains
     largest = setup
     if (.not. allocated(setup%delaminations)) return
     do i = 1, size(setup%delaminations)
-      if (.not. setup%delaminations(i)%follows) cycle
+      if (.not. setup%delaminations(i)%is_adaptive) cycle
       largest%delaminations(i)%zone = largest_extents(setup%delaminations(i)%zone, setup%mesh%core, &
                                                       merge(0.0_wp, setup%mesh%cell, explicit), setup%plate%length)
     end do

@@ -22,11 +22,11 @@ module rig_models
     !> True if clamps have springs or a force
     logical :: elastic = .false.
     !> The rig that fixes w, or whose frame supports it by pressure; 0: none, (local points); unallocated: no rigs
-    integer, allocatable :: held_by(:), frame(:)
+    integer, allocatable :: constrained_by(:), frame(:)
     !> Stiffness of clamps along u, v and w, (3, local points)
     real(wp), allocatable :: springs(:, :)
     !> Force of clamps on the plate, (local points)
-    real(wp), allocatable :: presses(:)
+    real(wp), allocatable :: clamp_preload(:)
     !> The rig that they belong to; 0: none, (local points)
     integer, allocatable :: clamps(:)
     !> Points of three nodes each with a spring on their weighted unknown, (3, lines), and the rig; 0: an elastic edge
@@ -66,9 +66,9 @@ contains
     integer :: i, k, point
 
     if (size(supports) == 0 .and. all(plate%edges /= edge_elastic)) return
-    allocate (self%held_by(size(distribution%points)), self%frame(size(distribution%points)), &
+    allocate (self%constrained_by(size(distribution%points)), self%frame(size(distribution%points)), &
               self%clamps(size(distribution%points)), source=0)
-    allocate (self%springs(3, size(distribution%points)), self%presses(size(distribution%points)), source=0.0_wp)
+    allocate (self%springs(3, size(distribution%points)), self%clamp_preload(size(distribution%points)), source=0.0_wp)
     do i = 1, size(supports)
       self%unilateral = self%unilateral .or. supports(i)%shape > 0 .and. supports(i)%unilateral
       nodes = pack([(k, k=1, mesh%nodes())], nodes_on_frame(mesh, supports(i)))
@@ -78,7 +78,7 @@ contains
         if (supports(i)%unilateral) then
           self%frame(point) = i
         else
-          self%held_by(point) = i
+          self%constrained_by(point) = i
         end if
       end do
       nodes = clamp_nodes(mesh, plate, supports(i))
@@ -88,20 +88,20 @@ contains
         if (supports(i)%clamp_force > 0) then
           self%unilateral = .true.
           self%clamps(point) = i
-          self%presses(point) = self%presses(point) + supports(i)%clamp_force*clamp_share(mesh)
+          self%clamp_preload(point) = self%clamp_preload(point) + supports(i)%clamp_force*clamp_share(mesh)
         else if (supports(i)%clamp_stiffness > 0) then
           self%clamps(point) = i
           self%springs(:, point) = self%springs(:, point) + springs_of(mesh, plate, supports(i))
         else
-          self%held_by(point) = i
+          self%constrained_by(point) = i
         end if
       end do
     end do
     call find_lines(mesh, plate, supports, distribution, rigid, self)
     ! A frame supports the points below a clamp with a force; constrained points need neither frame nor clamp.
-    where (self%presses > 0 .and. self%frame == 0) self%frame = self%clamps
-    where (self%held_by > 0) self%frame = 0
-    where (self%held_by > 0) self%presses = 0
+    where (self%clamp_preload > 0 .and. self%frame == 0) self%frame = self%clamps
+    where (self%constrained_by > 0) self%frame = 0
+    where (self%constrained_by > 0) self%clamp_preload = 0
     self%elastic = any(supports%clamp_stiffness > 0 .or. supports%clamp_force > 0)
   end function new_rig_model
 

@@ -80,10 +80,10 @@ contains
     integer :: b
 
     do b = 1, batches%batches
-      if (.not. law%needs(b)) cycle
+      if (.not. law%needs_joined_strains(b)) cycle
       call gather(batches%points(:, :, b), u, r)
       call strains_of_batch(batches, b, kinematics, r, strains, slopes)
-      call law%take(b, batches%weight(:, :, b), strains)
+      call law%accumulate_strains(b, batches%weight(:, :, b), strains)
     end do
     call law%exchange()
   end subroutine share_strains

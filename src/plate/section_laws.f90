@@ -9,16 +9,16 @@ module section_laws
   !> History variables of the element sections, and their response to trial strains.
   type, abstract :: section_law_t
   contains
-    !> True where the strains of a batch must be known before any section softens; takes them; sends them to all ranks.
-    procedure(needs_batch), deferred :: needs
-    procedure(take_batch), deferred :: take
+    !> True for a batch with elements that soften by common strains; accumulates these strains; sends them to all ranks.
+    procedure(needs_batch), deferred :: needs_joined_strains
+    procedure(take_batch), deferred :: accumulate_strains
     procedure(share_with_ranks), deferred :: exchange
     !> Stiffness of the sections of a batch under trial strains.
     procedure(soften_batch), deferred :: soften
   end type section_law_t
 
   abstract interface
-    !> True where the strains of a batch must be known before any section softens.
+    !> True for a batch with elements that soften by common strains, which must be known before any section softens.
     pure logical function needs_batch(self, b)
       import :: section_law_t
       !> The law
@@ -27,7 +27,7 @@ module section_laws
       integer, intent(in) :: b
     end function needs_batch
 
-    !> Takes the trial strains of a batch that is needed.
+    !> Adds the trial strains of a batch to the common strains.
     subroutine take_batch(self, b, weight, strains)
       import :: section_law_t, wp, lanes
       !> The law

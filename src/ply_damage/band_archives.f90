@@ -26,7 +26,7 @@ contains
     integer :: element, ply
 
     do element = 1, size(states, 2)
-      table(:, element) = [([states(ply, element)%damage, states(ply, element)%sheared, &
+      table(:, element) = [([states(ply, element)%damage, states(ply, element)%shear_damage, &
                              states(ply, element)%dissipated], ply=1, size(states, 1))]
       strains(:, element) = [([states(ply, element)%permanent, states(ply, element)%accumulated], &
                               ply=1, size(states, 1))]
@@ -42,7 +42,7 @@ contains
       do ply = 1, size(states, 1)
         associate (values => table((ply - 1)*numbers + 1:ply*numbers, element), &
                    shear => strains(2*ply - 1:2*ply, element))
-          states(ply, element) = band_state_t(damage=values(1:2), sheared=values(3), dissipated=values(4:), &
+          states(ply, element) = band_state_t(damage=values(1:2), shear_damage=values(3), dissipated=values(4:), &
                                               permanent=shear(1), accumulated=shear(2), &
                                               closed=closed(2*ply - 1:2*ply, element))
         end associate

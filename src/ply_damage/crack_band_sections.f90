@@ -6,8 +6,8 @@ module crack_band_sections
   use archives, only: archive_t
   use band_archives, only: visit_bands
   use crack_closures, only: closing_resultants
-  use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, elasticity_left, onset_strain, &
-                         energy_of_shear, is_touched, stiffness_lost
+  use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, degraded_elasticity, &
+                         onset_strain, energy_of_shear, is_damaged, stiffness_lost
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
@@ -53,8 +53,8 @@ module crack_band_sections
     !> Stiffness of the sections of a batch under trial strains.
     procedure :: soften
     !> Strains of elements that share their state.
-    procedure :: needs
-    procedure :: take
+    procedure :: needs_joined_strains
+    procedure :: accumulate_strains
     procedure :: exchange
     !> Accepts the trial state; returns changed sections.
     procedure :: commit
@@ -113,17 +113,17 @@ contains
   end function new_crack_band_sections
 
   !> True for a batch with elements that share their state.
-  pure logical function needs(self, b)
+  pure logical function needs_joined_strains(self, b)
     !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> Number of the batch
     integer, intent(in) :: b
 
-    needs = self%joined%concerned(b)
-  end function needs
+    needs_joined_strains = self%joined%concerned(b)
+  end function needs_joined_strains
 
   !> Accumulates the strains of elements that share their state.
-  subroutine take(self, b, weight, strains)
+  subroutine accumulate_strains(self, b, weight, strains)
     !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     !> Number of the batch
@@ -139,9 +139,9 @@ contains
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
       if (self%joined%shares(element)) &
-        call self%joined%take(element, strain_moments(weight(lane, :), strains(lane, :, :)), bounds(lane))
+        call self%joined%accumulate_strains(element, strain_moments(weight(lane, :), strains(lane, :, :)), bounds(lane))
     end do
-  end subroutine take
+  end subroutine accumulate_strains
 
   !> Sends them to all ranks. Collective.
   subroutine exchange(self)
@@ -212,9 +212,9 @@ contains
                          strains_of_ply(self%plies(ply), moments), self%accepted(ply, element), &
                          self%trial(ply, element))
         changed = changed .or. any(abs(stiffness_lost(self%trial(ply, element)) - before) > 0)
-        elasticity(ply) = elasticity_left(self%bands(ply), self%trial(ply, element))
+        elasticity(ply) = degraded_elasticity(self%bands(ply), self%trial(ply, element))
       end do
-      self%touched(element) = any([(is_touched(self%trial(ply, element)), ply=first, last)])
+      self%touched(element) = any([(is_damaged(self%trial(ply, element)), ply=first, last)])
       if (changed) stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
     end associate
   end subroutine soften_element
@@ -344,7 +344,7 @@ contains
     !> The constants
     type(elasticity_t) :: elasticity
 
-    elasticity = elasticity_left(self%bands(ply), self%trial(ply, element))
+    elasticity = degraded_elasticity(self%bands(ply), self%trial(ply, element))
   end function elasticity
 
   !> Neighbouring plies of an element with the permanent strains of the trial.
@@ -393,7 +393,7 @@ contains
     call visit_bands(archive, model, self%range, self%accepted)
     if (.not. archive%loading) return
     do element = 1, size(self%touched)
-      self%touched(element) = any([(is_touched(self%accepted(ply, element)), ply=1, size(self%plies))])
+      self%touched(element) = any([(is_damaged(self%accepted(ply, element)), ply=1, size(self%plies))])
     end do
     self%trial = self%accepted
   end subroutine visit

@@ -37,7 +37,7 @@ module joined_elements
     !> True where an element shares its state with others.
     procedure :: shares
     !> Stores an element's strains; sends them to the ranks that need them.
-    procedure :: take
+    procedure :: accumulate_strains
     procedure :: exchange
     !> Strains of an element with those joined with it, and their largest bound.
     procedure :: strains_of
@@ -175,7 +175,7 @@ contains
   end function shares
 
   !> Stores an element's strains.
-  pure subroutine take(self, element, moments, bound)
+  pure subroutine accumulate_strains(self, element, moments, bound)
     !> The elements
     class(joined_elements_t), intent(inout) :: self
     !> Element of this rank that shares its state
@@ -186,7 +186,7 @@ contains
     real(wp), intent(in) :: bound
 
     self%moments(:, self%number(element)) = [values_of(moments), bound]
-  end subroutine take
+  end subroutine accumulate_strains
 
   !> Sends the strains of elements joined across ranks. Collective.
   subroutine exchange(self)

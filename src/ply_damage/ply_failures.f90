@@ -42,7 +42,7 @@ module ply_failures
     !> Lag of damage: energy error of the last step relative to its limit
     real(wp) :: damage_lag = 0
     !> True while softening plies keep their stiffness, during the transfer of a state to other layers
-    logical :: lagging = .false.
+    logical :: keeps_stiffness = .false.
   contains
     !> Internal forces of the plate, with the stiffness reduced by softening under this displacement.
     procedure :: find_forces
@@ -99,7 +99,7 @@ contains
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 
-    if (allocated(self%bands) .and. .not. self%lagging) then
+    if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
       ! Unallocated resultants count as absent.
       call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
       self%stiffness = self%bands%stiffness

@@ -14,13 +14,13 @@ module crack_flaws
   use ply_failures, only: ply_failure_t
   implicit none
   private
-  public :: note_flaws
+  public :: update_flaws
 
 contains
 
   !> Reduces the strength of interfaces within the thickness of a block from matrix cracks of the ply above or below.
   !> Collective.
-  subroutine note_flaws(model, plies, displacement, interfaces)
+  subroutine update_flaws(model, plies, displacement, interfaces)
     type(model_t), intent(in) :: model
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
@@ -47,7 +47,7 @@ contains
         end do
       end associate
     end do
-  end subroutine note_flaws
+  end subroutine update_flaws
 
   !> Reduces the strength of an interface beside cracks by transverse shear in a ply: a cracked ply transmits no more
   !> than its own shear strength. Collective.

@@ -72,7 +72,7 @@ module states
     !> Counts a step and its iterations.
     procedure :: count_step
     !> Stores the changes of a load step.
-    procedure :: note_path
+    procedure :: record_path
     !> Saves or loads the state.
     procedure :: visit
   end type state_t
@@ -184,7 +184,7 @@ contains
 
   !> Stores the changes of a load step, and chooses the control of the next one: load or dissipated energy, whichever
   !> advanced by the larger fraction of its total.
-  pure subroutine note_path(self, old, dissipation)
+  pure subroutine record_path(self, old, dissipation)
     !> State at the end of the step
     class(state_t), intent(inout) :: self
     !> State at its start
@@ -197,7 +197,7 @@ contains
     self%path%force_change = self%force - old%force
     self%path%dissipated = self%ledger%delamination - old%ledger%delamination
     self%path%by_dissipation = self%path%dissipated > dissipation*self%path%factor_change
-  end subroutine note_path
+  end subroutine record_path
 
   !> Saves or loads the state.
   subroutine visit(self, archive, model)

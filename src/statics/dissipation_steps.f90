@@ -46,7 +46,7 @@ contains
     type(dissipation_step_t) :: self
 
     self%static_step_t = new_static_step(model, time, 0.0_wp)
-    self%retries_shorter = .true.
+    self%may_be_shortened = .true.
     self%target_dissipation = target_dissipation
     self%max_load_change = max_load_change
   end function new_dissipation_step

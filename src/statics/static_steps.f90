@@ -47,7 +47,7 @@ contains
     !> The problem
     type(static_step_t) :: self
 
-    self%retries_shorter = model%setup%kinematics /= kinematics_linear
+    self%may_be_shortened = model%setup%kinematics /= kinematics_linear
     self%time = time
     self%load_factor = load_factor
   end function new_static_step
@@ -109,7 +109,7 @@ contains
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
 
-    may_stop = .not. at%pressures_new
+    may_stop = .not. at%multipliers_changed
   end function may_stop
 
   !> Solves for a correction, with a new factorization if the tangent may have changed.
@@ -130,7 +130,7 @@ contains
       if (.not. allocated(error)) &
         call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
       if (.not. allocated(error)) call self%complete_correction(at, error)
-      if (.not. allocated(error)) call new%interfaces%faces%hold(model, at%correction)
+      if (.not. allocated(error)) call new%interfaces%faces%constrain_correction(model, at%correction)
     end associate
   end subroutine find_correction
 

@@ -3,7 +3,7 @@
 module explicit_steps
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
-  use crack_flaws, only: note_flaws
+  use crack_flaws, only: update_flaws
   use damped_motions, only: damp_motion
   use errors, only: error_t
   use initial_equilibrium, only: find_initial_equilibrium
@@ -14,7 +14,7 @@ module explicit_steps
   use states, only: state_t
   use struck_stresses, only: struck_stress
   use tangent_operators, only: tangent_operator_t
-  use unstable_motions, only: refuse_instability
+  use unstable_motions, only: check_stability
   implicit none
   private
   public :: advance_explicit, complete_step, equilibrate_initial_stresses
@@ -22,7 +22,7 @@ module explicit_steps
   !> Steps between two updates of flaws at interfaces by matrix cracks. Cracks grow at up to the speed of shear waves, a
   !> third of that of waves along the fibres, which pass at most one cell in two steps; so a crack grows by at most two
   !> cells between updates.
-  integer, parameter :: between_flaws = 8
+  integer, parameter :: steps_between_flaws = 8
 
 contains
 
@@ -54,7 +54,7 @@ contains
     !> The state
     type(state_t), intent(inout) :: now
 
-    if (comes_to_rest(method, model, now)) call damp_motion(method, model, now, method%parameters%settle)
+    if (is_damped(method, model, now)) call damp_motion(method, model, now, method%parameters%settle)
     call method%advance(model, event, now)
     if (model%setup%has_ply_damage .and. .not. allocated(now%plies%bands)) then
       call model%profile%enter('ply criteria')
@@ -62,30 +62,30 @@ contains
       call model%profile%leave()
       if (now%plies%softened) call method%book_failures(model, now)
     end if
-    if (modulo(now%step, between_flaws) > 0) return
+    if (modulo(now%step, steps_between_flaws) > 0) return
     call model%profile%enter('flaws')
-    call note_flaws(model, now%plies, now%motion%displacement, now%interfaces)
+    call update_flaws(model, now%plies, now%motion%displacement, now%interfaces)
     if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
     call model%profile%leave()
   end subroutine advance_explicit
 
   !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left the plate
   !> and moves away.
-  pure logical function comes_to_rest(method, model, now)
+  pure logical function is_damped(method, model, now)
     !> Central differences
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
 
-    comes_to_rest = .false.
+    is_damped = .false.
     if (.not. method%parameters%settle > 0) return
     if (model%setup%has_impactor) then
-      comes_to_rest = now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
+      is_damped = now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
     else
-      comes_to_rest = now%time < model%setup%load_start
+      is_damped = now%time < model%setup%load_start
     end if
-  end function comes_to_rest
+  end function is_damped
 
   !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.
   subroutine complete_step(method, model, now, error)
@@ -104,6 +104,6 @@ contains
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
     now%stress = struck_stress(model, now%motion%displacement)
     now%largest_stress = max(now%largest_stress, now%stress)
-    call refuse_instability(model, now, error)
+    call check_stability(model, now, error)
   end subroutine complete_step
 end module explicit_steps

@@ -46,16 +46,16 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(step_memory_t) :: memory
     real(wp) :: extents(2, size(model%mesh%zones))
-    logical :: again, more
+    logical :: repeats, more
 
     switched = .false.
     if (allocated(stepper%explicit)) then
       call advance_explicit(model, stepper, linear_solver, event, switched, error)
       return
     end if
-    again = follows(model)
-    if (.not. again) call stepper%advance(model, event, error)
-    do while (again)
+    repeats = has_adaptive_layers(model)
+    if (.not. repeats) call stepper%advance(model, event, error)
+    do while (repeats)
       memory = save_state(stepper)
       call stepper%advance(model, event, error)
       if (allocated(error)) return
@@ -63,9 +63,9 @@ contains
       associate (now => stepper%now)
         extents = required_extents(model, now%plies%stiffness, now%interfaces, now%motion%displacement)
         more = any(extents > present_extents(model%setup))
-        again = more .and. any(now%interfaces%border_reached .and. model%setup%delaminations%follows)
+        repeats = more .and. any(now%interfaces%border_reached .and. model%setup%delaminations%is_adaptive)
       end associate
-      if (again) call memory%restore_state(stepper)
+      if (repeats) call memory%restore_state(stepper)
       if (more) call switch(model, stepper, linear_solver, extents, error)
       switched = switched .or. more
       call model%profile%leave()
@@ -93,7 +93,7 @@ contains
 
     switched = .false.
     call stepper%advance(model, event, error)
-    if (allocated(error) .or. .not. follows(model)) return
+    if (allocated(error) .or. .not. has_adaptive_layers(model)) return
     if (modulo(stepper%now%step, steps_between_zone_checks) > 0) return
     call model%profile%enter('layers')
     associate (now => stepper%now)
@@ -105,12 +105,12 @@ contains
   end subroutine advance_explicit
 
   !> True if there are adaptive layers.
-  pure logical function follows(model)
+  pure logical function has_adaptive_layers(model)
     type(model_t), intent(in) :: model
 
-    follows = model%map%layered
-    if (follows) follows = any(model%setup%delaminations%follows)
-  end function follows
+    has_adaptive_layers = model%map%layered
+    if (has_adaptive_layers) has_adaptive_layers = any(model%setup%delaminations%is_adaptive)
+  end function has_adaptive_layers
 
   !> Extents of the zones.
   pure function present_extents(setup) result(extents)
@@ -193,9 +193,9 @@ contains
       call move_with_plate(model, transfer, motion%acceleration)
       call now%plies%restack(model, transfer%is_split(model%distribution%elements))
       allocate (before, source=now)
-      now%plies%lagging = allocated(now%plies%bands)
+      now%plies%keeps_stiffness = allocated(now%plies%bands)
       call now%find_internal(model, before, energies(1))
-      now%plies%lagging = .false.
+      now%plies%keeps_stiffness = .false.
       now%interfaces%cohesive%points = before%interfaces%cohesive%points
       call model%inertia(motion%acceleration, motion%inertia)
       call model%inertia(motion%velocity, motion%momentum)
@@ -259,16 +259,16 @@ contains
     type(layer_transfer_t), intent(in) :: transfer
     !> The state
     type(state_t), intent(inout) :: now
-    real(wp) :: held(5)
+    real(wp) :: interlaminar(5)
     integer :: i
 
     associate (internal => now%motion%internal)
       do i = model%distribution%owned, 1, -1
         if (transfer%point_origin(model%distribution%points(i)) > 0) cycle
-        held = -(internal(:, i) + now%motion%inertia(:, i))
-        internal(:, i) = internal(:, i) + held
+        interlaminar = -(internal(:, i) + now%motion%inertia(:, i))
+        internal(:, i) = internal(:, i) + interlaminar
         associate (above => internal(:, model%map%above(i)))
-          above(4:5) = above(4:5) - held(4:5)
+          above(4:5) = above(4:5) - interlaminar(4:5)
         end associate
       end do
     end associate

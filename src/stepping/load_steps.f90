@@ -19,7 +19,7 @@ module load_steps
   contains
     procedure :: start
     procedure :: try
-    procedure :: note_state
+    procedure :: complete_trial
     procedure :: choose_next
     procedure :: equilibrate
   end type load_steps_t
@@ -94,7 +94,7 @@ contains
   end subroutine try_dissipation
 
   !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
-  subroutine note_state(self, stepper, model)
+  subroutine complete_trial(self, stepper, model)
     !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper
@@ -104,7 +104,7 @@ contains
     associate (trial => stepper%trial)
       call find_release_ratio(model, trial%plies%stiffness, trial%motion, trial%interfaces)
     end associate
-  end subroutine note_state
+  end subroutine complete_trial
 
   !> Each step is first tried with the length given in the deck.
   subroutine choose_next(self, stepper, model, step, change, extended)

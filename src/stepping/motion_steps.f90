@@ -21,7 +21,7 @@ module motion_steps
   contains
     procedure :: start
     procedure :: try
-    procedure :: note_state
+    procedure :: complete_trial
     procedure :: choose_next
   end type motion_steps_t
 
@@ -40,8 +40,8 @@ contains
     associate (time => stepper%stepping%time)
       stepper%integrator = plate_integrator(time)
       stepper%controller%target = time%step
-      stepper%follows_error = is_error_controlled(stepper%stepping%adapt)
-      if (stepper%follows_error) call stepper%step_error%start(model, time%step)
+      stepper%is_error_controlled = is_error_controlled(stepper%stepping%adapt)
+      if (stepper%is_error_controlled) call stepper%step_error%start(model, time%step)
       if (allocated(model%pressure) .or. size(model%lines) > 0) &
         call find_acceleration(model, stepper%operator, stepper%integrator%mass_factor(time%step), stepper%now, error)
     end associate
@@ -107,7 +107,7 @@ contains
   end subroutine renew_if_due
 
   !> Notes where an impactor that moves back has left the faces glued.
-  subroutine note_state(self, stepper, model)
+  subroutine complete_trial(self, stepper, model)
     !> The kind
     class(motion_steps_t), intent(in) :: self
     !> The stepper
@@ -118,7 +118,7 @@ contains
       trial%interfaces%faces%glued = trial%interfaces%faces%glued .or. model%setup%has_impactor &
         .and. trial%impactor%velocity <= 0 .and. trial%force < stepper%now%force
     end associate
-  end subroutine note_state
+  end subroutine complete_trial
 
   !> Length of the next step by iterations, error, damage and growth.
   subroutine choose_next(self, stepper, model, step, change, extended)
@@ -139,7 +139,7 @@ contains
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
       call controller%accept(stepping, step, now%iterations, lag_iterations, change)
       if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
-      if (stepper%follows_error) &
+      if (stepper%is_error_controlled) &
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
           .not. model%setup%has_impactor .or. stepper%step_error%impact_is_over(stepping%expected, now), &
                                        has_gear(model), now%has_failures())

@@ -1,7 +1,7 @@
 !> Accepts or rejects a trial step, and sets the length of the next one.
 module step_acceptance
   use kinds, only: wp
-  use crack_flaws, only: note_flaws
+  use crack_flaws, only: update_flaws
   use energy_balance, only: book_failures
   use errors, only: error_t, fail, exit_convergence
   use models, only: model_t
@@ -27,15 +27,15 @@ contains
     logical :: extended
 
     if (model%setup%static%dissipation > 0 .and. step > 0) &
-      call self%trial%note_path(self%now, model%setup%static%dissipation)
+      call self%trial%record_path(self%now, model%setup%static%dissipation)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
     if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
-    call note_damage(self, model)
+    call update_damage(self, model)
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
-    if (self%follows_error) then
-      call self%step_error%note(model, self%now, self%trial)
+    if (self%is_error_controlled) then
+      call self%step_error%record(model, self%now, self%trial)
       if (extended .or. self%trial%plies%softened) call self%step_error%reset()
     end if
     call move_alloc(self%now, before)
@@ -45,7 +45,7 @@ contains
   end subroutine accept_step
 
   !> Updates failures of plies and flaws of interfaces in the trial state.
-  subroutine note_damage(self, model)
+  subroutine update_damage(self, model)
     !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -54,12 +54,12 @@ contains
     call self%trial%plies%grow(model, self%trial%motion%displacement)
     call model%profile%leave()
     if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
-    call note_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
-    call self%kind%note_state(self, model)
+    call update_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
+    call self%kind%complete_trial(self, model)
     associate (interfaces => self%trial%interfaces)
       interfaces%border_reached = interfaces%border_reached .or. interfaces%cohesive%border_reached(model)
     end associate
-  end subroutine note_damage
+  end subroutine update_damage
 
   !> Estimates the error of the trial step and whether it has to be repeated with a shorter length.
   subroutine assess_error(self, model, step, shortest, accurate)

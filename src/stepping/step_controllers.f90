@@ -80,17 +80,17 @@ contains
     if (abs(remaining/longer - anint(remaining/longer)) < 1.0e-6_wp .and. remaining > longer/2) step = longer
     step = min(step, limit)
     if (self%last > 0) step = min(step, ratio*self%last)
-    step = remaining/max(1.0_wp, ceiling_of(remaining/step*(1 - 1.0e-9_wp)))
+    step = remaining/max(1.0_wp, ceiling_as_real(remaining/step*(1 - 1.0e-9_wp)))
   end function propose
 
   !> Smallest whole number not below x, as a real: step counts may pass the largest integer.
-  pure real(wp) function ceiling_of(x) result(whole)
+  pure real(wp) function ceiling_as_real(x) result(whole)
     !> A number
     real(wp), intent(in) :: x
 
     whole = aint(x)
     if (whole < x) whole = whole + 1
-  end function ceiling_of
+  end function ceiling_as_real
 
   !> Updates the step length after an accepted step.
   pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
@@ -146,7 +146,7 @@ contains
       parts = parts/2
       self%target = self%target/2
     end do
-    self%target = self%target*remaining/max(1.0_wp, ceiling_of(parts*(1 - 1.0e-9_wp)))
+    self%target = self%target*remaining/max(1.0_wp, ceiling_as_real(parts*(1 - 1.0e-9_wp)))
     self%first = self%target
   end subroutine begin
 

@@ -16,18 +16,18 @@ contains
 
   !> Longest step allowed by the impactor's integrator, as a binary fraction of the target step, so that small changes
   !> require no factorization.
-  pure real(wp) function impactor_limit(model, now, wanted) result(limit)
+  pure real(wp) function impactor_limit(model, now, target) result(limit)
     type(model_t), intent(in) :: model
     !> The state reached
     type(state_t), intent(in) :: now
     !> Target step
-    real(wp), intent(in) :: wanted
+    real(wp), intent(in) :: target
 
     limit = huge(limit)
     if (.not. model%setup%has_impactor) return
     limit = largest_safe_step(model%setup%impactor, model%setup%indentation, now%indentation, now%indentation%alpha, &
                               now%impactor%velocity)
-    if (limit < wanted) limit = wanted*2.0_wp**floor(log(limit/wanted)/log(2.0_wp))
+    if (limit < target) limit = target*2.0_wp**floor(log(limit/target)/log(2.0_wp))
   end function impactor_limit
 
   !> Largest ratio of a step to the previous one allowed by the integrators.

@@ -22,7 +22,7 @@ module steppers
     !> Tries a step.
     procedure(try_one_step), deferred :: try
     !> Completes the state tried before it is accepted.
-    procedure(note_state_tried), deferred :: note_state
+    procedure(complete_trial_state), deferred :: complete_trial
     !> Chooses the length of the next step.
     procedure(choose_length), deferred :: choose_next
     !> Completes the state accepted, where failures have changed its equilibrium.
@@ -43,11 +43,11 @@ module steppers
     !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp) :: error = 0, damage_lag = 0
     !> True: the length of steps follows the error of each
-    logical :: follows_error = .false.
+    logical :: is_error_controlled = .false.
     !> Smallest step worth trying
     real(wp) :: smallest_step = 0
     !> True: the error of the last step exceeds the tolerance at the shortest step
-    logical :: errs = .false.
+    logical :: exceeds_tolerance = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> How steps are taken
@@ -103,14 +103,14 @@ module steppers
     end subroutine try_one_step
 
     !> Completes the state tried before it is accepted. Collective.
-    subroutine note_state_tried(self, stepper, model)
+    subroutine complete_trial_state(self, stepper, model)
       import :: step_kind_t, stepper_t, model_t
       !> The kind
       class(step_kind_t), intent(in) :: self
       !> The stepper, with the failures of the trial step
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
-    end subroutine note_state_tried
+    end subroutine complete_trial_state
 
     !> Chooses the length of the next step.
     subroutine choose_length(self, stepper, model, step, change, extended)

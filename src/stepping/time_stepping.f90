@@ -87,11 +87,12 @@ contains
       self%controller%last = self%explicit%steps%now
       return
     end if
-    if (self%follows_error .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
+    if (self%is_error_controlled .and. self%now%step == 0) call self%controller%begin(self%stepping, event)
     call find_step(self, model, event, step, shortest, error)
     if (allocated(error)) return
-    if (self%follows_error) &
-      self%errs = self%error > self%stepping%controls%shortening_error .and. step <= shortest*(1 + 1.0e-9_wp)
+    if (self%is_error_controlled) &
+      self%exceeds_tolerance = self%error > self%stepping%controls%shortening_error .and. &
+                               step <= shortest*(1 + 1.0e-9_wp)
     if (abs(self%trial%time - event) <= 1.0e-9_wp*step) self%trial%time = event
     call accept_step(self, model, step)
     call self%kind%equilibrate(self, model, error)
@@ -118,7 +119,7 @@ contains
       if (allocated(error)) return
       if (converged) then
         accurate = .true.
-        if (self%follows_error) call assess_error(self, model, step, shortest, accurate)
+        if (self%is_error_controlled) call assess_error(self, model, step, shortest, accurate)
         if (accurate) return
       else
         call reject_step(self, model, step, error)

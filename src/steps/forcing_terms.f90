@@ -10,7 +10,7 @@ module forcing_terms
 contains
 
   !> Forcing term: reduction of the residual required of the next correction.
-  pure real(wp) function forcing_term(controls, tolerance, norm, before) result(left)
+  pure real(wp) function forcing_term(controls, tolerance, norm, before) result(eta)
     !> Constants of Newton's method
     type(newton_controls_t), intent(in) :: controls
     !> Residual of equilibrium accepted, relative to the reference force
@@ -19,11 +19,11 @@ contains
     real(wp), intent(in) :: norm, before
 
     ! A correction that closes contacts can raise the residual to a thousand times the reference force.
-    left = controls%max_forcing_term/max(1.0_wp, norm)
-    if (norm < before) left = min(left, controls%forcing_factor*(norm/before)**2)
+    eta = controls%max_forcing_term/max(1.0_wp, norm)
+    if (norm < before) eta = min(eta, controls%forcing_factor*(norm/before)**2)
     ! A residual within the tolerance needs no reduction; it may be zero.
-    associate (enough => controls%forcing_margin*tolerance)
-      left = min(max(left, enough/max(norm, enough)), controls%forcing_factor)
+    associate (target => controls%forcing_margin*tolerance)
+      eta = min(max(eta, target/max(norm, target)), controls%forcing_factor)
     end associate
   end function forcing_term
 end module forcing_terms

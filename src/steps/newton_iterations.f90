@@ -28,9 +28,9 @@ module newton_iterations
     !> True: the correction is a direction of negative curvature of the tangent
     logical :: negative_curvature = .false.
     !> Norm of the residual, and of that before the last correction; 0: there was none, or the multipliers are new
-    real(wp) :: norm = 0, before = 0
+    real(wp) :: norm = 0, previous_norm = 0
     !> True: multipliers were updated after the last correction
-    logical :: pressures_new = .false.
+    logical :: multipliers_changed = .false.
     !> Strain energy of this rank's elements
     real(wp) :: energy = 0
   end type newton_iteration_t

@@ -56,7 +56,7 @@ contains
     scale = max(scale, tiny(norm))
     norm = maxval(squares(1:2)/scale)
     if (norm <= tolerance .or. .not. may_end) return
-    limits = sums_of_squares(numbering, forces_to_round(diagonal, displacement))
+    limits = sums_of_squares(numbering, round_off_forces(diagonal, displacement))
     call communicator%sum(limits)
     if (.not. all(limits <= huge(norm))) return
     norm = maxval(squares(1:2)/max(scale, controls%last_digits*epsilon(norm)/tolerance*sqrt(limits)))
@@ -66,7 +66,7 @@ contains
   !> the term of the deflection is added, with the largest coupling stiffness of a positive definite operator, the root
   !> of the product of both diagonal entries: moments in long elements of thin plates are small differences of such
   !> terms.
-  pure function forces_to_round(diagonal, displacement) result(forces)
+  pure function round_off_forces(diagonal, displacement) result(forces)
     !> Diagonal of the operator, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
     !> Unknowns, (5, points)
@@ -80,7 +80,7 @@ contains
       forces(component, :) = abs(forces(component, :)) &
                              + sqrt(abs(diagonal(component, :)*diagonal(3, :)))*abs(displacement(3, :))
     end do
-  end function forces_to_round
+  end function round_off_forces
 
   !> Sums of squares over this rank's unconstrained unknowns.
   pure function sums_of_squares(numbering, force) result(squares)
@@ -95,15 +95,15 @@ contains
     if (any(numbering%master(:numbering%owned) > 0)) then
       folded = force(:, :numbering%owned)
       call numbering%fold(folded)
-      squares = plain_sums(numbering, folded)
+      squares = sums_without_masters(numbering, folded)
     else
-      squares = plain_sums(numbering, force)
+      squares = sums_without_masters(numbering, force)
     end if
   end function sums_of_squares
 
   !> The same for points that no other point is tied to, eight points at a time, so that the compiler vectorises the
   !> sums.
-  pure function plain_sums(numbering, force) result(squares)
+  pure function sums_without_masters(numbering, force) result(squares)
     !> Knows which unknowns are constrained
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
@@ -115,7 +115,7 @@ contains
     sums = 0
     call add_squares(5*numbering%owned, numbering%equation, force, sums)
     squares = [sum(sums(1:3, :)), sum(sums(4:5, :))]
-  end function plain_sums
+  end function sums_without_masters
 
   !> Adds the squares of a row of numbers to as many sums.
   pure subroutine add_squares(number, equation, values, sums)

@@ -30,10 +30,9 @@ module solver_deck
       &Options passed to PETSc.']
 
   !> Prefixes of the options for PETSc allowed in a deck.
-  character(len=*), parameter :: beginnings(*) = [character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', &
-                                                  '-indefinite_pc_', '-indefinite_mat_', &
-                                                  '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_', &
-                                                  '-newton_ksp_']
+  character(len=*), parameter :: allowed_prefixes(*) = [ &
+    character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', '-indefinite_pc_', '-indefinite_mat_', &
+    '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_', '-newton_ksp_']
 
 contains
 
@@ -92,8 +91,8 @@ contains
     is_allowed = scan(word, ':/'//achar(9)) == 0
     if (.not. is_allowed .or. word == '-log_view' .or. index(word, '-') /= 1) return
     if (len(word) > 1) is_allowed = scan(word(2:2), '0123456789.') == 1
-    do i = 1, size(beginnings)
-      if (index(word, trim(beginnings(i))) == 1) is_allowed = .true.
+    do i = 1, size(allowed_prefixes)
+      if (index(word, trim(allowed_prefixes(i))) == 1) is_allowed = .true.
     end do
   end function is_allowed
 end module solver_deck

@@ -21,11 +21,11 @@ module step_problems
   !> One kind of step.
   type, abstract :: step_problem_t
     !> True: after a failure of the solver a shorter step may succeed
-    logical :: retries_shorter = .true.
+    logical :: may_be_shortened = .true.
     !> True: element tangents are used, as the factored operator reduces the residual too little
     logical :: uses_element_tangents = .false.
     !> True: a line search follows each correction
-    logical :: searches_lines = .false.
+    logical :: uses_line_search = .false.
     !> Constants of Newton's method
     type(newton_controls_t) :: controls
   contains
@@ -164,13 +164,13 @@ contains
       search%on = .false.
       call update_contact(problem, at, converged)
       if (converged) exit
-      if (at%pressures_new .and. new%contact_iterations < equilibrium%max_iterations) cycle
+      if (at%multipliers_changed .and. new%contact_iterations < equilibrium%max_iterations) cycle
       if (.not. at%norm <= huge(at%norm) .or. new%iterations >= equilibrium%max_iterations) exit
-      problem%uses_element_tangents = problem%uses_element_tangents .or. at%before > 0 &
-        .and. at%norm > equilibrium%controls%element_reduction*at%before
+      problem%uses_element_tangents = problem%uses_element_tangents .or. at%previous_norm > 0 &
+        .and. at%norm > equilibrium%controls%element_reduction*at%previous_norm
       call correct(problem, at, search, corrected, error)
       if (.not. corrected) exit
-      at%before = at%norm
+      at%previous_norm = at%norm
       new%motion%displacement = new%motion%displacement + at%correction
       call problem%complete(at)
       new%iterations = new%iterations + 1
@@ -190,7 +190,7 @@ contains
 
     converged = at%norm <= at%equilibrium%tolerance
     if (converged) converged = problem%may_stop(at)
-    at%pressures_new = .false.
+    at%multipliers_changed = .false.
     if (.not. converged) return
     call at%model%profile%enter('contact and ties')
     associate (equilibrium => at%equilibrium, new => at%new)
@@ -199,8 +199,8 @@ contains
                                          new%contact_iterations, converged)
     end associate
     call at%model%profile%leave()
-    at%pressures_new = .not. converged
-    if (at%pressures_new) at%before = 0
+    at%multipliers_changed = .not. converged
+    if (at%multipliers_changed) at%previous_norm = 0
   end subroutine update_contact
 
   !> Accepts a fraction of the correction, or tries the next one.
@@ -230,9 +230,9 @@ contains
 
     call at%operator%timers%start('element forces')
     call problem%find_residual(at)
-    if (problem%searches_lines) at%smooth = at%residual
+    if (problem%uses_line_search) at%smooth = at%residual
     call at%model%profile%enter('contact and ties')
-    call at%new%interfaces%act(at%model, at%new%motion%displacement, at%residual)
+    call at%new%interfaces%add_to_residual(at%model, at%new%motion%displacement, at%residual)
     call at%model%profile%leave()
     call at%operator%timers%stop('element forces')
   end subroutine find_forces
@@ -252,9 +252,9 @@ contains
     real(wp), allocatable :: stiffness(:, :)
 
     call problem%find_correction(at, forcing_term(at%equilibrium%controls, at%equilibrium%tolerance, at%norm, &
-                                                  at%before), error)
+                                                  at%previous_norm), error)
     corrected = .not. allocated(error)
-    if (corrected .and. problem%searches_lines) then
+    if (corrected .and. problem%uses_line_search) then
       allocate (stiffness(3, size(at%correction, 2)))
       call at%new%interfaces%faces%added_stiffness(at%model, at%operator%diagonal, stiffness)
       call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
@@ -262,7 +262,7 @@ contains
                         at%negative_curvature)
     else if (.not. corrected) then
       ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
-      if ((problem%retries_shorter .or. at%model%setup%has_impactor) .and. error%code == exit_convergence) &
+      if ((problem%may_be_shortened .or. at%model%setup%has_impactor) .and. error%code == exit_convergence) &
         deallocate (error)
     end if
   end subroutine correct

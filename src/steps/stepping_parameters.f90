@@ -22,14 +22,14 @@ module stepping_parameters
   real(wp), parameter, public :: past_contact = 1.25_wp
   !> Longest extension of a run by its contact, over the end first chosen: an impactor still in contact by then
   !> perforates the plate or rests on it.
-  real(wp), parameter :: max_followed = 4
+  real(wp), parameter :: max_extension = 4
 
   !> Time integration of the plate.
   type :: time_t
     !> End of the run
     real(wp) :: end = 0
     !> True: the run is extended until the impactor has left
-    logical :: follows_contact = .false.
+    logical :: extends_to_contact_end = .false.
     !> First time step
     real(wp) :: step = 0
     !> Smallest step tried before giving up, and largest step taken
@@ -120,10 +120,10 @@ contains
 
     associate (time => stepping%time, central => stepping%central)
       end_of_run = time%end
-      if (time%follows_contact) end_of_run = min(max_followed*time%end, max(time%end, past_contact*contact_end))
+      if (time%extends_to_contact_end) end_of_run = min(max_extension*time%end, max(time%end, past_contact*contact_end))
       ! Damping brings the plate to rest from the end of the contact on.
       if (contact_end > 0 .and. central%settle > 0) &
-        end_of_run = max(end_of_run, min(contact_end, max_followed*time%end) + central%settle)
+        end_of_run = max(end_of_run, min(contact_end, max_extension*time%end) + central%settle)
     end associate
   end function end_of_run
 

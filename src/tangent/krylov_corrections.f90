@@ -21,7 +21,7 @@ module krylov_corrections
   !> Relative tolerance of solutions of a load step. Near a limit point a small correction is the difference of two
   !> large solutions: with 1e-3 its error is 1.5 times the correction, and no step converges however short
   !> (input/verify/dcb_ubm.nml).
-  real(wp), parameter :: left_over = 1.0e-6_wp
+  real(wp), parameter :: relative_tolerance = 1.0e-6_wp
 
 contains
 
@@ -122,6 +122,6 @@ contains
     if (allocated(cohesive%tangents)) call tangent%set_skew_part(cohesive%tangents)
     tangent%diagonal = operator%diagonal
     tangent%diagonal(:3, :) = tangent%diagonal(:3, :) + abs(operator%added)
-    call find_krylov_correction(tangent, forces, left_over, solution, error, has_negative_curvature, converged)
+    call find_krylov_correction(tangent, forces, relative_tolerance, solution, error, has_negative_curvature, converged)
   end subroutine solve_load_tangent
 end module krylov_corrections

@@ -42,14 +42,14 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Receives the diagonal, (5, points)
     real(wp), intent(inout) :: diagonal(:, :)
-    real(wp), allocatable :: matrices(:, :, :), turned(:, :, :), motion(:, :)
+    real(wp), allocatable :: matrices(:, :, :), transposed(:, :, :), motion(:, :)
     real(wp) :: consistent_factor
     integer :: b, lane, point, column
 
     diagonal = 0
     consistent_factor = mass_factor
     if (allocated(model%lumped)) consistent_factor = 0
-    allocate (matrices(lanes, 45, 45), turned(45, 45, lanes))
+    allocate (matrices(lanes, 45, 45), transposed(45, 45, lanes))
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
       if (allocated(model%free)) then
@@ -60,11 +60,11 @@ contains
                      consistent_factor, matrices)
       end if
       do column = 1, 45
-        turned(:, column, :) = transpose(matrices(:, :, column))
+        transposed(:, column, :) = transpose(matrices(:, :, column))
       end do
       do lane = 1, model%elements%lanes_used(b)
         call add_block(model, numbering, model%distribution%connectivity(:, first_element(b) + lane - 1), &
-                       turned(:, :, lane), solver, diagonal, first_element(b) + lane - 1)
+                       transposed(:, :, lane), solver, diagonal, first_element(b) + lane - 1)
       end do
     end do
     if (allocated(model%lumped)) then
@@ -116,7 +116,7 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Receives their diagonal
     real(wp), intent(inout) :: diagonal(:, :)
-    real(wp), allocatable :: of_node(:)
+    real(wp), allocatable :: coefficients(:)
     real(wp) :: spring
     integer :: i, node, column
 
@@ -125,11 +125,11 @@ contains
         if (.not. line%load%prescribed) cycle
         do node = 1, size(line%weight)
           associate (first => line%first(node), last => line%first(node + 1) - 1)
-            of_node = reshape(line%coefficient(:, first:last), [5*(last - first + 1)])
+            coefficients = reshape(line%coefficient(:, first:last), [5*(last - first + 1)])
             spring = line%share*line%stiffness*line%weight(node)
             call add_to(numbering, line%point(first:last), spring*reshape( &
-                        [(of_node(column)*of_node, column=1, size(of_node))], [size(of_node), size(of_node)]), &
-                        solver, diagonal)
+                        [(coefficients(column)*coefficients, column=1, size(coefficients))], &
+                        [size(coefficients), size(coefficients)]), solver, diagonal)
           end associate
         end do
       end associate

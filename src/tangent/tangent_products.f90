@@ -140,7 +140,7 @@ contains
     logical, allocatable, intent(in) :: cohesive(:)
     !> Their tangents times the factor of stiffness, (3, 3, points); used with `cohesive` only
     real(wp), intent(in) :: tangents(:, :, :)
-    real(wp) :: some
+    real(wp) :: softening
     integer :: i, k
 
     allocate (self%jumps(3, 3, self%operator%numbering%owned), source=0.0_wp)
@@ -160,9 +160,9 @@ contains
       end do
     end do
     call drop_if_zero(self)
-    some = merge(1.0_wp, 0.0_wp, self%softens)
-    call self%model%communicator%maximum(some)
-    self%softens = some > 0
+    softening = merge(1.0_wp, 0.0_wp, self%softens)
+    call self%model%communicator%maximum(softening)
+    self%softens = softening > 0
   end subroutine set_jump_stiffness
 
   !> Sets the skew-symmetric parts of the tangents of cohesive laws. Collective.
@@ -208,7 +208,7 @@ contains
     real(wp), intent(in) :: motion(:, :)
     !> Forces at the owned points, (5, points); overwritten
     real(wp), intent(inout) :: force(:, :)
-    real(wp), allocatable :: columns(:, :), lines(:, :), still(:, :)
+    real(wp), allocatable :: columns(:, :), lines(:, :), zero_motion(:, :)
     real(wp) :: energy
 
     associate (model => self%model)
@@ -222,9 +222,9 @@ contains
       call model%rig%add_line_forces(motion, force, energy)
       force = self%stiffness_factor*force
       if (size(model%lines) == 0) return
-      allocate (lines, still, mold=force)
-      still = 0
-      call model%line_forces(still, 0.0_wp, lines, prescribed=.true.)
+      allocate (lines, zero_motion, mold=force)
+      zero_motion = 0
+      call model%line_forces(zero_motion, 0.0_wp, lines, prescribed=.true.)
       force = force + lines
       call model%line_forces(motion, 0.0_wp, lines, prescribed=.true.)
       force = force - lines
