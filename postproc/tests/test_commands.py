@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
+from implam_post.exchange.export import to_abaqus, to_nastran
 from implam_post.io.errors import FileError
 from implam_post.io.history import ENERGIES, read_history
 from implam_post.plot import command as plot
+from implam_post.plot import movie
 from implam_post.reference import check_impact
 from implam_post.reference.semi_analytic import semi_analytic
+from implam_post.regress import command as regress
 from implam_post.regress import compare
 from implam_post.regress.expectations import read_expectations
 from implam_post.report import command as report
@@ -117,6 +120,18 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.run_quietly(check_impact.main, self.folder / "none.nml")[0], 4)
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--history", self.folder / "no.csv")[0], 4)
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--modes", "0")[0], 1)
+
+    def test_numbers_out_of_range(self) -> None:
+        """A number that makes no sense is wrong usage, before any file is read."""
+        for command, *words in ((movie.main, "--rate", "0"), (movie.main, "--rate", "1e-300"),
+                                (plot.main, "--dpi", "0"), (plot.main, "--history", "none.csv", "--times", "nan"),
+                                (to_abaqus, "--pressure", "inf"), (to_nastran, "--time", "nan"),
+                                (check_impact.main, "--tolerance", "nan"), (regress.main, "--timeout", "-1")):
+            words = [self.folder / "none.h5", *words]
+            with self.subTest(words=words):
+                code, text = self.run_quietly(command, *words)
+                self.assertEqual(code, 1, text)
+                self.assertNotIn("Traceback", text)
 
     def expect(self, text: str) -> tuple[int, str]:
         """Run the comparison with these expectations."""

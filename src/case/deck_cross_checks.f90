@@ -26,9 +26,8 @@ module deck_cross_checks
   use support_deck, only: check_static_rigs, support_group
   use short_numbers, only: short_text
   use static_deck, only: static_group, key_dissipation
-  use stepping_parameters, only: is_explicit
   use text, only: line_t, append, joined, words_of
-  use time_deck, only: time_group
+  use time_deck, only: key_settle, time_group
   implicit none
   private
   public :: check_across_groups
@@ -113,6 +112,8 @@ contains
     end if
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
                      keys_of_motion(deck%settings), 'has no effect where the travel is given.')
+    call remark_idle(deck%settings, problems, time_group, key_settle, &
+                     'has no effect where the travel is given: the impactor does not leave the plate.')
   end subroutine check_travel_in_time
 
   !> True if a line moves or loads the plate.

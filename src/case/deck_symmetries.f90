@@ -127,13 +127,14 @@ contains
     end do
   end function smallest_part
 
-  !> Sets the symmetry that is enforced on a full plate during failure; without failure it is preserved anyway.
+  !> Sets the symmetry that is enforced on a full plate during failure; without failure it is preserved anyway. A state
+  !> that another run has left need not be symmetric.
   subroutine note_symmetry(deck)
     !> The deck, checked
     type(deck_t), intent(inout) :: deck
 
-    if (deck%plate%symmetry == symmetry_none .and. (deck%has_ply_damage .or. size(deck%delaminations) > 0)) &
-      deck%plate%kept = smallest_part(deck)
+    if (deck%plate%symmetry /= symmetry_none .or. deck%initial%is_inherited) return
+    if (deck%has_ply_damage .or. size(deck%delaminations) > 0) deck%plate%kept = smallest_part(deck)
   end subroutine note_symmetry
 
   !> True if a part of the plate suffices.

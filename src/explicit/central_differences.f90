@@ -127,7 +127,7 @@ contains
     self%lines = create_line_steps(model, self%inertia)
     call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
-    call self%impact%patch%gather(model, self%inertia%inverse(7, :))
+    call self%impact%patch%gather(model, self%inertia)
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
               self%strain(lanes, model%elements%batches), source=0.0_wp)
     self%initial_work = now%ledger%external_work
@@ -244,7 +244,7 @@ contains
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
     call self%circles%prepare(model, self%inertia%inverse(7, :))
-    call self%impact%patch%gather(model, self%inertia%inverse(7, :))
+    call self%impact%patch%gather(model, self%inertia)
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
     self%prepared = self%steps
   end subroutine prepare
@@ -268,10 +268,8 @@ contains
         call self%lines%prescribe(p, v(:, p))
         call self%lines%react(p, self%steps, self%inertia%mass(:, p), before, v(:, p), self%force(:, p))
       end if
-      if (self%rigs%on_frame(p)) then
-        if (u(3, p) + self%steps%now*v(3, p) > 0 .or. self%rigs%reaction(p) > 0) &
-          call self%rigs%stop_at_frame(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
-      end if
+      if (self%rigs%on_frame(p)) &
+        call self%rigs%stop_at_frame(p, self%steps, self%inertia%inverse(7, p), u(3, p), v(3, p))
       u(:, p) = u(:, p) + self%steps%now*v(:, p)
     end do
   end subroutine move_single

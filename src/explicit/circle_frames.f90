@@ -1,8 +1,10 @@
 !> Frames with a circular window in steps by central differences: w is constrained where the edge of the window crosses
 !> the sides of cells, as a weighted mean of three nodes each. The reactions at all of these points are found together,
-!> from a constant matrix.
+!> from a constant matrix. A node that moves as an image of another one stands for that one, whose inertia is that of
+!> both.
 module circle_frames
   use dense_systems, only: pseudo_inverse
+  use dependent_points, only: find_masters
   use kinds, only: wp
   use models, only: model_t
   use rigs, only: crossing_t, circle_crossings
@@ -57,10 +59,29 @@ contains
         end do
       end do
     end if
+    if (size(self%rig) > 0) call replace_dependents(model, self%points)
     self%local = reshape(model%distribution%local([self%points]), shape(self%points))
     where (self%local > model%distribution%owned) self%local = 0
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
+
+  !> Replaces points that move as images by those that they depend on; w is the same at both.
+  subroutine replace_dependents(model, points)
+    type(model_t), intent(in) :: model
+    !> Mesh points, (3, crossings)
+    integer, intent(inout) :: points(:, :)
+    integer :: master(model%mesh%points()), i, k
+    real(wp) :: signs(5, model%mesh%points())
+    logical :: fixed(5, model%mesh%points())
+
+    fixed = .false.
+    call find_masters(model%mesh, master, signs, fixed, model%images)
+    do i = 1, size(points, 2)
+      do k = 1, size(points, 1)
+        if (master(points(k, i)) > 0) points(k, i) = master(points(k, i))
+      end do
+    end do
+  end subroutine replace_dependents
 
   !> Computes the matrix for an inertia. Collective.
   subroutine prepare(self, model, inverse)

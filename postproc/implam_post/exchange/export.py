@@ -8,7 +8,7 @@ from implam_post.exchange.abaqus import abaqus_input
 from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, finite, run
 
 
 def summary(panel: Panel) -> Iterator[str]:
@@ -43,9 +43,9 @@ def _parser(name: str, what: str) -> CommandParser:
     parser.add_argument("source", type=Path, metavar="RESULT.h5|DECK.nml", help="results of a run, or a deck")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
                         help="the file written (default: beside the source)")
-    parser.add_argument("--time", type=float, metavar="TIME", help="time of the results (default: the last)")
-    parser.add_argument("--pressure", type=float, metavar="VALUE", help="uniform pressure on the struck face, positive "
-                        "towards the back (default: that of the deck)")
+    parser.add_argument("--time", type=finite, metavar="TIME", help="time of the results (default: the last)")
+    parser.add_argument("--pressure", type=finite, metavar="VALUE", help="uniform pressure on the struck face, "
+                        "positive towards the back (default: that of the deck)")
     return parser
 
 

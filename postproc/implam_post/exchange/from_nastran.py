@@ -1,7 +1,6 @@
 """Turn the bulk data of a rectangular panel into a deck (`implam-from-nastran FILE.bdf`)."""
 
 import argparse
-import math
 import re
 import warnings
 from collections.abc import Iterator, Sequence
@@ -16,7 +15,7 @@ from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, run
 from implam_post.laminate.sections import Ply
 
 TAKEN = KNOWN
@@ -96,14 +95,6 @@ def _command(options: argparse.Namespace) -> int:
     return EXIT_DONE
 
 
-def _positive(text: str) -> float:
-    """Return a finite number greater than zero."""
-    value = float(text)
-    if not (math.isfinite(value) and value > 0):
-        raise argparse.ArgumentTypeError(f"{text} isn't a number greater than zero")
-    return value
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-from-nastran", description="Turn Nastran's bulk data of a rectangular composite "
@@ -113,11 +104,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--struck", choices=("first", "last"), default="first",
                         help="ply of the face that is struck, as the property counts them (default: first)")
     parser.add_argument("--spc", type=int, metavar="SET", help="set of supports (default: that of the case control)")
-    parser.add_argument("--g2z", type=_positive, metavar="NUMBER",
+    parser.add_argument("--g2z", type=positive, metavar="NUMBER",
                         help="transverse shear modulus of the plies whose G2Z is blank")
     for key, words in (("mass", "mass of the impactor"), ("velocity", "its speed"), ("radius", "radius of its nose"),
                        ("end", "end of the run"), ("step", "time step")):
-        parser.add_argument(f"--{key}", type=_positive, metavar="NUMBER", help=f"{words}, in the file's units")
+        parser.add_argument(f"--{key}", type=positive, metavar="NUMBER", help=f"{words}, in the file's units")
     return run(_command, parser, arguments)
 
 

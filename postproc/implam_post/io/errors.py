@@ -1,6 +1,7 @@
 """Errors reported to the user in one sentence, and the exit codes they lead to (those of the solver)."""
 
 import argparse
+import math
 import sys
 from collections.abc import Callable, Sequence
 from typing import Never
@@ -40,6 +41,22 @@ def count(text: str) -> int:
     number = int(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} isn't greater than zero")
+    return number
+
+
+def finite(text: str) -> float:
+    """Return a finite number, out of a command line."""
+    number = float(text)
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"{text} isn't a finite number")
+    return number
+
+
+def positive(text: str) -> float:
+    """Return a finite number greater than zero, out of a command line."""
+    number = float(text)
+    if not (math.isfinite(number) and number > 0):
+        raise argparse.ArgumentTypeError(f"{text} isn't a number greater than zero")
     return number
 
 

@@ -151,14 +151,25 @@ class Fields:
         They hold the largest shares of dissipated toughness, and have the area dissipated.
         """
         if (place, below_ply) not in self._found:
-            snapshot = self.snapshots[place]
+            snapshot = self._snapshot(place, below_ply)
             own = snapshot.of_interface(below_ply)
             self._found[place, below_ply] = self.full_plate(region(snapshot.mesh.corners[own], snapshot.shares[own]))
         return self._found[place, below_ply]
 
+    def _snapshot(self, place: int, below_ply: int | None = None) -> Snapshot:
+        """Return one of the times; a place or an interface that the file does not hold is refused."""
+        count = len(self.snapshots)
+        if not -count <= place < count:
+            raise ImplamError(f"{self.name} has no time at place {place}: it has {count}, from 0 to {count - 1}.")
+        known = sorted({ply for each in self.snapshots for ply in (*each.mesh.interfaces, *each.interfaces)})
+        if below_ply is not None and below_ply not in known:
+            raise ImplamError(f"{self.name} has no interface below ply {below_ply}; it has "
+                              f"{', '.join(map(str, known)) or 'none'}.")
+        return self.snapshots[place]
+
     def projected(self, place: int) -> np.ndarray:
         """Return what a C-scan sees of all interfaces at one of the times, as polygons of the full plate."""
-        return self.full_plate(region(*self.snapshots[place].projected()))
+        return self.full_plate(region(*self._snapshot(place).projected()))
 
     def projected_depths(self, place: int) -> list[np.ndarray]:
         """Return what each interface has of the region that a C-scan sees, as polygons of the full plate."""
@@ -174,7 +185,7 @@ class Fields:
 
     def interface(self, place: int, below_ply: int) -> Interface:
         """Return the figures of an interface at one of the times; from its polygons where the file holds none."""
-        snapshot = self.snapshots[place]
+        snapshot = self._snapshot(place, below_ply)
         if below_ply in snapshot.interfaces:
             return snapshot.interfaces[below_ply]
         cells = self.delaminated(place, below_ply)
@@ -183,7 +194,7 @@ class Fields:
 
     def projected_area(self, place: int) -> float:
         """Return the area that a C-scan sees at one of the times."""
-        found = self.snapshots[place].projected_area
+        found = self._snapshot(place).projected_area
         return area(self.projected(place)) if found is None else found
 
 

@@ -95,8 +95,19 @@ def contact_duration(history: History) -> float:
 
 
 def impact_energy(history: History) -> float:
-    """Return the energy the impactor brings: all that is there in the first row, less the pressure's work."""
-    return float(sum(history[column][0] for column in ENERGIES) - history["work_external"][0])
+    """Return the energy the impactor brings: what it has left in the first row, and what it has given by then.
+
+    That is all else in the first row, less the work of pressure and lines, unless it exceeds twice what the contact
+    force can have done, which grows from 0. The plate has had the excess before, of residual stress or of lines that
+    are fixed; the work is then that of a force in proportion to displacement**1.5, as at first touch by Hertz's law.
+    """
+    left = float(history["energy_impactor"][0])
+    given = float(sum(history[column][0] for column in ENERGIES) - history["work_external"][0]) - left
+    if "impactor_displacement" in history.columns:
+        most = float(history["force"][0] * history["impactor_displacement"][0])
+        if given > 2 * most:
+            return left + 0.4 * most
+    return left + given
 
 
 def absorbed_energy(history: History) -> float:

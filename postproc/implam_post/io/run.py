@@ -45,7 +45,7 @@ class Field:
 
 
 class Summary(dict[str, Any]):
-    """Members of NAME_summary.json; one that is not there is a fault of the file."""
+    """Members of NAME_summary.json; one that is not there is reported with the file."""
 
     def __init__(self, members: Mapping[str, Any], path: Path) -> None:
         """Keep the members."""
@@ -54,7 +54,7 @@ class Summary(dict[str, Any]):
 
     def __missing__(self, name: str) -> object:
         """Report what is missing."""
-        raise FileError(f"{self.path} isn't a summary written by implam, or it is damaged (it lacks '{name}').")
+        raise FileError(f"{self.path} lacks '{name}': the run has no such figure, or the file is damaged.")
 
 
 class Run:

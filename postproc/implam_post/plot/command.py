@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, finite, run
 from implam_post.plot.style import FORMATS, PictureStyle, add_options, style_of
 
 
@@ -84,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")
     parser.add_argument("--history", type=Path, metavar="CSV",
                         help="history that goes with NAME.h5 (default: NAME_history.csv beside it)")
-    parser.add_argument("--times", nargs="+", type=float, metavar="TIME",
+    parser.add_argument("--times", nargs="+", type=finite, metavar="TIME",
                         help="times at which the front is drawn (default: up to eight of those written)")
     parser.add_argument("--save", type=Path, metavar="FILE",
                         help="one picture of delamination, force and energies of NAME.h5, instead of all")

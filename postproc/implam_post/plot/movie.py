@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from implam_post.io.compression import STRESS
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, run
 from implam_post.io.fields import Fields, read_fields
 from implam_post.io.history import History, read_history
 from implam_post.plot.compression import is_compressed
@@ -21,6 +21,9 @@ from implam_post.plot.style import PictureStyle, add_options, style_of
 
 # What is drawn against time: without and with lines that compress the plate.
 _LOADS = (("force", "contact force", "force"), (STRESS, "far-field stress", "stress"))
+
+# Least and largest number of pictures per second: files hold whole hundredths or thousandths of a second.
+_RATES = (0.01, 1000.0)
 
 
 def frames(fields: Fields, history: History | None, style: PictureStyle) -> list[Image.Image]:
@@ -57,6 +60,8 @@ def _picture(fields: Fields, history: History | None, style: PictureStyle, momen
 def _command(options: argparse.Namespace) -> int:
     """Draw the movie and say where it is."""
     style = style_of(options, [options.fields])
+    if not _RATES[0] <= options.rate <= _RATES[1]:
+        raise ImplamError(f"--rate takes {_RATES[0]:g} to {_RATES[1]:g}.")
     fields = read_fields(options.fields)
     if not fields.snapshots[-1].mesh.interfaces:
         raise FileError(f"{options.fields} has no interface that may delaminate.")
@@ -79,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                            "with the stress of a compression.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")
     parser.add_argument("--save", type=Path, metavar="FILE", help="file, .gif, .webp or .png (default: NAME.gif)")
-    parser.add_argument("--rate", type=float, default=5.0, help="pictures per second (default: 5)")
+    parser.add_argument("--rate", type=positive, default=5.0, help="pictures per second (default: 5)")
     add_options(parser)
     parser.set_defaults(dpi=80, format="png")
     return run(_command, parser, arguments)

@@ -57,7 +57,7 @@ def style_of(options: argparse.Namespace, results: Iterable[Path]) -> PictureSty
     from implam_post.io.deck import system_of_deck
     from implam_post.io.fields import deck_in
 
-    dots = options.dpi or (80 if getattr(options, "save", None) else 150)
+    dots = (80 if getattr(options, "save", None) else 150) if options.dpi is None else options.dpi
     if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
         raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
     system = options.units or next((name for path in results if (name := system_of_deck(deck_in(path)))), "")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from implam_post.io.deck import Deck, read_deck
-from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, count, run
+from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, count, finite, run
 from implam_post.io.history import History, read_history
 from implam_post.io.quantities import QUANTITIES, contact, peak, rms_force_difference
 from implam_post.reference.semi_analytic import semi_analytic
@@ -113,7 +113,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--modes", type=count, metavar="N",
                         help="odd half-wave numbers along each side with inertia (default: two half waves in a patch)")
     parser.add_argument("--no-plot", action="store_true", help="only print")
-    parser.add_argument("--tolerance", type=float, metavar="FRACTION",
+    parser.add_argument("--tolerance", type=finite, metavar="FRACTION",
                         help="exit with 1 if a difference exceeds this fraction of its scale")
     return run(_command, parser, arguments)
 

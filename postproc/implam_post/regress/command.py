@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, FileError, count, run
+from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, FileError, count, positive, run
 from implam_post.io.files import write_text
 from implam_post.io.program import PROGRAM_HELP, find_program, processors, version_in
 from implam_post.regress.accept import accept, accept_new
@@ -116,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
                         help="runs at a time (default: the number of processors)")
-    parser.add_argument("--timeout", type=float, metavar="SECONDS", help="longest time a run may take")
+    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="longest time a run may take")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the results as JUnit XML")
     parser.add_argument("--accept", action="store_true",
                         help="replace expected values that are not met by the results; tolerances stay, and "

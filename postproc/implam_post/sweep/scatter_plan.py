@@ -93,7 +93,9 @@ class Scatter:
                 for key in keys:
                     if key.lower() in entry:
                         path = KeyPath(group, place if len(groups) > 1 else None, key)
-                        own = [value for given, value in self.keys.items() if _names(given, path)]
+                        # That of a group by its number comes before that of all groups.
+                        own = [value for given, value in sorted(self.keys.items(), key=lambda item: not item[0].number)
+                               if _names(given, path)]
                         yield Input(f"{THICKNESS if kind.name == THICKNESS else path} factor", path, kind.name,
                                     [*own, self.variations.get(kind.name, kind.variation)][0])
 

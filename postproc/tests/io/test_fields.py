@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from implam_post.io.errors import FileError
+from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import area, extents, outline, read_fields
 from implam_post.io.history import ENERGIES, History
 from implam_post.io.quantities import growth_rows
@@ -104,6 +104,17 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(extents(fields.delaminated(2, 2)), (12, 2))
         self.assertEqual(fields.interface(2, 2).extents, (12, 2))
         self.assertAlmostEqual(float(np.mean(fields.delaminated(2, 2))), 0)
+
+    def test_times_and_interfaces_that_are_not_there(self) -> None:
+        """Neither is taken for one without delamination."""
+        fields = read_fields(self.path)
+        for ask in (fields.delaminated, fields.interface):
+            for place, below_ply, sentence in ((0, 1, "no interface below ply 1; it has 2"),
+                                               (3, 2, "place 3: it has 3"), (-4, 2, "from 0 to 2")):
+                with self.subTest(ask=ask.__name__, place=place), self.assertRaisesRegex(ImplamError, sentence):
+                    ask(place, below_ply)
+        for ask in (fields.projected, fields.projected_area):
+            self.assertRaisesRegex(ImplamError, "place 3", ask, 3)
 
     def test_damage_is_no_delamination(self) -> None:
         """Shares count as such: a thousandth is none of a cell, for pictures and panels; figures are the file's.

@@ -79,6 +79,16 @@ class QuantitiesTest(unittest.TestCase):
             for name in ("contact_duration", "absorbed_energy"):
                 self.assertTrue(np.isnan(QUANTITIES[name](one)), name)
 
+    def test_energy_of_the_impactor_on_a_stressed_plate(self) -> None:
+        """The energy that the plate had before the impact, of residual stress, isn't the impactor's."""
+        columns = dict(pulses(2, 8, 0).columns)
+        columns |= {name: np.zeros(3) for name in (*ENERGIES, "work_external")}
+        columns |= {"energy_impactor": np.array([9.96, 1, 5]), "impactor_displacement": np.array([0.05, 1, 0])}
+        for residual in (0.0, 7.0):
+            history = History(columns | {"energy_strain": np.array([residual + 0.04, 9, 5])})
+            self.assertAlmostEqual(QUANTITIES["impact_energy"](history), 10, delta=1e-14)
+            self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history), 5, delta=1e-14)
+
     def test_first_growth(self) -> None:
         """The largest force up to the first growth; without growth, area or a number there is none."""
         columns = dict(pulses(0, 5, 3, 9).columns)

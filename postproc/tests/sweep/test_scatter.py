@@ -92,6 +92,14 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertNotEqual(self.plan("[scatter]\nnumber = 3\nseed = 2\n").cases[0].deck, plain.cases[0].deck)
         self.assertEqual(self.plan("[scatter]\nnumber = 3\n").cases[2].key, plain.cases[2].key)
 
+    def test_variations_of_one_group_and_of_all(self) -> None:
+        """That of a group by its number counts, in whichever order both are given."""
+        for lines in (('"delamination.G_Ic" = 0', '"delamination[2].G_Ic" = 0.1'),
+                      ('"delamination[2].G_Ic" = 0.1', '"delamination[*].G_Ic" = 0')):
+            names = self.plan("\n".join(["[scatter]", "number = 2", *lines])).names
+            self.assertIn("delamination[2].G_Ic factor", names)
+            self.assertNotIn("delamination[1].G_Ic factor", names)
+
     def test_variants_have_the_same_inputs(self) -> None:
         """Factors come upon what a variant sets; groups are left out by their number in the deck."""
         plan = self.plan("""
