@@ -28,6 +28,8 @@ module numberings
     real(wp), allocatable :: signs(:, :)
     !> Points that have the same equations, itself among them, (local points)
     integer, allocatable :: shared_by(:)
+    !> True: the pattern leaves out the coupling of in-plane displacements with bending
+    logical :: is_separate = .false.
     !> Pattern of this rank's rows: start of each row (from 1) and columns (from 0, ascending)
     integer, allocatable :: row_start(:), columns(:)
     !> Point and component of each row of this rank, (2, rows)
@@ -48,7 +50,7 @@ module numberings
 contains
 
   !> Numbers the unconstrained unknowns and finds the pattern of this rank's rows.
-  subroutine number_equations(mesh, distribution, fixed, self, images)
+  subroutine number_equations(mesh, distribution, fixed, self, images, is_separate)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Owners of the points
@@ -59,6 +61,8 @@ contains
     type(numbering_t), intent(out) :: self
     !> Images of the points, each with all of its own on one rank; left out: none
     type(symmetry_images_t), intent(in), optional :: images
+    !> True: in-plane displacements are not coupled with bending; left out: they are
+    logical, intent(in), optional :: is_separate
     real(wp) :: signs(5, mesh%points())
     integer :: equation(5, mesh%points()), master(mesh%points()), point, i
     logical :: free(5, mesh%points()), folded
@@ -96,7 +100,33 @@ contains
     call find_places(self)
     call find_pattern(mesh, equation, mesh%point_node(distribution%points(self%places(1, :))), &
                       self%row_start, self%columns, folded)
+    if (present(is_separate)) self%is_separate = is_separate
+    if (self%is_separate) call drop_coupling(self, equation)
   end subroutine number_equations
+
+  !> Removes the columns of bending from the rows of in-plane displacements, and the reverse.
+  pure subroutine drop_coupling(self, equation)
+    !> The numbering
+    type(numbering_t), intent(inout) :: self
+    !> Equations of every point
+    integer, intent(in) :: equation(:, :)
+    logical :: in_plane(-1:self%total - 1), kept(size(self%columns))
+    integer :: row, i, row_start(size(self%row_start))
+
+    in_plane = .false.
+    do i = 1, size(equation, 2)
+      in_plane(equation(1:2, i)) = .true.
+    end do
+    row_start(1) = 1
+    do row = 1, self%rows
+      associate (first => self%row_start(row), last => self%row_start(row + 1) - 1)
+        kept(first:last) = in_plane(self%columns(first:last)) .eqv. in_plane(self%first_row + row - 1)
+        row_start(row + 1) = row_start(row) + count(kept(first:last))
+      end associate
+    end do
+    self%columns = pack(self%columns, kept)
+    self%row_start = row_start
+  end subroutine drop_coupling
 
   !> Point and component of each row.
   pure subroutine find_places(self)

@@ -28,7 +28,10 @@ module model_building
   use symmetry_images, only: find_images
   implicit none
   private
-  public :: create_model, zones_of, is_membrane_idle
+  public :: create_model, zones_of, is_membrane_idle, uncoupled
+
+  !> Coupling of membrane and bending that consists of round-off, relative to what it couples
+  real(wp), parameter :: round_off = 1.0e-12_wp
 
   !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its effect on the deflection
   !> is far below round-off and tolerance, and the conditioning of the matrix is that of tied jumps.
@@ -91,19 +94,29 @@ contains
     type(section_t), intent(in) :: section
 
     idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_ply_damage &
-             .or. setup%has_thermal) .and. uncoupled(section) .and. .not. any(lines_in_plane(setup))
+             .or. setup%has_thermal) .and. .not. any(lines_in_plane(setup))
+    idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
   end function is_membrane_idle
 
-  !> True if membrane and bending are uncoupled.
-  pure logical function uncoupled(section)
-    !> The laminate's section
-    type(section_t), intent(in) :: section
-    real(wp) :: scale
+  !> True if membrane and bending are uncoupled: what couples them is round-off.
+  pure logical function uncoupled(stiffness, mass)
+    !> Stiffness of sections, (any, 21, any)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Their I0, I1, I2, (any, 3, any)
+    real(wp), intent(in) :: mass(:, :, :)
 
-    scale = sqrt(maxval(abs(section%stiffness(1:6)))*maxval(abs(section%stiffness(13:18))))
-    uncoupled = all(abs(section%stiffness(7:12)) <= 1.0e-12_wp*scale) .and. &
-                abs(section%mass(2)) <= 1.0e-12_wp*sqrt(section%mass(1)*section%mass(3))
+    uncoupled = largest(stiffness(:, 7:12, :)) <= round_off*sqrt(largest(stiffness(:, 1:6, :)) &
+                                                                 *largest(stiffness(:, 13:18, :))) &
+                .and. largest(mass(:, 2:2, :)) <= round_off*sqrt(largest(mass(:, 1:1, :))*largest(mass(:, 3:3, :)))
   end function uncoupled
+
+  !> Largest magnitude, 0 of none.
+  pure real(wp) function largest(values)
+    !> The values
+    real(wp), intent(in) :: values(:, :, :)
+
+    largest = maxval([0.0_wp, abs(values)])
+  end function largest
 
   !> In-plane rigid-body motions of a static plate without support: along x, along y, rotation.
   pure function unrestrained(setup)

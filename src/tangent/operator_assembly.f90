@@ -6,13 +6,14 @@ module operator_assembly
   use element_batches, only: lanes, first_element
   use element_tangents, only: tangent
   use linear_solvers, only: linear_solver_t
-  use plate_options, only: kinematics_linear
+  use plate_options, only: kinematics_linear, kinematics_von_karman
   use delamination_parameters, only: law_cohesive
   use numberings, only: numbering_t
+  use model_building, only: uncoupled
   use models, only: model_t
   implicit none
   private
-  public :: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite
+  public :: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite, has_separate_membrane
 
 contains
 
@@ -25,6 +26,20 @@ contains
     if (.not. model%setup%has_inertia() .and. model%map%layered) &
       positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
   end function is_positive_definite
+
+  !> True if the tangent does not couple in-plane displacements with bending: an undeflected plate of a symmetric
+  !> laminate. Both then have factors of their own, which are half as large as one for both. Collective.
+  logical function has_separate_membrane(model, stiffness, displacement) result(separate)
+    type(model_t), intent(in) :: model
+    !> Section stiffness of the damaged elements, (lanes, 21, batches)
+    real(wp), intent(in) :: stiffness(:, :, :)
+    !> Displacement at which the tangent is taken, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+
+    separate = .not. (model%membrane_idle .or. model%map%layered .or. size(model%lines) > 0)
+    if (model%setup%kinematics == kinematics_von_karman) separate = separate .and. all(abs(displacement(3, :)) <= 0)
+    separate = model%communicator%all(separate .and. uncoupled(stiffness, model%elements%mass))
+  end function has_separate_membrane
 
   !> Adds the element matrices and a lumped mass to a cleared solver; diagonals of ghosts are added to their owners.
   subroutine assemble_elements(model, stiffness, numbering, displacement, stiffness_factor, mass_factor, solver, &
@@ -183,10 +198,9 @@ contains
 
     if (any(numbering%master(points) > 0)) then
       signs = [(merge(numbering%signs(:, points(a)), 1.0_wp, numbering%master(points(a)) > 0), a=1, size(points))]
-      call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), &
-                      matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)))
+      call add_parts(numbering, points, matrix*spread(signs, 1, size(signs))*spread(signs, 2, size(signs)), solver)
     else
-      call solver%matrix%add(reshape(numbering%equation(:, points), [5*size(points)]), matrix, element)
+      call add_parts(numbering, points, matrix, solver, element)
     end if
     do a = 1, size(points)
       do component = 1, 5
@@ -195,6 +209,35 @@ contains
       end do
     end do
   end subroutine add_to
+
+  !> Adds a matrix of the unknowns of some points: in-plane displacements and bending apart if they are separate.
+  subroutine add_parts(numbering, points, matrix, solver, element)
+    !> Equations
+    type(numbering_t), intent(in) :: numbering
+    !> The points
+    integer, intent(in) :: points(:)
+    !> Matrix, five rows a point
+    real(wp), intent(in) :: matrix(:, :)
+    !> Receives the matrix
+    class(linear_solver_t), intent(inout) :: solver
+    !> Number of the element whose matrix it is
+    integer, intent(in), optional :: element
+    integer :: equation(5, size(points)), part
+    integer, allocatable :: number
+
+    if (present(element)) number = element
+    equation = numbering%equation(:, points)
+    do part = 1, merge(2, 1, numbering%is_separate)
+      if (numbering%is_separate) then
+        equation = -1
+        associate (first => merge(1, 3, part == 1), last => merge(2, 5, part == 1))
+          equation(first:last, :) = numbering%equation(first:last, points)
+        end associate
+        if (present(element)) number = 2*(element - 1) + part
+      end if
+      call solver%matrix%add(reshape(equation, [size(equation)]), matrix, number)
+    end do
+  end subroutine add_parts
 
   !> Adds stiffness to the diagonals of the jumps, and of w and the clamped unknowns on rigs.
   subroutine assemble_diagonal(model, numbering, added, solver)

@@ -13,7 +13,8 @@ module tangent_operators
   use numberings, only: numbering_t, number_equations
   use models, only: model_t
   use states, only: state_t
-  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite
+  use operator_assembly, only: assemble_elements, assemble_diagonal, assemble_tangents, is_positive_definite, &
+                               has_separate_membrane
   implicit none
   private
   public :: tangent_operator_t
@@ -89,19 +90,32 @@ contains
     self%diagonal = self%displacement
     self%added = self%displacement(:3, :)
     self%stiffness = model%elements%stiffness
-    call number_equations(model%mesh, model%distribution, model%fixed, self%numbering, model%images)
     self%timers%profile = model%profile
     allocate (self%solver)
     self%solver%factorization = factorization
+    call set_pattern(self, model, has_separate_membrane(model, self%stiffness, self%displacement), error)
+    if (allocated(error)) return
+    allocate (self%response_rows(self%numbering%rows), source=0.0_wp)
+  end subroutine create
+
+  !> Numbers the equations and creates the matrix.
+  subroutine set_pattern(self, model, is_separate, error)
+    !> The operator
+    class(tangent_operator_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> True: in-plane displacements are not coupled with bending
+    logical, intent(in) :: is_separate
+    !> Set if the solver cannot be created
+    type(error_t), allocatable, intent(inout) :: error
+
+    call number_equations(model%mesh, model%distribution, model%fixed, self%numbering, model%images, is_separate)
     associate (numbering => self%numbering)
       call self%solver%define(model%communicator, numbering%first_row, numbering%total, numbering%row_start, &
                               numbering%columns, is_positive_definite(model), error)
     end associate
-    if (allocated(error)) return
     ! The solver has its own copy of this large list.
     deallocate (self%numbering%columns)
-    allocate (self%response_rows(self%numbering%rows), source=0.0_wp)
-  end subroutine create
+  end subroutine set_pattern
 
   !> Assembles and factorizes the operator at a state, and computes the unit-load solution.
   subroutine renew(self, model, state, stiffness_factor, mass_factor, error)
@@ -120,7 +134,8 @@ contains
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
-    call assemble(self, model)
+    call assemble(self, model, error)
+    if (allocated(error)) return
     if (allocated(state%interfaces%cohesive%tangents)) &
       call assemble_tangents(model, self%numbering, state%interfaces%cohesive%tangents, self%solver)
     call state%interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
@@ -267,21 +282,27 @@ contains
     if (model%setup%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
     if (archive%loading .and. self%ready) then
       call model%halo%update(self%displacement)
-      call assemble(self, model)
-      call self%factorize(model, contact, error)
+      call assemble(self, model, error)
+      if (.not. allocated(error)) call self%factorize(model, contact, error)
     end if
     call archive%item('operator/factorizations', self%factorizations)
     call archive%item('operator/solves', self%solves)
   end subroutine visit
 
   !> Assembles the elements at the displacement at which the tangent is taken.
-  subroutine assemble(self, model)
+  subroutine assemble(self, model, error)
     !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    !> Set if a matrix with another pattern cannot be created
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: is_separate
 
+    is_separate = has_separate_membrane(model, self%stiffness, self%displacement)
+    if (is_separate .neqv. self%numbering%is_separate) call set_pattern(self, model, is_separate, error)
+    if (allocated(error)) return
     self%deflection = model%deflection(self%displacement)
-    call self%solver%matrix%clear(size(model%distribution%connectivity, 2))
+    call self%solver%matrix%clear(merge(2, 1, is_separate)*size(model%distribution%connectivity, 2))
     call assemble_elements(model, self%stiffness, self%numbering, self%displacement, self%stiffness_factor, &
                            self%mass_factor, self%solver, self%diagonal)
   end subroutine assemble
