@@ -20,7 +20,7 @@ module initial_states
   use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
   use mapped_figures, only: after_mapping, before_mapping, mapped_figures_t
-  use mapped_interfaces, only: limit_jumps, put_fractions, set_damage, set_slips
+  use mapped_interfaces, only: put_fractions, set_damage, set_slips
   use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
@@ -209,7 +209,6 @@ contains
     if (.not. is_mapped(deck, old)) return
     associate (now => stepper%now)
       call set_damage(now%interfaces%cohesive, model)
-      call limit_jumps(now%interfaces%cohesive, model, now%motion%displacement)
       call set_slips(now%interfaces%cohesive, model, now%motion%displacement)
     end associate
   end subroutine load_transfer

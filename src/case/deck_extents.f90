@@ -20,6 +20,7 @@ module deck_extents
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
   use mesh_parameters, only: is_halved, is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
+  use short_numbers, only: short_text
   use text, only: line_t, to_text
   implicit none
   private
@@ -124,11 +125,12 @@ contains
     shorter = minval(deck%plate%length)
     longer = maxval(deck%plate%length)
     if (thickness > shorter) then
-      call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
-                ' thick, more than the plate is wide; this is no plate.')
+      call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
+                  short_text(thickness)//' thick, more than the plate is wide; this is no plate.')
     else if (longer > max_slenderness*thickness*(1 + rounded_off)) then
-      call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '//to_text(thickness)// &
-                ' thick, less than '//to_text(1/max_slenderness)//' of the plate''s length, where rounding spoils it.')
+      call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
+                  short_text(thickness)//' thick, less than '//to_text(1/max_slenderness)// &
+                  ' of the plate''s length, where rounding spoils it.')
     else if (thickness*min_slenderness > shorter) then
       call remark(deck%settings, problems, laminate_group, key_thicknesses, 'the plate is less than '// &
                   to_text(min_slenderness)//' thicknesses wide; plate theory is inaccurate there.')

@@ -8,7 +8,6 @@ module struck_patches
   use contact_areas, only: edge_gap
   use kinds, only: wp
   use models, only: model_t
-  use nodal_inertia, only: along_z, nodal_inertia_t
   implicit none
   private
   public :: struck_patch_t, create_struck_patch
@@ -110,29 +109,19 @@ contains
     struck = list(size(list))
   end subroutine find_deflections
 
-  !> Gathers the inverse inertia of the points from their ranks. The inertia of points that move as images of each other
-  !> is that of all of them together (`nodal_inertia`): the part of each is taken. Collective.
-  subroutine gather(self, model, inertia)
+  !> Gathers the inverse inertia of the points from their ranks. Collective.
+  subroutine gather(self, model, inverse)
     !> The points
     class(struck_patch_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Lumped inertia of this rank's points
-    type(nodal_inertia_t), intent(in) :: inertia
-    integer :: master(size(inertia%inverse, 2)), reached(size(inertia%inverse, 2)), i
+    !> Inverse inertia of w, (points)
+    real(wp), intent(in) :: inverse(:)
+    integer :: i
 
-    master = [(i, i=1, size(master))]
-    master(inertia%dependents) = inertia%masters
-    reached = 0
-    do i = 1, size(self%local)
-      if (self%local(i) > 0) reached(master(self%local(i))) = reached(master(self%local(i))) + 1
-    end do
     if (.not. allocated(self%inverse)) allocate (self%inverse(size(self%local)))
     self%inverse = 0
     do i = 1, size(self%local)
-      if (self%local(i) == 0) cycle
-      associate (p => master(self%local(i)))
-        self%inverse(i) = reached(p)*inertia%inverse(along_z, p)
-      end associate
+      if (self%local(i) > 0) self%inverse(i) = inverse(self%local(i))
     end do
     call model%communicator%sum(self%inverse)
   end subroutine gather
