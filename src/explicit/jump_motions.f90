@@ -11,7 +11,7 @@ module jump_motions
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use models, only: model_t
-  use stack_solutions, only: rubbing_t
+  use stack_solutions, only: friction_t
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: memory
   implicit none
@@ -79,7 +79,7 @@ contains
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Friction, (n)
-    type(rubbing_t), intent(in) :: friction(:)
+    type(friction_t), intent(in) :: friction(:)
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)
     !> The interfaces
@@ -156,7 +156,7 @@ contains
   !> Slip of faces, and the change of their elastic jumps.
   pure subroutine slip_faces(friction, jumps, old, new, sticking, change)
     !> Friction in the step
-    type(rubbing_t), intent(in) :: friction
+    type(friction_t), intent(in) :: friction
     !> Tangential jumps at the end
     real(wp), intent(in) :: jumps(2)
     !> The faces at the start

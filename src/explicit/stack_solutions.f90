@@ -10,10 +10,10 @@ module stack_solutions
   use weighted_jumps, only: newest
   implicit none
   private
-  public :: rubbing_t, stack_t, jumps_of, solve_openings, solve_shears
+  public :: friction_t, stack_t, jumps_of, solve_openings, solve_shears
 
   !> Friction of an interface in a step.
-  type :: rubbing_t
+  type :: friction_t
     !> Coefficient of friction
     real(wp) :: coefficient = 0
     !> Friction limit of this step, force
@@ -24,7 +24,7 @@ module stack_solutions
     real(wp) :: force(2) = 0
     !> True: slips in this step
     logical :: slips = .false.
-  end type rubbing_t
+  end type friction_t
 
   !> The interfaces of one node in a step, from the struck side downwards, (n) each.
   type :: stack_t
@@ -45,7 +45,7 @@ module stack_solutions
     !> True: faces do not penetrate each other
     logical, allocatable :: closing(:)
     !> Friction
-    type(rubbing_t), allocatable :: friction(:)
+    type(friction_t), allocatable :: friction(:)
     !> Forces on the jumps, (3, n)
     real(wp), allocatable :: forces(:, :)
     !> Force per opening with the contacts found, (n)
@@ -148,7 +148,7 @@ contains
   !> Friction force of an elastic jump, returned to the limit.
   pure subroutine return_to_limit(friction, stiffness, elastic)
     !> The friction of an interface; receives force and elastic jumps
-    type(rubbing_t), intent(inout) :: friction
+    type(friction_t), intent(inout) :: friction
     !> Stiffness of sticking faces, force per jump
     real(wp), intent(in) :: stiffness
     !> Elastic jumps at the end of the step if the faces stick
