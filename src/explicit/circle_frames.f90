@@ -1,6 +1,6 @@
 !> Frames with a circular window in steps by central differences: w is constrained where the edge of the window crosses
-!> the sides of cells, as a weighted mean of three nodes each. The reactions at all of these points are found together,
-!> from a constant matrix. A node that moves as an image of another one stands for that one, whose inertia is that of
+!> the sides of cells, as a weighted mean of three nodes each. The frame holds both faces, so that the layers of a node
+!> move together. The reactions at all of these points are found together, from a constant matrix. A node that moves as an image of another one stands for that one, whose inertia is that of
 !> both.
 module circle_frames
   use dense_systems, only: pseudo_inverse
@@ -88,13 +88,13 @@ contains
     !> The points
     class(circle_frames_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Inverse inertia of w, (points)
+    !> Inverse inertia of w of the layers, (points)
     real(wp), intent(in) :: inverse(:)
     real(wp) :: matrix(size(self%rig), size(self%rig)), scale(size(self%rig))
     integer :: i, j, k, l
 
     if (size(self%rig) == 0) return
-    self%inverse = gathered(self, model, inverse)
+    self%inverse = gathered(self, model, inverse_of_nodes(model%map%above, inverse))
     matrix = 0
     do j = 1, size(self%rig)
       do i = 1, size(self%rig)
@@ -120,6 +120,31 @@ contains
       self%stiffness(:, j) = scale*self%stiffness(:, j)*scale(j)
     end do
   end subroutine prepare
+
+  !> Inverse inertia of w of all layers of a node together, at its first point.
+  pure function inverse_of_nodes(above, inverse) result(together)
+    !> Point of the layer above each point; 0: none
+    integer, intent(in) :: above(:)
+    !> Inverse inertia of w of the layers, (points); 0 where a layer is fixed
+    real(wp), intent(in) :: inverse(:)
+    !> (points)
+    real(wp) :: together(size(inverse))
+    integer :: i, first(size(inverse))
+
+    together = inverse
+    do i = 1, size(inverse)
+      first(i) = i
+      if (above(i) == 0) cycle
+      first(i) = first(above(i))
+      associate (sum => together(first(i)))
+        if (sum > 0 .and. inverse(i) > 0) then
+          sum = sum*inverse(i)/(sum + inverse(i))
+        else
+          sum = 0
+        end if
+      end associate
+    end do
+  end function inverse_of_nodes
 
   !> Values at the nodes of all points, the same on every rank. Collective.
   function gathered(self, model, values)

@@ -24,7 +24,7 @@ contains
     !> 0 for rigs that the deck does not have
     real(wp) :: reactions(max_supports)
     type(exact_sum_t) :: sums(max_supports)
-    integer :: i
+    integer :: i, layer
 
     reactions = 0
     if (.not. allocated(model%rig%constrained_by)) return
@@ -32,8 +32,9 @@ contains
       associate (constrained_by => model%rig%constrained_by(i), on_frame => model%rig%frame(i), &
                  clamps => model%rig%clamps(i))
         if (constrained_by > 0) then
-          call sums(constrained_by)%add(method%force(3, i))
-          if (has_interface_below(i)) call sums(constrained_by)%add(method%stacks%history%forces(3, i + 1))
+          do layer = i, last_layer(i)
+            call sums(constrained_by)%add(method%force(3, layer))
+          end do
         else
           if (on_frame > 0) call sums(on_frame)%add(method%rigs%reaction(i))
           if (clamps > 0) &
@@ -51,13 +52,16 @@ contains
 
   contains
 
-    !> True if a point of this rank has a layer below it.
-    pure logical function has_interface_below(i)
+    !> Point of the lowest layer below a point of this rank.
+    pure integer function last_layer(i)
       !> The point
       integer, intent(in) :: i
 
-      has_interface_below = .false.
-      if (i < size(model%map%above)) has_interface_below = model%map%above(i + 1) == i
-    end function has_interface_below
+      last_layer = i
+      do while (last_layer < size(model%map%above))
+        if (model%map%above(last_layer + 1) /= last_layer) exit
+        last_layer = last_layer + 1
+      end do
+    end function last_layer
   end function reactions_of
 end module rig_reactions

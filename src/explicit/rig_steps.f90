@@ -1,7 +1,7 @@
 !> Unilateral frames, clamps and elastic edges in a step, node by node.
 !>
-!> A frame constrains the first layer of its nodes by w <= 0. Springs are implicit, so that their stiffness does not
-!> limit the step.
+!> A frame supports the lower face: it constrains w of the lowest layer of its nodes to w <= 0. Springs act on the first
+!> layer; they are implicit, so that their stiffness does not limit the step.
 module rig_steps
   use archives, only: archive_t
   use kinds, only: wp
@@ -11,11 +11,11 @@ module rig_steps
   private
   public :: rig_steps_t, create_rig_steps
 
-  !> State of frames and springs at this rank's points, (points) each.
+  !> State of frames and springs at the first points of this rank's nodes, (points) each.
   type :: rig_steps_t
     !> True at points on a frame
     logical, allocatable :: on_frame(:)
-    !> Reaction of the frame in the last step, force, and change of w in it
+    !> Reaction of the frame in the last step, force, and change of w of the lowest layer in it
     real(wp), allocatable :: reaction(:), approach(:)
     !> Energy dissipated so far on frames, and numerically by implicit springs and by changes of the step length
     real(wp), allocatable :: frame_loss(:), step_loss(:)
@@ -45,15 +45,15 @@ contains
               source=0.0_wp)
   end function create_rig_steps
 
-  !> Stops a node that would pass its frame, and books the energy dissipated.
+  !> Stops a layer that would pass its frame, and books the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
     !> The frames
     class(rig_steps_t), intent(inout) :: self
-    !> The point
+    !> First point of the node
     integer, intent(in) :: p
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Inverse inertia of w
+    !> Inverse inertia of w of the layer
     real(wp), intent(in) :: inverse
     !> Deflection at the start of the step
     real(wp), intent(in) :: w

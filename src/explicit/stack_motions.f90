@@ -118,10 +118,10 @@ contains
         work%given(3, :) = stacks%stiffness(2, p + 1:q)*past(3, :)
       end if
     end if
-    if (rigs%on_frame(p)) call stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, u(3, p), u(3, p + 1), &
-                                                   trial(3, :), layer, forces(3, :))
+    if (rigs%on_frame(p)) call stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, u(3, p:q), trial(3, :), &
+                                                   layer, forces(3, :))
     call accelerate_by_tractions(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
-    if (rigs%on_frame(p)) layer(3, 1) = rigs%approach(p)/steps%now
+    if (rigs%on_frame(p)) layer(3, n + 1) = rigs%approach(p)/steps%now
     if (prescribed) &
       call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
     call find_rates(n, stacks%height(p:q), layer, trial)
@@ -137,8 +137,8 @@ contains
     u(:, p) = u(:, p) + steps%now*v(:, p)
   end subroutine move_stack
 
-  !> Stops the first layer at a frame that it would penetrate, independently of the layers below.
-  pure subroutine stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, w, jump, trial, layer, forces)
+  !> Stops the lowest layer at a frame that it would penetrate.
+  pure subroutine stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, u, trial, layer, forces)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Index of the stack
@@ -151,26 +151,27 @@ contains
     type(nodal_inertia_t), intent(in) :: inertia
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Deflection of the first layer and jump to the second at the start of the step
-    real(wp), intent(in) :: w, jump
+    !> Deflection of the first layer and openings at the start of the step, (n + 1)
+    real(wp), intent(in) :: u(:)
     !> Openings without tractions, (n)
     real(wp), intent(inout) :: trial(:)
     !> Velocities of the layers without tractions, (5, n + 1)
     real(wp), intent(in) :: layer(:, :)
     !> Forces on the openings, (n)
     real(wp), intent(inout) :: forces(:)
-    real(wp) :: rate, diagonal(size(trial))
+    real(wp) :: rate, w, diagonal(size(trial))
 
-    associate (p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i)), n => size(trial))
-      rate = layer(3, 1) + steps%mean()*inverse*forces(1)
+    w = sum(u)
+    associate (n => size(trial), p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i) + size(trial)))
+      rate = layer(3, n + 1) - steps%mean()*inverse*forces(n)
       if (w + steps%now*rate > 0) then
-        rate = layer(3, 1)
-        trial(1) = jump + steps%now*(layer(3, 2) + w/steps%now)
+        rate = layer(3, n + 1)
+        trial(n) = u(n + 1) - w - steps%now*layer(3, n)
         diagonal = stacks%diagonal(3, p + 1:p + n)
-        diagonal(1) = diagonal(1) - steps%now*steps%mean()*inverse
+        diagonal(n) = diagonal(n) - steps%now*steps%mean()*inverse
         call solve_tractions(n, work%normal_stiffness, work%given(3, :), diagonal, &
                              stacks%off_diagonal(3, p + 1:p + n), trial, forces)
-        rate = rate + steps%mean()*inverse*forces(1)
+        rate = rate - steps%mean()*inverse*forces(n)
         if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
       end if
       call rigs%stop_at_frame(p, steps, inverse, w, rate)

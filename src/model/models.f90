@@ -11,6 +11,7 @@ module models
   use internal_forces, only: add_internal_force
   use plate_loads, only: loaded_plate_t
   use plies, only: ply_t
+  use rig_models, only: hold_openings
   use section_laws, only: section_law_t
   use setups, only: setup_t
   use stacking, only: section_t
@@ -54,9 +55,21 @@ module models
     procedure, private :: add_inertia
     !> Mass times a field.
     procedure :: inertia
+    !> Unknowns that implicit steps hold.
+    procedure :: held_unknowns
   end type model_t
 
 contains
+
+  !> Unknowns that implicit steps hold: the fixed ones, and openings over frames that act on the first layer only.
+  pure function held_unknowns(self) result(held)
+    class(model_t), intent(in) :: self
+    !> u, v, w, theta_x, theta_y of every point of the mesh, (5, points)
+    logical, allocatable :: held(:, :)
+
+    held = self%fixed
+    if (allocated(self%setup%supports)) call hold_openings(self%mesh, self%setup%plate, self%setup%supports, held)
+  end function held_unknowns
 
   !> Internal forces at the owned points and strain energy of this rank's elements.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)

@@ -13,9 +13,9 @@ module rig_models
   use support_parameters, only: support_t
   implicit none
   private
-  public :: rig_model_t, new_rig_model, fix_by_rigs
+  public :: rig_model_t, new_rig_model, fix_by_rigs, hold_openings
 
-  !> The rigs at this rank's points. They act on the first point of a node only.
+  !> The rigs at the first points of this rank's nodes.
   type :: rig_model_t
     !> True with a unilateral frame, or with clamps with a force
     logical :: unilateral = .false.
@@ -242,7 +242,8 @@ contains
     if (.not. plate%in_plane_fixed) springs(1:2) = 0
   end function springs_of
 
-  !> Adds the unknowns fixed by rigs to a table.
+  !> Adds the unknowns fixed by rigs to a table. Frames and clamps that fix w fix it at both faces, so that no layer
+  !> moves.
   pure subroutine fix_by_rigs(mesh, plate, supports, fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -260,13 +261,49 @@ contains
       if (.not. supports(i)%unilateral) then
         on_frame = nodes_on_frame(mesh, supports(i))
         do k = 1, size(on_frame)
-          if (on_frame(k)) fixed(3, mesh%first_point(k)) = .true.
+          if (on_frame(k)) fixed(3, mesh%first_point(k):mesh%first_point(k + 1) - 1) = .true.
         end do
       end if
       if (supports(i)%clamp_stiffness > 0 .or. supports(i)%clamp_force > 0) cycle
       nodes = clamp_nodes(mesh, plate, supports(i))
-      fixed(3, mesh%first_point(nodes)) = .true.
-      if (plate%in_plane_fixed) fixed(1:2, mesh%first_point(nodes)) = .true.
+      do k = 1, size(nodes)
+        associate (first => mesh%first_point(nodes(k)), last => mesh%first_point(nodes(k) + 1) - 1)
+          fixed(3, first:last) = .true.
+          if (plate%in_plane_fixed) fixed(1:2, first:last) = .true.
+        end associate
+      end do
     end do
   end subroutine fix_by_rigs
+
+  !> Adds the openings over frames that the plate may lift off, and over circular ones. Implicit steps hold the layers
+  !> together there: these frames act on w of the first layer, and would otherwise pull it off the layers below.
+  pure subroutine hold_openings(mesh, plate, supports, fixed)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> The rigs
+    type(support_t), intent(in) :: supports(:)
+    !> u, v, w, theta_x, theta_y of every point, (5, points)
+    logical, intent(inout) :: fixed(:, :)
+    type(crossing_t), allocatable :: crossings(:)
+    logical :: held(mesh%nodes())
+    integer :: i, k, n, nodes(9)
+
+    held = .false.
+    do i = 1, size(supports)
+      if (supports(i)%unilateral) held = held .or. nodes_on_frame(mesh, supports(i))
+      if (supports(i)%clamp_force > 0) held(clamp_nodes(mesh, plate, supports(i))) = .true.
+      do k = 1, product(mesh%cells)
+        crossings = circle_crossings(mesh, supports(i), k)
+        nodes = mesh%cell_nodes(k)
+        do n = 1, size(crossings)
+          held(nodes(crossings(n)%nodes)) = .true.
+        end do
+      end do
+    end do
+    do k = 1, size(held)
+      if (held(k)) fixed(3, mesh%first_point(k) + 1:mesh%first_point(k + 1) - 1) = .true.
+    end do
+  end subroutine hold_openings
 end module rig_models
