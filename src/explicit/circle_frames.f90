@@ -1,7 +1,7 @@
 !> Frames with a circular window in steps by central differences: w is constrained where the edge of the window crosses
 !> the sides of cells, as a weighted mean of three nodes each. The frame holds both faces, so that the layers of a node
-!> move together. The reactions at all of these points are found together, from a constant matrix. A node that moves as an image of another one stands for that one, whose inertia is that of
-!> both.
+!> move together. The reactions at all of these points are found together, from a constant matrix. A node that moves as
+!> an image of another one stands for that one, whose inertia is that of both.
 module circle_frames
   use dense_systems, only: pseudo_inverse
   use dependent_points, only: find_masters

@@ -108,7 +108,8 @@ contains
     !> Set if the solver cannot be created
     type(error_t), allocatable, intent(inout) :: error
 
-    call number_equations(model%mesh, model%distribution, model%held_unknowns(), self%numbering, model%images, is_separate)
+    call number_equations(model%mesh, model%distribution, model%held_unknowns(), self%numbering, model%images, &
+                          is_separate)
     associate (numbering => self%numbering)
       call self%solver%define(model%communicator, numbering%first_row, numbering%total, numbering%row_start, &
                               numbering%columns, is_positive_definite(model), error)
