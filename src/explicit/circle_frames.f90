@@ -65,7 +65,8 @@ contains
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
 
-  !> Replaces points that move as images by those that they depend on; w is the same at both.
+  !> Replaces points that move as images by those that they depend on; w is the same at both. The masters in
+  !> `nodal_inertia` are of this rank's points only, these here of all ranks.
   subroutine replace_dependents(model, points)
     type(model_t), intent(in) :: model
     !> Mesh points, (3, crossings)

@@ -4,7 +4,17 @@ module jump_histories
   use kinds, only: wp
   implicit none
   private
-  public :: jump_history_t, create_jump_history
+  public :: jump_history_t, friction_history_t, create_jump_history
+
+  !> Earlier steps of the friction at a point, for its heat.
+  type :: friction_history_t
+    !> Number of steps to come whose forces depend on the last slip
+    integer :: steps = 0
+    !> Change of the energy stored by sticking in the last step, per area
+    real(wp) :: stored = 0
+    !> Negative heat of earlier steps, by which later heat is reduced, per area
+    real(wp) :: deficit = 0
+  end type friction_history_t
 
   !> Earlier steps of the jumps at each point.
   type :: jump_history_t
@@ -14,9 +24,8 @@ module jump_histories
     real(wp), allocatable :: change(:, :), earlier(:, :)
     !> Change of the elastic jumps of sticking faces in the last step, and in the one before, (4, points)
     real(wp), allocatable :: sticking(:, :)
-    !> Friction: number of steps whose forces depend on the last slip; energy stored in the last step, and negative heat
-    !> of the steps before, per area, (3, points)
-    real(wp), allocatable :: slipped(:, :)
+    !> Friction, (points)
+    type(friction_history_t), allocatable :: friction(:)
     !> Work on the cohesive law of damaged faces in the last step, (points)
     real(wp), allocatable :: work(:)
     !> Energy dissipated by contact of faces, and numerically by the tractions, (2, points)
@@ -40,7 +49,8 @@ contains
     type(jump_history_t) :: self
 
     allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%sticking(4, points), &
-              self%slipped(3, points), self%work(points), self%lost(2, points), source=0.0_wp)
+              self%work(points), self%lost(2, points), source=0.0_wp)
+    allocate (self%friction(points))
   end function create_jump_history
 
   !> Takes over force and change of a step.
@@ -68,7 +78,7 @@ contains
     self%earlier = ratio*self%earlier
     self%sticking = ratio*self%sticking
     self%work = ratio*self%work
-    self%slipped(2, :) = ratio*self%slipped(2, :)
+    self%friction%stored = ratio*self%friction%stored
   end subroutine scale_changes
 
   !> Writes or reads the history.
@@ -85,7 +95,9 @@ contains
     values(4:6, :) = self%change
     values(7:9, :) = self%earlier
     values(10:11, :) = self%lost
-    values(12:14, :) = self%slipped
+    values(12, :) = self%friction%steps
+    values(13, :) = self%friction%stored
+    values(14, :) = self%friction%deficit
     values(15, :) = self%work
     values(16:19, :) = self%sticking
     call archive%field('explicit/interfaces', owned, points, values)
@@ -93,7 +105,9 @@ contains
     self%change = values(4:6, :)
     self%earlier = values(7:9, :)
     self%lost = values(10:11, :)
-    self%slipped = values(12:14, :)
+    self%friction%steps = nint(values(12, :))
+    self%friction%stored = values(13, :)
+    self%friction%deficit = values(14, :)
     self%work = values(15, :)
     self%sticking = values(16:19, :)
   end subroutine visit

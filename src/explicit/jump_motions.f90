@@ -9,6 +9,7 @@ module jump_motions
   use cohesive_points, only: cohesive_point_t
   use face_friction, only: friction_energy, sliding_t
   use interface_stacks, only: interface_stacks_t
+  use jump_histories, only: friction_history_t
   use kinds, only: wp
   use models, only: model_t
   use stack_solutions, only: friction_t
@@ -108,7 +109,7 @@ contains
           call slip_faces(friction(j), u(1:2, p), old%sliding, new%sliding, stacks%history%sticking(:, p), change(1:2))
           call add_heat(faces%law%stiffness_shear, before(1:2), u(1:2, p), &
             sum(friction(j)%force*(change(1:2) + stacks%history%change(1:2, p)))/(2*area), old%sliding, new%sliding, &
-            stacks%history%slipped(:, p))
+            stacks%history%friction(p))
         end if
         growth = new%dissipated - old%dissipated
         in_contact = in_contact + area*faces%closing_loss(before(3), u(3, p), new%damage - old%damage)
@@ -181,7 +182,7 @@ contains
 
   !> Heat of slipping faces: the work of friction beyond what sticking stores in half of this step and half of the one
   !> before, while forces depend on a slip. Where this is negative, that much less heat follows.
-  pure subroutine add_heat(stiffness, from, to, work, old, new, slipped)
+  pure subroutine add_heat(stiffness, from, to, work, old, new, history)
     !> Stiffness of sticking faces, pressure per jump
     real(wp), intent(in) :: stiffness
     !> Tangential jumps at the start and at the end
@@ -192,20 +193,19 @@ contains
     type(sliding_t), intent(in) :: old
     !> The faces at the end; receive the heat
     type(sliding_t), intent(inout) :: new
-    !> Number of steps whose forces depend on the last slip; energy stored in the last step, and negative heat of steps
-    !> before, per area
-    real(wp), intent(inout) :: slipped(3)
+    !> Earlier steps; receives this one
+    type(friction_history_t), intent(inout) :: history
     real(wp) :: heat, stored
 
-    if (norm2(new%slip - old%slip) > 0) slipped(1) = memory
+    if (norm2(new%slip - old%slip) > 0) history%steps = memory
     new%heat = old%heat
     stored = friction_energy(stiffness, to, new) - friction_energy(stiffness, from, old)
-    if (slipped(1) > 0) then
-      heat = work - (stored + slipped(2))/2 - slipped(3)
+    if (history%steps > 0) then
+      heat = work - (stored + history%stored)/2 - history%deficit
       new%heat = old%heat + max(0.0_wp, heat)
-      slipped(1) = slipped(1) - 1
-      slipped(3) = max(0.0_wp, -heat)
+      history%steps = history%steps - 1
+      history%deficit = max(0.0_wp, -heat)
     end if
-    slipped(2) = stored
+    history%stored = stored
   end subroutine add_heat
 end module jump_motions

@@ -8,7 +8,7 @@ module solver_deck
   use linear_solver_parameters, only: linear_solver_parameters_t, factorization_mumps, factorization_cholmod, &
                                       factorization_automatic
   use stepping_parameters, only: equilibrium_t
-  use text, only: line_t, words_of
+  use text, only: joined, line_t, words_of
   implicit none
   private
   public :: fill_equilibrium, fill_linear_solver, check_petsc_options
@@ -29,10 +29,9 @@ module solver_deck
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options passed to PETSc.']
 
-  !> Prefixes of the options for PETSc allowed in a deck.
-  character(len=*), parameter :: allowed_prefixes(*) = [ &
-    character(len=16) :: '-ksp_', '-pc_', '-mat_', '-indefinite_ksp_', '-indefinite_pc_', '-indefinite_mat_', &
-    '-telescope_ksp_', '-telescope_pc_', '-telescope_mat_', '-newton_ksp_']
+  !> Prefixes of the options for PETSc allowed in a deck, those of its matrices and solvers.
+  character(len=*), parameter :: allowed_prefixes = '-ksp_ -pc_ -mat_ '// &
+    '-indefinite_ksp_ -indefinite_pc_ -indefinite_mat_ -telescope_ksp_ -telescope_pc_ -telescope_mat_ -newton_ksp_'
 
 contains
 
@@ -75,8 +74,8 @@ contains
     do i = 1, size(words)
       if (is_allowed(words(i)%text)) cycle
       call report(settings, problems, solver_group, 'petsc_options', words(i)%text// &
-                  ' might write files or more; allowed: -log_view and options that begin with -ksp_, -pc_ or '// &
-                  '-mat_, and words without : and /; give others on the command line.')
+                  ' might write files or more; allowed: -log_view, words without : and /, and options that begin '// &
+                  'with one of '//joined(words_of(allowed_prefixes, ' '), ', ')//'; give others on the command line.')
       return
     end do
   end subroutine check_petsc_options
@@ -85,14 +84,16 @@ contains
   pure logical function is_allowed(word)
     !> The word
     character(len=*), intent(in) :: word
+    type(line_t), allocatable :: prefixes(:)
     integer :: i
 
     ! PETSc would separate words at a tab.
     is_allowed = scan(word, ':/'//achar(9)) == 0
     if (.not. is_allowed .or. word == '-log_view' .or. index(word, '-') /= 1) return
     if (len(word) > 1) is_allowed = scan(word(2:2), '0123456789.') == 1
-    do i = 1, size(allowed_prefixes)
-      if (index(word, trim(allowed_prefixes(i))) == 1) is_allowed = .true.
+    prefixes = words_of(allowed_prefixes, ' ')
+    do i = 1, size(prefixes)
+      if (index(word, prefixes(i)%text) == 1) is_allowed = .true.
     end do
   end function is_allowed
 end module solver_deck

@@ -222,20 +222,16 @@ contains
     class(linear_solver_t), intent(inout) :: solver
     !> Number of the element whose matrix it is
     integer, intent(in), optional :: element
-    integer :: equation(5, size(points)), part
-    integer, allocatable :: number
+    integer :: equations(5*size(points)), part, a, component
+    integer, allocatable :: rows(:), number
 
     if (present(element)) number = element
-    equation = numbering%equation(:, points)
-    do part = 1, merge(2, 1, numbering%is_separate)
-      if (numbering%is_separate) then
-        equation = -1
-        associate (first => merge(1, 3, part == 1), last => merge(2, 5, part == 1))
-          equation(first:last, :) = numbering%equation(first:last, points)
-        end associate
-        if (present(element)) number = 2*(element - 1) + part
-      end if
-      call solver%matrix%add(reshape(equation, [size(equation)]), matrix, number)
+    equations = [numbering%equation(:, points)]
+    if (.not. numbering%is_separate) call solver%matrix%add(equations, matrix, number)
+    do part = 1, merge(2, 0, numbering%is_separate)
+      rows = [((5*a + component, component=merge(1, 3, part == 1), merge(2, 5, part == 1)), a=0, size(points) - 1)]
+      if (present(element)) number = 2*(element - 1) + part
+      call solver%matrix%add(equations(rows), matrix(rows, rows), number)
     end do
   end subroutine add_parts
 

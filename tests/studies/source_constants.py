@@ -27,7 +27,7 @@ CONSTANTS = {
     "moving_stiffness": ("delamination/face_contact", "2.0e6_wp", ("2.0e5_wp", "2.0e7_wp"), "chatter front"),
     "steepest": ("delamination/face_contact", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "penalty"),
     "open_fraction": ("delamination/face_contact", "1.0e-9_wp", ("1.0e-8_wp", "1.0e-10_wp"), "chatter penalty"),
-    "held": ("delamination/front_smoothing", "1.0e-6_wp", ("1.0e-5_wp", "1.0e-7_wp"), "chatter front"),
+    "distance_tolerance": ("delamination/front_smoothing", "1.0e-6_wp", ("1.0e-5_wp", "1.0e-7_wp"), "chatter front"),
     "held_stiffness": ("interfaces/contact_and_ties", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "chatter front"),
     "together": ("interfaces/front_growth", "0.95_wp", ("0.9_wp", "0.99_wp"), "chatter front"),
     "elements_crossed": ("interfaces/tie_release", "10", ("5", "20"), "chatter front"),
@@ -37,10 +37,10 @@ CONSTANTS = {
     "deflection_increment": ("dynamics/impact_coupling", "1.0e-6_wp", ("1.0e-5_wp", "1.0e-7_wp"), "layers nose"),
     "relaxation": ("stepping/contact_updates", "0.2_wp", ("0.1_wp", "0.4_wp"), "nose"),
     "negligible": ("stepping/contact_updates", "1.0e-6_wp", ("1.0e-5_wp", "1.0e-7_wp"), "nose"),
-    "relaxed": ("explicit/central_differences", "0.8_wp", ("0.6_wp", "0.9_wp"), "dent"),
+    "lengthening_ratio": ("explicit/central_differences", "0.8_wp", ("0.6_wp", "0.9_wp"), "dent"),
     "stiffened_reserve": ("explicit/central_differences", "1.01_wp", ("1.005_wp", "1.02_wp"), "dent"),
     "slope_reserve": ("explicit/impactor_steps", "2", ("1.5_wp", "4"), "dent cai"),
-    "left_over": ("explicit/damped_motions", "3.0e-4_wp", ("3.0e-3_wp", "3.0e-5_wp"), "dent"),
+    "final_ratio": ("explicit/damped_motions", "3.0e-4_wp", ("3.0e-3_wp", "3.0e-5_wp"), "dent"),
 }
 
 

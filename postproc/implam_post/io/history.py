@@ -1,7 +1,8 @@
 """A history: columns of numbers against time."""
 
 import io
-from dataclasses import dataclass
+import json
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,14 +25,19 @@ ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "ene
                 "energy_algorithmic": "algorithmic dissipation", "energy_friction": "friction",
                 "energy_layers": "layers", "energy_damping": "damping"}
 UNACCOUNTED = "not accounted for"
+_ENDING = "_history.csv"
 
 
 @dataclass(frozen=True)
 class History:
-    """Columns by name, all of one length, `time` among them."""
+    """Columns by name, all of one length, `time` among them.
+
+    `impact_energy` is that of the impactor before the first row, as in the summary of the run; None: not known.
+    """
 
     columns: dict[str, np.ndarray]
     name: str = ""
+    impact_energy: float | None = None
 
     def __getitem__(self, column: str) -> np.ndarray:
         """Return a column by its name."""
@@ -60,7 +66,7 @@ class History:
     def until(self, time: float) -> "History":
         """Return the rows up to a time."""
         kept = self.time <= time * (1 + 1e-9)
-        return History({name: values[kept] for name, values in self.columns.items()}, self.name)
+        return replace(self, columns={name: values[kept] for name, values in self.columns.items()})
 
     def at(self, column: str, time: float) -> float:
         """Return a column's value at a time, between rows by linear interpolation; NaN outside the history."""
@@ -70,11 +76,26 @@ class History:
 
 
 def read_history(path: Path | str) -> History:
-    """Read a history from the solver's CSV; lines that begin with # are comments."""
+    """Read a history from the solver's CSV, and the impact energy from the summary beside it.
+
+    Lines that begin with # are comments.
+    """
     history = read_columns(path)
     if not np.all(np.diff(history.time) > 0):
         raise FileError(f"the times of the history {path} do not increase.")
-    return history
+    return replace(history, impact_energy=_impact_energy(Path(path)))
+
+
+def _impact_energy(path: Path) -> float | None:
+    """Return the impact energy in the summary beside a history; None without one, as of a run that goes on."""
+    summary = path.with_name(path.name.removesuffix(_ENDING) + "_summary.json")
+    if not path.name.endswith(_ENDING) or not summary.exists():
+        return None
+    try:
+        energy = json.loads(read_text(summary, "the summary"))["energy_impact"]
+    except (FileError, ValueError, RecursionError, KeyError, TypeError):
+        return None  # nothing has struck, or the summary is damaged, which those who need it report
+    return float(energy) if isinstance(energy, (int, float)) else None
 
 
 def read_columns(path: Path | str) -> History:

@@ -95,19 +95,14 @@ def contact_duration(history: History) -> float:
 
 
 def impact_energy(history: History) -> float:
-    """Return the energy the impactor brings: what it has left in the first row, and what it has given by then.
+    """Return the energy the impactor brings, kinetic and of gravity, as the run has written it.
 
-    That is all else in the first row, less the work of pressure and lines, unless it exceeds twice what the contact
-    force can have done, which grows from 0. The plate has had the excess before, of residual stress or of lines that
-    are fixed; the work is then that of a force in proportion to displacement**1.5, as at first touch by Hertz's law.
+    Without it, of a history on its own, it is all energy in the first row less the work of pressure and lines, which is
+    that of the impactor if the plate had none before.
     """
-    left = float(history["energy_impactor"][0])
-    given = float(sum(history[column][0] for column in ENERGIES) - history["work_external"][0]) - left
-    if "impactor_displacement" in history.columns:
-        most = float(history["force"][0] * history["impactor_displacement"][0])
-        if given > 2 * most:
-            return left + 0.4 * most
-    return left + given
+    if history.impact_energy is not None:
+        return history.impact_energy
+    return float(sum(history[column][0] for column in ENERGIES) - history["work_external"][0])
 
 
 def absorbed_energy(history: History) -> float:

@@ -1,10 +1,12 @@
 """Tests of the single numbers taken from a history."""
 
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.history import ENERGIES, History
+from implam_post.io.history import ENERGIES, History, read_history
 from implam_post.io.quantities import (
     QUANTITIES,
     contacts,
@@ -83,11 +85,20 @@ class QuantitiesTest(unittest.TestCase):
         """The energy that the plate had before the impact, of residual stress, isn't the impactor's."""
         columns = dict(pulses(2, 8, 0).columns)
         columns |= {name: np.zeros(3) for name in (*ENERGIES, "work_external")}
-        columns |= {"energy_impactor": np.array([9.96, 1, 5]), "impactor_displacement": np.array([0.05, 1, 0])}
-        for residual in (0.0, 7.0):
-            history = History(columns | {"energy_strain": np.array([residual + 0.04, 9, 5])})
-            self.assertAlmostEqual(QUANTITIES["impact_energy"](history), 10, delta=1e-14)
-            self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history), 5, delta=1e-14)
+        columns |= {"energy_impactor": np.array([9.96, 1, 5]), "energy_strain": np.array([7.04, 9, 5])}
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "stressed_history.csv"
+            rows = zip(*columns.values(), strict=True)
+            path.write_text("\n".join([",".join(columns), *(",".join(map(repr, map(float, row))) for row in rows)]))
+            self.assertAlmostEqual(QUANTITIES["impact_energy"](read_history(path)), 17, delta=1e-14)
+            summary = path.with_name("stressed_summary.json")
+            for text in ("{}", "[", '{"energy_impact": null}'):
+                summary.write_text(text)
+                self.assertAlmostEqual(QUANTITIES["impact_energy"](read_history(path)), 17, delta=1e-14, msg=text)
+            summary.write_text('{"energy_impact": 10}')
+            history = read_history(path)
+        self.assertEqual(QUANTITIES["impact_energy"](history), 10)
+        self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history.until(2.0)), 5, delta=1e-14)
 
     def test_first_growth(self) -> None:
         """The largest force up to the first growth; without growth, area or a number there is none."""
