@@ -32,8 +32,8 @@ module dynamic_steps
     real(wp) :: step = 0
     !> Number of changed ties and contacts at which the operator is factorized again
     integer :: renewal = huge(1)
-    !> True: the last correction took as many solves as a factorization costs
-    logical :: correction_is_costly = .false.
+    !> True: factorized again before the next correction, by the step control or as the last one cost as many solves
+    logical :: factor_is_due = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Predictor of the displacement, (5, points); unallocated: constant velocity
@@ -61,19 +61,22 @@ module dynamic_steps
 contains
 
   !> A step in time.
-  pure function new_dynamic_step(integrator, step, renewal) result(self)
+  pure function new_dynamic_step(integrator, step, renewal, factor_is_due) result(self)
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step
     !> Number of changed ties and contacts at which the operator is factorized again
     integer, intent(in) :: renewal
+    !> True: the operator is factorized again at the predictor
+    logical, intent(in) :: factor_is_due
     !> The problem
     type(dynamic_step_t) :: self
 
     self%integrator = integrator
     self%step = step
     self%renewal = renewal
+    self%factor_is_due = factor_is_due
   end function new_dynamic_step
 
   !> Predictor. With an exact operator the displacement is kept, which saves element loops. Otherwise the velocity is
@@ -101,7 +104,6 @@ contains
         .and. .not. any(operator%numbering%master > 0)
       call predict(self, model, old, new)
       if (.not. self%keeps_velocity) call self%complete(at)
-      self%correction_is_costly = .false.
       self%uses_element_tangents = .false.
       self%uses_line_search = allocated(new%interfaces%cohesive%cohesive)
       if (.not. self%keeps_displacement) call self%find_force(at)
@@ -250,13 +252,13 @@ contains
     at%negative_curvature = .false.
     associate (integrator => self%integrator, has_impactor => at%model%setup%has_impactor)
       call find_tangent(at, [integrator%stiffness_factor(), integrator%mass_factor(self%step)], &
-                        self%correction_is_costly, self%renewal, self%uses_element_tangents, tangent, error)
+                        self%factor_is_due, self%renewal, self%uses_element_tangents, tangent, error)
       if (allocated(error)) return
       if (has_impactor .and. .not. tangent%is_factored()) call add_force_slope(at, self%coupling, tangent)
       call find_krylov_correction(tangent, at%residual, tolerance, at%correction, error, at%negative_curvature, &
                                   converged)
       if (allocated(error)) return
-      self%correction_is_costly = .not. converged
+      self%factor_is_due = .not. converged
       if (has_impactor) call self%coupling%solve(at, tangent%is_factored(), error)
       if (allocated(error)) error%code = exit_convergence
       call at%new%interfaces%faces%constrain_correction(at%model, at%correction)

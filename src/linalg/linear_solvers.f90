@@ -27,8 +27,6 @@ module linear_solvers
     integer :: factorization = factorization_automatic
     !> Number of factorizations so far
     integer :: factorizations = 0
-    !> Number of right-hand sides solved so far
-    integer :: solves = 0
     !> Factorizations of a matrix that was declared positive definite but is not
     integer, private :: indefinite_matrices = 0
     !> All ranks
@@ -164,7 +162,6 @@ contains
     solution = 0
     if (.not. self%factored) call fail(error, exit_internal, 'Linear equations are solved before they are factored.')
     if (allocated(error)) return
-    self%solves = self%solves + 1
     associate (solver => self%factors(self%current)%solver)
       call self%matrix%solve(solver, right_hand_side, solution, ierr(:3))
       call KSPGetConvergedReason(solver, reason, ierr(4))

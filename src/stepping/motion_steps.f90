@@ -63,14 +63,15 @@ contains
     !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     type(dynamic_step_t) :: problem
+    logical :: factor_is_due
 
     converged = .false.
     associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
       step = controller%propose(event - now%time, impactor_limit(model, now, controller%target), &
                                 growth_limit(model, stepping, controller))
-      call renew_if_due(stepper, model, stepper%integrator%mass_factor(step), error)
+      call prepare_operator(stepper, model, stepper%integrator%mass_factor(step), factor_is_due, error)
       if (allocated(error)) return
-      problem = new_dynamic_step(stepper%integrator, step, stepping%adapt%iterations)
+      problem = new_dynamic_step(stepper%integrator, step, stepping%adapt%iterations, factor_is_due)
       call solve_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
       if (converged .and. model%map%layered) &
         call grow_in_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
@@ -80,31 +81,32 @@ contains
     end associate
   end subroutine try
 
-  !> Factorizes the operator again where that is due.
-  subroutine renew_if_due(stepper, model, mass_factor, error)
+  !> Factorizes the operator where there is none. One that is due again is left to the step, whose first correction
+  !> needs the tangent at the predictor.
+  subroutine prepare_operator(stepper, model, mass_factor, factor_is_due, error)
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Factor of the mass in the step
     real(wp), intent(in) :: mass_factor
+    !> True: the step has to factorize it again
+    logical, intent(out) :: factor_is_due
     !> Set if the factorization fails
     type(error_t), allocatable, intent(inout) :: error
-    logical :: due
 
     associate (now => stepper%now, operator => stepper%operator)
-      due = .not. operator%ready
-      if (.not. due) &
-        due = stepper%controller%renewal_due(stepper%stepping, model%setup%kinematics == kinematics_von_karman, &
-          mass_factor/operator%mass_factor, now%deflection - operator%deflection, model%thickness)
-      if (due) then
-        call operator%renew(model, now, stepper%integrator%stiffness_factor(), mass_factor, error)
-        if (allocated(error)) return
-        call stepper%controller%renewed()
-      end if
       stepper%factorizations_at_start = operator%factorizations
       stepper%solves_at_start = operator%solves
+      factor_is_due = operator%ready
+      if (factor_is_due) then
+        factor_is_due = stepper%controller%renewal_due(stepper%stepping, model%setup%kinematics == &
+          kinematics_von_karman, mass_factor/operator%mass_factor, now%deflection - operator%deflection, &
+          model%thickness)
+      else
+        call operator%renew(model, now, stepper%integrator%stiffness_factor(), mass_factor, error)
+      end if
     end associate
-  end subroutine renew_if_due
+  end subroutine prepare_operator
 
   !> Notes where an impactor that moves back has left the faces glued.
   subroutine complete_trial(self, stepper, model)
@@ -136,6 +138,8 @@ contains
     integer :: lag_iterations
 
     associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
+      ! Excess solves count from the step that renewed the operator.
+      if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
       call controller%accept(stepping, step, now%iterations, lag_iterations, change)
       if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
@@ -143,8 +147,6 @@ contains
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
           .not. model%setup%has_impactor .or. stepper%step_error%impact_is_over(stepping%expected, now), &
                                        has_gear(model), now%has_failures())
-      ! Iterations of a step before it renewed the operator itself do not count for the new factorization.
-      if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
     end associate
   end subroutine choose_next
