@@ -131,6 +131,9 @@ contains
     state%ledger%strain = energy*model%mesh%multiplicity
     state%ledger%ply_damage = state%ledger%ply_damage + damage
     state%deflection = model%deflection(state%motion%displacement)
+    ! The impactor starts at first contact with the deflected plate.
+    if (model%setup%has_impactor) &
+      state%contact%offset = -state%contact%mean(model%communicator, state%motion%displacement)
     state%patch_mean = state%contact_deflection(model)
     operator%ready = .false.
   end subroutine equilibrate

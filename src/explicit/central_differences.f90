@@ -127,6 +127,7 @@ contains
     self%lines = create_line_steps(model, self%inertia)
     call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
+    self%impact%patch%offset = now%contact%offset
     call self%impact%patch%gather(model, self%inertia%inverse(7, :))
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
               self%strain(lanes, model%elements%batches), source=0.0_wp)

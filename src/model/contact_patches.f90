@@ -14,7 +14,8 @@ module contact_patches
     real(wp), allocatable :: weights(:)
     !> Points with a weight
     integer, allocatable :: points(:)
-    !> Difference of the mean deflection between successive patches, so that it is continuous
+    !> Difference of the mean deflection between successive patches, so that it is continuous, less the mean at the
+    !> start, where the impactor touches the plate
     real(wp) :: offset = 0
   contains
     !> Mean of a deflection, and deflection of the plate under the impactor.

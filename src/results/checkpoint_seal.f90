@@ -15,7 +15,7 @@ module checkpoint_seal
   !> First line of the head.
   character(len=*), parameter :: title = 'IMPLAM CHECKPOINT'
   !> Second line of the head; the number changes when older files cannot be read.
-  character(len=*), parameter :: format_line = 'format 4'
+  character(len=*), parameter :: format_line = 'format 5'
   !> End of a line.
   character(len=*), parameter :: end_of_line = new_line('a')
   !> Bytes read at a time.

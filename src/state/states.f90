@@ -242,8 +242,8 @@ contains
     type(model_t), intent(in) :: model
     real(wp), allocatable :: weights(:, :)
 
-    if (.not. allocated(model%nose)) return
     call archive%item('contact/offset', self%contact%offset)
+    if (.not. allocated(model%nose)) return
     weights = reshape(self%contact%weights, [1, size(self%contact%weights)])
     associate (partition => model%distribution)
       call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)

@@ -40,7 +40,7 @@ module step_columns
 
   !> Other quantities of the state, and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
-    'patch_deflection | real | length | Mean deflection of the patch, positive along the impact.', &
+    'patch_deflection | real | length | Mean deflection of the patch since first contact, along the impact.', &
     'work_external | real | energy | Work so far of pressure and lines, and of what moves an impactor whose travel &
       &is given.', &
     'step_length | real | time | Length of the step; 0 in a static analysis.', &

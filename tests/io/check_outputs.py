@@ -101,7 +101,7 @@ def check_checkpoint(path):
     """The seal holds, and what is in the file belongs together."""
     content = path.read_bytes()
     seal = content[:512].decode().split("\n")
-    assert seal[:2] == ["IMPLAM CHECKPOINT", "format 4"]
+    assert seal[:2] == ["IMPLAM CHECKPOINT", "format 5"]
     assert seal[2:4] == [f"bytes {len(content) - 512}", f"crc32 {zlib.crc32(content[512:]):08X}"]
     with h5py.File(path) as file:
         number = file["state/n"][()]

@@ -228,7 +228,7 @@ def check_refused(implam, folder, _):
     damaged = bytearray((folder / CHECKPOINT).read_bytes())
     damaged[len(damaged) // 2] ^= 1
     (folder / "damaged.h5").write_bytes(damaged)
-    (folder / "newer.h5").write_bytes((folder / CHECKPOINT).read_bytes().replace(b"format 4", b"format 5", 1))
+    (folder / "newer.h5").write_bytes((folder / CHECKPOINT).read_bytes().replace(b"format 5", b"format 6", 1))
     cases = [
         (["laminate%ply_thickness=0.7e-3"], ["0.0006", "0.0007"], EXIT_DECK),
         (["laminate%stacking='[0/90/0]'"], ["0 90 90 0", "0 90 0"], EXIT_DECK),
