@@ -152,6 +152,8 @@ contains
     call self%now%visit(archive, model)
     if (allocated(self%explicit)) then
       call self%explicit%visit(archive, model)
+      call archive%item('operator/factorizations', self%operator%factorizations)
+      call archive%item('operator/solves', self%operator%solves)
       if (archive%loading) call self%explicit%resume(model, self%now)
       return
     end if
