@@ -45,8 +45,8 @@ ROUNDED = 1e-11
 # Finer cells of the compression; areas and energies then, relative, are kept to rounding.
 FINER = ["mesh%elements=14, 22"]
 MAPPED = 1e-12
-# Measured: matrix 2.6 and ply energy 12 %, first step +.8 % of fracture and 9e-4 of the energy.
-EXTENDED = 0.15
+# Measured: matrix 2.6 and ply energy 12 %, first step +2.0 % of fracture and 2e-3 of the energy.
+EXTENDED = {"matrix_damage_area": 0.05, "energy_ply_damage": 0.15}
 GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 5e-3, 1e-6
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
@@ -161,7 +161,7 @@ def check_mapped(implam, folder, launcher):
               for name in ("fibre_damage_area", "matrix_damage_area", "energy_ply_damage")]
     for name, before, after in pairs:
         # Strains of the new cells vary about the mean of the old ones, and extend matrix cracks.
-        bound = EXTENDED if name in ("matrix_damage_area", "energy_ply_damage") else MAPPED
+        bound = EXTENDED.get(name, MAPPED)
         require(-MAPPED * before <= after - before <= bound * before, f"{name}: {before} before, {after} after.")
     # Jumps between the old nodes may damage an interface once the first step meets them.
     grown = rows["energy_delamination"][0] / impact["energy_delamination"] - 1
