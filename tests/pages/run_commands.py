@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs the commands of the manual as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
 a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
-ends with code 0, unless it reports a Python package that is not installed.
+ends with code 0, unless it reports a Python package that is not installed. The times printed tell which commands belong
+into `sh long`: those of more than half a minute on a usual processor.
 Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
 
 Blocks marked `sh long` and `sh elsewhere` are left to check_commands.py, the tutorial to tutorial.py. Ends with code 77
@@ -19,8 +20,6 @@ from page_commands import Command, SavedFile, parts_of
 SKIPPED = 77
 # What commands read of a clone, besides the decks, which they may add files to.
 LINKED = (".venv", "doc", "postproc", "tests")
-# Seconds of one processor that a command of the manual may take; longer ones belong into `sh long`.
-LONGEST = 30
 
 
 def processor_time():
@@ -61,7 +60,7 @@ class Clone:
             print(f"skipped: {done.stdout.strip()}")
             return "", taken
         fault = f"code {done.returncode}\n{done.stdout[-2000:]}" if done.returncode else ""
-        return fault or (f"takes {taken:.0f} s, more than {LONGEST}" if taken > LONGEST else ""), taken
+        return fault, taken
 
 
 def run_page(page, clone):
