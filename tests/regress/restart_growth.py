@@ -49,7 +49,7 @@ GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200",
            "delamination%starter=8.9e-3"]
 # Up to the first cracks, cooled from the cure.
 SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
-NOSE = ["impactor%contact_area='sphere'", "time%step=16e-6", "time%end=400e-6",
+NOSE = ["impactor%contact_area='sphere'", "time%step=16e-6", "time%end=240e-6",
         "material%shear_failure_strain=.05", "ply_damage%in_situ=.true."]
 # By central differences, with a row every fifty steps or so.
 EXPLICIT = ["time%integrator='central_difference'", "time%end=150e-6", "output%force_filter=2e4",

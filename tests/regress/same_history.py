@@ -4,33 +4,64 @@ Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTIN
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
-ranks: on 1, 2, 3 and 4 ranks, LAUNCHER taking the number of ranks as its last word. PART: a part of the plate, quarter,
+ranks: on 1, 2, 3 and 4 ranks, LAUNCHER taking the number of ranks as its last word; and restarted from a checkpoint
+within the run on another number of ranks. PART: a part of the plate, quarter,
 half_x, half_y or point, against the full plate with twice the elements along the directions halved. mirror: against
 the plate with x and y exchanged. tolerances: with residuals of 1e-9 against .8e-9 and 2e-9, so that steps take other
 numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must
 grow, and the same cells and plies be the ones at the end."""
 
 import re
+import shutil
 import sys
 from pathlib import Path
 
 from released_cells import damage_of, folded, mirrored
-from solver_runs import exit_code_of, largest_difference, read_history, require, run_deck, write_deck
+from solver_runs import (
+    DECKS,
+    change_deck,
+    checkpoint_of,
+    exit_code_of,
+    history_of,
+    largest_difference,
+    read_history,
+    require,
+    run,
+    run_deck,
+    write_deck,
+)
 
 # How the solution was found and how closely, not what it is; the stress is a measure for the step only.
 COUNTS = ("iterations", "force_iterations", "contact_iterations", "total_iterations", "total_force_iterations",
           "total_contact_iterations", "refactorisations", "solves", "complementarity")
 PARTS = ("quarter", "half_x", "half_y", "point")
+# Ranks before and after the restarts.
+CHANGES = ((1, 3), (4, 1), (3, 2))
+
+
+def within(deck, settings):
+    """Settings that leave one checkpoint within the run, at 53 % of its time or load."""
+    found = re.search(r"^&time\b.*?\bend=(\S+)", change_deck((DECKS / deck).read_text("utf-8"), settings), re.MULTILINE)
+    return [*settings, f"output%checkpoint_every={0.53 * float(found[1] if found else 1)!r}"]
 
 
 def histories_of_ranks(implam, deck, folder, launcher, settings):
     """Yield name and history of the runs on 1 to 4 ranks."""
+    settings = within(deck, settings)
     for ranks in (1, 2, 3, 4):
         path = write_deck(folder / f"ranks_{ranks}", deck, settings)
         history = run_deck(implam, path, [*launcher, str(ranks)])
         log = next(path.parent.glob("*.log")).read_text(encoding="utf-8")
         require(f"{ranks} rank" in log, f"The log doesn't name {ranks} ranks.")
         yield f"{ranks} ranks", read_history(history), damage_of(history)
+    for first, second in CHANGES:
+        again = folder / f"ranks_{first}_{second}"
+        shutil.rmtree(again, ignore_errors=True)
+        shutil.copytree(folder / f"ranks_{first}", again)
+        said = run([*launcher, str(second), implam, "restart", checkpoint_of(again)])
+        require(f"{second} rank" in said, f"The restart isn't on {second} ranks.")
+        history = history_of(again)
+        yield f"from {first} to {second} ranks", read_history(history), damage_of(history)
 
 
 def histories_of_part(part, implam, deck, folder, settings):
