@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the commands of the manual as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
 a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
-ends with code 0, unless it reports a Python package that is not installed. The times printed tell which commands belong
+ends with code 0, unless it reports a Python package that is not installed. The times printed show which commands belong
 into `sh long`: those of more than half a minute on a usual processor.
 Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
 
