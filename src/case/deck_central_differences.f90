@@ -18,7 +18,7 @@ module deck_central_differences
   use setup_scales, only: scales_of, setup_scales_t
   use short_numbers, only: short_text
   use stepping_parameters, only: past_contact
-  use text, only: append, to_text
+  use text, only: append, counted, to_text
   use time_deck, only: key_end, key_mass_scaling, key_step, max_steps, time_group
   implicit none
   private
@@ -131,7 +131,7 @@ contains
       call deck%settings%derive(time_group, key_step, short_text(step), .false.)
     if (deck%settings%is_given(output_group, key_history_every)) return
     deck%output%steps_between_rows = max(1, nint(deck%stepping%time%end/deck%stepping%time%step/rows))
-    call append(deck%reasons, 'A row of the history every '//to_text(deck%output%steps_between_rows)// &
-                ' step(s); peaks are followed in every step.')
+    call append(deck%reasons, 'A row of the history every '// &
+                counted(to_text(deck%output%steps_between_rows), 'step')//'; peaks are followed in every step.')
   end subroutine find_stable_step
 end module deck_central_differences

@@ -281,7 +281,7 @@ def run_explicit(implam, folder, entry, deck):
     """Run a row by central differences and hold it against what does not depend on the integrator."""
     check = subprocess.run([implam, "check", "/dev/stdin"], input=deck, text=True, capture_output=True, check=False)
     said = check.stdout + check.stderr
-    steps = re.search(r"About ([\d.e+]+) steps", said)
+    steps = re.search(r"About ([\d.e+]+) steps?", said)
     if check.returncode:
         require(check.returncode == 2, f"exit code {check.returncode}: {said[-300:]}")
         return "refused: " + said.strip()[:160]
