@@ -50,7 +50,7 @@ contains
     call add_figure(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
               moment(deck, record%deflection_time)//within(errors%deflection, record%deflection))
     if (record%compression%strength > 0) then
-      call add_figure(lines, 'residual strength', compression_text(record%compression))
+      call add_figure(lines, 'residual strength', compression_text(deck, record%compression))
       if (record%compression%failed) &
         call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
     end if
