@@ -3,11 +3,13 @@ module compression_summary
   use compressed_damage, only: figure_area, figure_mean, figure_width
   use compression_failures, only: compression_failure_t, failure_of
   use compression_records, only: compression_record_t
+  use deck_contents, only: deck_t
   use gauges, only: gauge_t
   use json_text, only: json_t
   use kinds, only: wp
   use placed_gauges, only: back_to_back
   use run_figures, only: run_figures_t
+  use run_moments, only: moment
   use run_records, only: run_record_t
   use text, only: rounded_text, to_text
   implicit none
@@ -44,18 +46,21 @@ contains
   end subroutine put_compression
 
   !> The same for the log.
-  pure function compression_text(record) result(text)
+  pure function compression_text(deck, record) result(text)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> Record of the run
     type(compression_record_t), intent(in) :: record
     !> Figures after a label
     character(len=:), allocatable :: text
 
-    text = rounded_text(record%strength)//' at a shortening of '//rounded_text(record%shortening)//', time '// &
-           rounded_text(record%at)
+    text = rounded_text(record%strength)//' at a shortening of '//rounded_text(record%shortening)//', '// &
+           moment(deck, record%at)
     if (record%modulus() > 0) text = text//', effective modulus '//rounded_text(record%modulus())
     if (record%buckling > 0) text = text//', buckled at a strain of '//rounded_text(record%buckling)
     if (.not. record%failed) text = text//'; a lower bound, as the plate has not failed'
   end function compression_text
+
   !> Place of failure, for the file.
   subroutine put_collapse(json, record, figures, below_plies)
     !> The summary

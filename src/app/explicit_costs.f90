@@ -8,7 +8,7 @@ module explicit_costs
   use delamination_parameters, only: law_cohesive
   use plate_options, only: kinematics_von_karman
   use setup_scales, only: free_span
-  use text, only: rounded_text, to_text
+  use text, only: counted, rounded_text, to_text
   implicit none
   private
   public :: explicit_sentence, duration_text
@@ -36,8 +36,8 @@ contains
     step = deck%stepping%time%end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
-    sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(step)//' for '// &
-               bound//rounded_text(model_size%elements)//' elements of all layers: '//bound// &
+    sentence = 'About '//counted(rounded_text(steps), 'step')//' of '//rounded_text(step)//' for '// &
+               bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '//bound// &
                duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
   end function explicit_sentence
 

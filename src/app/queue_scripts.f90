@@ -9,7 +9,7 @@ module queue_scripts
   use kinds, only: wp
   use model_sizes, only: model_size_t, size_of_model
   use stepping_parameters, only: is_explicit
-  use text, only: line_t, append, to_text
+  use text, only: line_t, append, counted, to_text
   implicit none
   private
   public :: write_queue_script
@@ -81,7 +81,7 @@ contains
     path = job%name//'.'//job%queue
     call write_new_file(path, script, error)
     if (allocated(error)) return
-    call append(lines, 'Wrote '//path//': '//to_text(job%ranks)//trim(merge(' rank ', ' ranks', job%ranks == 1))// &
+    call append(lines, 'Wrote '//path//': '//counted(to_text(job%ranks), 'rank')// &
                 ', '//to_text(job%megabytes)//' MB each, '//clock(job%seconds)//'.')
     call append(lines, 'To submit it: '//trim(merge('sbatch', 'qsub  ', job%queue == 'slurm'))//' '//path)
   end subroutine write_queue_script

@@ -6,7 +6,7 @@ module run_costs
   use model_sizes, only: model_size_t
   use plate_options, only: kinematics_linear
   use stepping_parameters, only: is_error_controlled, is_explicit
-  use text, only: line_t, append, rounded_text, to_text
+  use text, only: line_t, append, counted, rounded_text, to_text
   implicit none
   private
   public :: cost_lines
@@ -34,7 +34,7 @@ contains
 
     allocate (lines(0))
     if (deck%is_static()) then
-      call append(lines, to_text(deck%static%steps)//' load steps'//min_time(deck, model_size, &
+      call append(lines, counted(to_text(deck%static%steps), 'load step')//min_time(deck, model_size, &
         deck%static%steps*tangents_of_load_step*factor_over_solve, &
         deck%static%steps*tangents_of_load_step))
     else if (.not. deck%stepping%time%step > 0) then
@@ -58,7 +58,7 @@ contains
 
     steps = deck%stepping%time%end/deck%stepping%time%step
     solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
-    sentence = 'About '//rounded_text(steps)//' steps of '//rounded_text(deck%stepping%time%step)
+    sentence = 'About '//counted(rounded_text(steps), 'step')//' of '//rounded_text(deck%stepping%time%step)
     if (is_error_controlled(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
     sentence = sentence//min_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
   end function implicit_sentence

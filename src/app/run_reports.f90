@@ -1,6 +1,6 @@
 !> Reports of a run in its log: keys in effect at the start, costs at the end.
 module run_reports
-  use text, only: line_t, rounded_text, to_text
+  use text, only: counted, line_t, rounded_text, to_text
   use logger, only: log_t
   use models, only: model_t
   use profiles, only: part_length, profile_row_t
@@ -59,15 +59,16 @@ contains
       call model%communicator%sum(unknowns)
       call model%communicator%maximum(most)
       call model%communicator%minimum(least)
-      call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(unknowns)//' unknowns, '// &
-                    to_text(model%communicator%size)//' rank(s) of '//to_text(least)//' to '//to_text(most)// &
-                    ' elements.')
+      call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
+                    counted(to_text(unknowns), 'unknown')//', '//counted(to_text(model%communicator%size), 'rank')// &
+                    ' of '//to_text(least)//' to '//counted(to_text(most), 'element')//'.')
       call log_stable_step(stepper, log)
       return
     end if
     associate (operator => stepper%operator)
-      call log%note('Model: '//to_text(model%mesh%elements())//' elements, '//to_text(operator%numbering%total)// &
-                    ' unknowns, '//to_text(model%communicator%size)//' rank(s), factored by '// &
+      call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
+                    counted(to_text(operator%numbering%total), 'unknown')//', '// &
+                    counted(to_text(model%communicator%size), 'rank')//', factored by '// &
                     operator%solver%package_used()//'.')
     end associate
   end subroutine log_model
@@ -149,12 +150,16 @@ contains
     character(len=:), allocatable :: line
 
     associate (now => stepper%now, operator => stepper%operator)
-      line = to_text(now%step)//' steps by central differences.'
-      if (allocated(stepper%explicit)) return
-      line = to_text(now%step)//' steps ('//to_text(stepper%rejected)//' rejected), '// &
-             to_text(now%all_iterations)//' iterations of equilibrium, '//to_text(now%all_force_iterations)// &
-             ' of the force, '//to_text(operator%factorizations)//' factorizations, '// &
-             to_text(operator%solves)//' solves by '//operator%solver%package_used()//'.'
+      line = counted(to_text(now%step), 'step')
+      if (allocated(stepper%explicit)) then
+        line = line//' by central differences.'
+        return
+      end if
+      line = line//' ('//to_text(stepper%rejected)//' rejected), '// &
+             counted(to_text(now%all_iterations), 'iteration')//' of equilibrium, '// &
+             to_text(now%all_force_iterations)//' of the force, '// &
+             counted(to_text(operator%factorizations), 'factorization')//', '// &
+             counted(to_text(operator%solves), 'solve')//' by '//operator%solver%package_used()//'.'
     end associate
   end function summary
 end module run_reports

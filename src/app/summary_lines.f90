@@ -11,7 +11,7 @@ module summary_lines
   use run_records, only: run_record_t
   use run_warnings, only: warnings_given
   use states, only: state_t
-  use text, only: line_t, append, rounded_text, to_text
+  use text, only: line_t, append, counted, rounded_text, to_text
   implicit none
   private
   public :: lines_of_summary
@@ -50,7 +50,7 @@ contains
     call add_figure(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
               moment(deck, record%deflection_time)//within(errors%deflection, record%deflection))
     if (record%compression%strength > 0) then
-      call add_figure(lines, 'residual strength', compression_text(record%compression))
+      call add_figure(lines, 'residual strength', compression_text(deck, record%compression))
       if (record%compression%failed) &
         call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
     end if
@@ -221,7 +221,8 @@ contains
         call add_event('first growth', record%growth(:, zone))
         if (deck%has_impactor) call add_figure(lines, '', 'closed form '//rounded_text(figures%threshold(zone))// &
                                                ' for '// &
-          to_text(size(figures%interfaces))//' equal circular delaminations'//of_starter(figures%starter_threshold))
+          counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
+          of_starter(figures%starter_threshold))
       end associate
     end do
 

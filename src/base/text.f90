@@ -4,7 +4,7 @@ module text
   use shortest_digits, only: find_shortest
   implicit none
   private
-  public :: line_t, lower_case, to_text, rounded_text, joined, words_of, append, edit_distance, nearest_name
+  public :: line_t, lower_case, to_text, rounded_text, counted, joined, words_of, append, edit_distance, nearest_name
 
   !> One line of a list of lines.
   type :: line_t
@@ -130,6 +130,19 @@ contains
     write (buffer, form) value
     digits = plain_decimal(trim(adjustl(buffer)))
   end function rounded_text
+
+  !> A number with the noun of what it counts, in the plural unless the number is 1.
+  pure function counted(digits, noun) result(words)
+    !> The number as text
+    character(len=*), intent(in) :: digits
+    !> The noun in the singular, whose plural ends with s
+    character(len=*), intent(in) :: noun
+    !> Such as 1 step or 12 steps
+    character(len=:), allocatable :: words
+
+    words = digits//' '//noun
+    if (digits /= '1') words = words//'s'
+  end function counted
 
   !> A number in scientific form as plain text.
   pure function plain_decimal(scientific) result(plain)

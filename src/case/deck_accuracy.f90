@@ -16,7 +16,7 @@ module deck_accuracy
   use setup_scales, only: setup_scales_t, scales_of, contact_side
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, past_contact
-  use text, only: line_t, append, to_text
+  use text, only: line_t, append, counted, to_text
   use time_deck, only: time_group, key_end, key_step
   implicit none
   private
@@ -131,8 +131,8 @@ contains
     if (.not. end > 0) then
       call choose_one(deck, time_group, key_end, past_contact*first%last_contact)
       end = deck%settings%real_of(time_group, key_end)
-      call append(deck%reasons, 'End '//short_text(end)//': the contact, '//to_text(first%contacts)// &
-                  ' time(s), is over at '//short_text(first%last_contact)//' in a preliminary elastic impact by modes.')
+      call append(deck%reasons, 'End '//short_text(end)//': the contact, '//counted(to_text(first%contacts), 'time')// &
+                  ', is over at '//short_text(first%last_contact)//' in a preliminary elastic impact by modes.')
     end if
     step = deck%settings%real_of(time_group, key_step)
     follows = .not. step > 0
@@ -158,8 +158,8 @@ contains
 
     call choose_one(deck, time_group, key_step, step)
     step = deck%settings%real_of(time_group, key_step)
-    call append(deck%reasons, 'Step '//short_text(step)//': '//to_text(ceiling(end/step))// &
-                ' steps; by preliminary elastic impacts it changes the force history by '//short_text(100*error)//' %.')
+    call append(deck%reasons, 'Step '//short_text(step)//': '//counted(to_text(ceiling(end/step)), 'step')// &
+                '; by preliminary elastic impacts it changes the force history by '//short_text(100*error)//' %.')
   end subroutine choose_step
 
   !> Mesh, and in time the step, of a plate under pressure.

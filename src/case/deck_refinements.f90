@@ -3,7 +3,7 @@ module deck_refinements
   use case_deck, only: case_group, key_refine
   use deck_contents, only: deck_t
   use stepping_parameters, only: is_explicit
-  use text, only: line_t, append, lower_case, to_text
+  use text, only: line_t, append, counted, lower_case, to_text
   implicit none
   private
   public :: refine, refined_text
@@ -35,8 +35,8 @@ contains
     deck%stepping%adapt%tolerance = deck%stepping%adapt%tolerance/parts**3
     deck%static%steps = parts*deck%static%steps
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    call append(deck%reasons, 'Refined '//to_text(deck%refine)//' time(s): '//to_text(deck%mesh%elements(1))//' x '// &
-                to_text(deck%mesh%elements(2))//' elements'//steps_of(deck)//'.')
+    call append(deck%reasons, 'Refined '//counted(to_text(deck%refine), 'time')//': '// &
+                to_text(deck%mesh%elements(1))//' x '//to_text(deck%mesh%elements(2))//' elements'//steps_of(deck)//'.')
   end subroutine refine
 
   !> Clause on the steps.
@@ -49,7 +49,7 @@ contains
     if (is_explicit(deck%stepping)) then
       clause = ', '//to_text(deck%stepping%central%step_factor)//' of the stable step'
     else if (deck%is_static()) then
-      clause = ', '//to_text(deck%static%steps)//' load step(s)'
+      clause = ', '//counted(to_text(deck%static%steps), 'load step')
     else
       clause = ', steps of '//to_text(deck%stepping%time%step)
     end if

@@ -106,16 +106,18 @@ contains
     !> The values
     type(quantity_t), allocatable, intent(out) :: list(:)
     real(wp) :: toughness(2)
-    integer :: i
+    integer :: i, stiffest
 
     allocate (list(0))
     call add(of_length, minval(deck%plate%length), plate_group, key_length, 1)
     call add(of_thickness, sum(deck%laminate%thickness), laminate_group, key_thicknesses, 1)
+    ! Moduli and strengths of a honeycomb in its plane have no least size: the stiffest material decides.
+    stiffest = maxloc(deck%materials%e1, 1)
+    call add(of_pressure, deck%materials(stiffest)%e1, material_group, &
+             merge(key_isotropic, key_along, deck%settings%is_given(material_group, key_isotropic, stiffest)), stiffest)
+    call add(of_strength, deck%materials(stiffest)%xt, material_group, key_tension, stiffest)
     do i = 1, size(deck%materials)
-      call add(of_pressure, deck%materials(i)%e1, material_group, &
-               merge(key_isotropic, key_along, deck%settings%is_given(material_group, key_isotropic, i)), i)
       call add(of_density, deck%materials(i)%density, material_group, key_density, i)
-      call add(of_strength, deck%materials(i)%xt, material_group, key_tension, i)
     end do
     do i = 1, size(deck%delaminations)
       toughness = toughnesses(deck%delaminations(i))

@@ -117,7 +117,15 @@ contains
                             newton_controls_t(), largest) <= tolerance) exit
       if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
-      if (.not. allocated(error)) call operator%renew(model, state, 1.0_wp, mass_factor(model), error)
+      if (allocated(error)) return
+      call operator%renew(model, state, 1.0_wp, mass_factor(model), error)
+      if (allocated(error) .and. iteration > 0 .and. model%rig%unilateral) then
+        ! The last correction has lifted the plate off its frame, so that nothing holds it: half of it is taken back.
+        deallocate (error)
+        correction = correction/2
+        state%motion%displacement = state%motion%displacement - correction
+        cycle
+      end if
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) return
       operator%solves = operator%solves + 1

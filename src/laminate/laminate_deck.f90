@@ -13,7 +13,7 @@ module laminate_deck
   use shear_corrections, only: natural_correction
   use stacking, only: stacked_plies
   use stacking_sequences, only: read_sequence, max_plies, usual_degrees, count_hint
-  use text, only: line_t, append, joined, nearest_name, to_text, words_of
+  use text, only: line_t, append, counted, joined, nearest_name, to_text, words_of
   implicit none
   private
   public :: fill_laminate
@@ -182,8 +182,8 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (number <= 1 .or. number == plies) return
-    call report(settings, problems, laminate_group, key, to_text(number)//' values, but angles has '//to_text(plies)// &
-              '; allowed: 1 value for all plies or 1 a ply.')
+    call report(settings, problems, laminate_group, key, counted(to_text(number), 'value')// &
+                ', but angles has '//to_text(plies)//'; allowed: 1 value for all plies or 1 a ply.')
   end subroutine check_number
 
   !> Index of a material by its name, 0 if there is none.

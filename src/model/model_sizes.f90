@@ -7,7 +7,7 @@ module model_sizes
   use cell_grids, only: cell_edges
   use setups, only: setup_t
   use stacking, only: section_of, stacked_plies
-  use text, only: to_text
+  use text, only: counted, to_text
   implicit none
   private
   public :: model_size_t, size_of_model
@@ -142,7 +142,8 @@ contains
     !> One sentence
     character(len=:), allocatable :: words
 
-    words = trim(merge('At most', 'About  ', self%at_most))//' '//to_text(self%unknowns)//' unknowns and '// &
+    words = trim(merge('At most', 'About  ', self%at_most))//' '// &
+            counted(to_text(self%unknowns), 'unknown')//' and '// &
             to_text(nint(self%megabytes_a_rank(1)))//' MB of memory on one rank.'
   end function sentence
 end module model_sizes

@@ -1,7 +1,7 @@
 !> Provenance of a result, stored in every output, so that it can be traced and repeated.
 module run_provenance
   use logger, only: log_t
-  use text, only: to_text
+  use text, only: counted, to_text
   implicit none
   private
   public :: build_t, provenance_t, this_run, citation_of
@@ -82,7 +82,7 @@ contains
     type(log_t), intent(inout) :: log
 
     call log%note('Implam '//self%version//' (commit '//self%commit//'), '//self%compiler//', PETSc ' &
-                  //self%petsc_version//', '//to_text(self%ranks)//trim(merge(' rank ', ' ranks', self%ranks == 1)) &
+                  //self%petsc_version//', '//counted(to_text(self%ranks), 'rank') &
                   //', started '//self%started)
     call log%detail('To cite: '//citation_of(self%version))
     call log%detail('deck:'//new_line('a')//self%deck)

@@ -20,7 +20,7 @@ module step_problems
 
   !> One kind of step.
   type, abstract :: step_problem_t
-    !> True: after a failure of the solver a shorter step may succeed
+    !> True: after a failure of the solver in the first iteration a shorter step may succeed
     logical :: may_be_shortened = .true.
     !> True: element tangents are used, as the factored operator reduces the residual too little
     logical :: uses_element_tangents = .false.
@@ -261,9 +261,9 @@ contains
       call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
                         at%negative_curvature)
     else if (.not. corrected) then
-      ! Divergence, or an operator that is not positive definite: a shorter step may succeed.
-      if ((problem%may_be_shortened .or. at%model%setup%has_impactor) .and. error%code == exit_convergence) &
-        deallocate (error)
+      ! Divergence, or an operator that is not positive definite, as where all contacts open: a shorter step may succeed.
+      if ((problem%may_be_shortened .or. at%model%setup%has_impactor .or. at%new%iterations > 0) .and. &
+          error%code == exit_convergence) deallocate (error)
     end if
   end subroutine correct
 end module step_problems

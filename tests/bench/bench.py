@@ -177,7 +177,7 @@ def cost(program, text):
         if process.returncode:
             sys.exit(f'{program} failed with exit code {process.returncode}.')
         log = next(pathlib.Path(folder).glob('*.log')).read_text()
-        counts = re.search(r'(\d+) iterations of equilibrium.*?(\d+) factori[sz]ations', log).groups()
+        counts = re.search(r'(\d+) iterations? of equilibrium.*?(\d+) factori[sz]ations?', log).groups()
         return usage.ru_utime + usage.ru_stime, counts
 
 

@@ -97,7 +97,7 @@ class Run:
                 rows = list(csv.DictReader(line for line in lines if not line.startswith('#')))
         self.time = np.array([float(row['time']) for row in rows])
         self.force = np.array([float(row['force']) for row in rows])
-        self.steps = int(re.search(r'(\d+) steps', self.log)[1])
+        self.steps = int(re.search(r'(\d+) steps?', self.log)[1])
         self.unknowns = int(re.search(r'(\d+) unknowns', self.log)[1])
 
     def key(self, group, name):

@@ -86,7 +86,7 @@ def steps_of(program, text):
     """Steps of a run and their length, as the check foresees them; nothing if it says none."""
     said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
                           input=text, check=False).stdout
-    found = re.search(r'About ([\d.e+]+) steps of ([\d.e+-]+)', said)
+    found = re.search(r'About ([\d.e+]+) steps? of ([\d.e+-]+)', said)
     return (float(found[1]), float(found[2])) if found else (None, None)
 
 

@@ -236,7 +236,7 @@ def costs(program, options):
         if any(run.wrong() for run in runs):
             row(f'{elements}x{elements}', runs[0].wrong() or runs[1].wrong(), '', False)
             continue
-        unknowns, count = (int(re.search(rf'(\d+) {what}', runs[0].log)[1]) for what in ('unknowns', 'elements'))
+        unknowns, count = (int(re.search(rf'(\d+) {what}', runs[0].log)[1]) for what in ('unknowns?', 'elements?'))
         steps = runs[1].rows[-1]['step'] - runs[0].rows[-1]['step']
         row(f'{unknowns} unknowns, {count} elements of layers',
             f'{1e6*(runs[1].seconds - runs[0].seconds)/steps/count:.3f} us an element and step, {steps:.0f} steps')

@@ -11,6 +11,7 @@ static   the release rate under a static load grows with its square and is that 
 
 import json
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -326,6 +327,12 @@ def check_static(implam, folder, _):
     print(f"largest {ratio[-1]:.4g}, mean {mean:.4g}")
     require(0.2 * ratio[-1] < mean < ratio[-1], f"The mean ratio is {mean}, the largest {ratio[-1]}.")
     require(summary["interfaces"][0]["first_growth"] is None and "peak_force" not in summary, "It reports growth.")
+    deck = write_deck(folder / "pressed", "framed_panel.nml", ["mesh%elements=6, 6", "static%steps=1",
+                                                               "case%kinematics='linear'"])
+    run_deck(implam, deck)
+    log, = (path.read_text(encoding="utf-8") for path in deck.parent.glob("*.log"))
+    strength, = re.findall("^  residual strength .*", log, re.MULTILINE)
+    require(", load factor 1," in strength and "1 step (" in log and ", 1 rank," in log, f"The log says {strength}")
 
 
 TRIALS = {"figures": check_figures, "contact": check_contact, "restart": check_restart, "ranks": check_ranks,

@@ -8,6 +8,7 @@ from implam_post.exchange.abaqus import abaqus_input
 from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
+from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, finite, run
 
 
@@ -16,8 +17,9 @@ def summary(panel: Panel) -> Iterator[str]:
     cells = len(panel.stacks)
     delaminated = sum(len(stacks) > 1 for stacks in panel.stacks.values())
     failed = sum(any(any(stack.failures) for stack in stacks) for stacks in panel.stacks.values())
-    yield (f"{panel.name}: {cells} cells, of which {delaminated} are delaminated and {failed} have failed plies; "
-           f"{len(panel.sections())} sections, {len(panel.materials())} materials")
+    yield (f"{panel.name}: {counted(cells, 'cell')}, of which {delaminated} are delaminated and "
+           f"{failed} have failed plies; {counted(len(panel.sections()), 'section')}, "
+           f"{counted(len(panel.materials()), 'material')}")
     if panel.pressure is not None:
         yield f"uniform pressure on the struck face: {panel.pressure:g}"
 

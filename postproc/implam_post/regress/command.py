@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, FileError, count, positive, run
 from implam_post.io.files import write_text
 from implam_post.io.program import PROGRAM_HELP, find_program, processors, version_in
@@ -84,7 +85,7 @@ def _run(options: argparse.Namespace, folder: Path) -> bool:
     if options.accept:
         accepted = [_accept(expectations, outcomes[expectations.path]) for expectations in found]
         return all(accepted)
-    print(f"{len(everything)} runs, {failed} failed")
+    print(f"{counted(len(everything), 'run')}, {failed} failed")
     return not failed
 
 

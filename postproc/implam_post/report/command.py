@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from implam_post.io.compression import strength_of
+from implam_post.io.counts import counted
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
@@ -185,7 +186,7 @@ def _plate(summary: Mapping[str, Any], style: PictureStyle) -> str:
     """Return the size of the plate."""
     along, across = (shown(style, "length", length) for length in summary["plate_size"])
     thickness = shown(style, "length", sum(ply["thickness"] for ply in summary["plies"]))
-    return f"{along} by {across}, {thickness} thick, {len(summary['plies'])} plies."
+    return f"{along} by {across}, {thickness} thick, {counted(len(summary['plies']), 'ply', 'plies')}."
 
 
 def _failure_areas(summary: Mapping[str, Any]) -> list[str]:

@@ -6,6 +6,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_USAGE, CommandParser, FileError, count, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, find_program
@@ -66,7 +67,8 @@ def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
     runs, tables, finished = sweep.open_cases(), _Tables(sweep, study, options.format), True
     if not options.table:
         check_decks(sweep, list({case.deck: case for case in reversed(runs)}.values()), options.jobs)
-        print(f"{len(study.trials)} trials of {len(study.problems)} problems, {len(runs)} runs to do", flush=True)
+        print(f"{counted(len(study.trials), 'trial')} of {counted(len(study.problems), 'problem')}, "
+              f"{counted(len(runs), 'run')} to do", flush=True)
         finished = run_cases(sweep, runs, options.jobs, tables.write_now_and_then)
     tables.write()
     code = print_outcomes(sweep)

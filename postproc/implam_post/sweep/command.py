@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
@@ -75,7 +76,7 @@ def _write_array(sweep: Sweep, cases: Sequence[Case]) -> int:
     decks, commands = sweep.plan.output / "decks.txt", sweep.plan.output / "array.txt"
     write_text(decks, "".join(f"{sweep.deck(case).absolute()}\n" for case in cases))
     write_text(commands, "".join(shlex.join(case_command(sweep.folder(case), sweep.program)) + "\n" for case in cases))
-    print(f"{len(cases)} decks to run are listed in {decks}, the command for each in {commands}.")
+    print(f"Decks to run: {len(cases)}, listed in {decks}, the command for each in {commands}.")
     return EXIT_DONE
 
 
@@ -143,7 +144,7 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
         return _write_array(sweep, cases) if is_first else _work_on_second(sweep, options, tables)
     for note in sweep.plan.notes:
         print(f"note: {note}")
-    print(f"{len(sweep.plan.cases)} cases, {len(cases)} decks to run", flush=True)
+    print(f"{counted(len(sweep.plan.cases), 'case')}, {counted(len(cases), 'deck')} to run", flush=True)
     finished = run_cases(sweep, cases, options.jobs, tables.write_now_and_then)
     code = _gather(sweep, tables)
     if not finished:
@@ -166,7 +167,8 @@ def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) 
     check_decks(second, cases, options.jobs)
     if options.array:
         return _write_array(second, cases)
-    print(f"{len(second.plan.cases)} runs that begin from them, {len(cases)} decks to run", flush=True)
+    print(f"{counted(len(second.plan.cases), 'run')} that begin from them, {counted(len(cases), 'deck')} to run",
+          flush=True)
     finished = run_cases(second, cases, options.jobs, lambda: None)
     code = _gather_second(sweep, second, tables)
     return code if finished else EXIT_STOPPED

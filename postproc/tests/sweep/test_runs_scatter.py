@@ -109,7 +109,7 @@ class ScatterTest(unittest.TestCase):
         before = (self.output / "statistics.csv").read_text()
         self.assertIn("12 cases, 0 decks to run", self.sweep())
         next(iter(self.output.glob("cases/*/damage_history.csv"))).write_text("")
-        self.assertIn("12 cases, 1 decks to run", self.sweep())
+        self.assertIn("12 cases, 1 deck to run", self.sweep())
         self.assertEqual((self.output / "statistics.csv").read_text(), before)
         first = self.output / self.rows("table.csv")[0]["folder"] / "damage.h5"
         first.write_bytes(b"no fields")
