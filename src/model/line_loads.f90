@@ -19,7 +19,7 @@ module line_loads
 
   !> One line.
   type :: line_load_t
-    !> Coordinate of the line: x if it runs along y, y if it runs along x; the struck point is at 0
+    !> Coordinate of the line: x if it runs along y, y if it runs along x; the plate's centre is at 0
     real(wp) :: at = 0
     !> along_x or along_y
     integer :: direction = along_y

@@ -15,7 +15,7 @@ HEAD = """# Verification
 What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. It is written from
 the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is
 met when its test passes:
-`ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L verify`.
+`ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L regress`.
 
 A tolerance in % is relative; the others are in the unit of the figure. Units are SI.
 
