@@ -33,9 +33,9 @@ module deck_central_differences
   !> Approximate number of rows of a history, enough for a plot. They are written at the ends of steps, which are not
   !> shortened for them.
   real(wp), parameter :: rows = 2000
-  !> Longest step over the time in which the force of first contact rises: 15 steps in a contact. A mass on Hertz' spring
-  !> then has its energy within 1 % in all steps and its rebound within .1 %; with 3 steps, which are stable, it gains 12
-  !> % (`ctest -R verify_extremes`).
+  !> Longest step over the time in which the force of first contact rises: 15 steps in a contact. The energy of a mass
+  !> on Hertz' spring is then within 1 % in all steps, and its rebound velocity within .1 %. The stable step leaves 3
+  !> steps, with which the mass gains 12 % (`ctest -R extremes`).
   real(wp), parameter :: part_of_rise = 2/15.0_wp
 
 contains

@@ -90,27 +90,19 @@ contains
     !> Set if there is no equilibrium
     type(error_t), allocatable, intent(out) :: error
     type(state_t) :: before
-    real(wp), allocatable :: residual(:, :), correction(:, :), suppressing(:, :), lines(:, :)
+    real(wp), allocatable :: residual(:, :), correction(:, :), suppressing(:, :)
     real(wp) :: energy, damage, force_square, largest(2)
     type(aitken_t) :: aitken
     integer :: iteration
 
-    allocate (residual, correction, lines, mold=state%motion%displacement)
+    allocate (residual, correction, mold=state%motion%displacement)
     correction = 0
     before = state
     if (moved) call prescribe_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
     largest = 0
     force_square = square_of_forces(model)
     do iteration = 0, max_iterations
-      call state%find_internal(model, before, energy)
-      residual = -state%motion%internal
-      if (moved) then
-        call model%line_forces(state%motion%displacement, 0.0_wp, lines, prescribed=.true.)
-        residual = residual + lines
-      else
-        call model%add_holding_lines(state%motion%displacement, residual)
-      end if
-      call state%interfaces%add_to_residual(model, state%motion%displacement, residual)
+      call find_residual(model, moved, before, state, energy, residual)
       if (iteration == 0) suppressing = state%motion%internal
       if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
                             operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
@@ -145,6 +137,33 @@ contains
     state%patch_mean = state%contact_deflection(model)
     operator%ready = .false.
   end subroutine equilibrate
+
+  !> Residual of a plate at rest.
+  subroutine find_residual(model, moved, before, state, energy, residual)
+    type(model_t), intent(in) :: model
+    !> True: lines have their displacement of time 0; false: zero displacement
+    logical, intent(in) :: moved
+    !> The state before
+    type(state_t), intent(in) :: before
+    !> The state; receives internal forces
+    type(state_t), intent(inout) :: state
+    !> Strain energy of this rank's elements
+    real(wp), intent(out) :: energy
+    !> Residual at the owned points, (5, points)
+    real(wp), intent(inout) :: residual(:, :)
+    real(wp), allocatable :: lines(:, :)
+
+    call state%find_internal(model, before, energy)
+    residual = -state%motion%internal
+    if (moved) then
+      allocate (lines, mold=residual)
+      call model%line_forces(state%motion%displacement, 0.0_wp, lines, prescribed=.true.)
+      residual = residual + lines
+    else
+      call model%add_holding_lines(state%motion%displacement, residual)
+    end if
+    call state%interfaces%add_to_residual(model, state%motion%displacement, residual)
+  end subroutine find_residual
 
   !> Extrapolates a correction by the secant stiffness of softening plies, which alone converges linearly, by Aitken's
   !> method in the energy norm (B. M. Irons, R. C. Tuck, Int. J. Numer. Meth. Eng. 1 (1969) 275-277). Where corrections

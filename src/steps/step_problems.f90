@@ -261,7 +261,7 @@ contains
       call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
                         at%negative_curvature)
     else if (.not. corrected) then
-      ! Divergence, or an operator that is not positive definite, as where all contacts open: a shorter step may do.
+      ! Divergence, or an operator that is not definite, as where all contacts open: a shorter step may succeed.
       if ((problem%may_be_shortened .or. at%model%setup%has_impactor .or. at%new%iterations > 0) .and. &
           error%code == exit_convergence) deallocate (error)
     end if
