@@ -44,6 +44,8 @@ OTHERS = (
      "fields, which users choose by these words"),
     ("tangent/tangent_operators.f90", "factorization", "a timer"),
 )
+# The noun of what a number counts, as in counted(to_text(n), 'step'), is no key.
+NOUN = re.compile(r"(\bcounted\([^']*), '[a-z ]+'\)")
 # Groups that `implam explain` explains on request only.
 HIDDEN = ("controls",)
 
@@ -124,7 +126,7 @@ def main():
         for name in names:
             if name.lower().endswith(".f90"):
                 with open(os.path.join(folder, name), encoding="utf-8") as source:
-                    sources[os.path.relpath(os.path.join(folder, name), SRC)] = source.read()
+                    sources[os.path.relpath(os.path.join(folder, name), SRC)] = NOUN.sub(r"\1)", source.read())
     groups, keys = explained(os.path.abspath(sys.argv[1]))
     if not keys:
         sys.exit("`implam explain` lists no keys.")
