@@ -96,7 +96,6 @@ contains
     integer :: iteration
 
     allocate (residual, correction, mold=state%motion%displacement)
-    correction = 0
     before = state
     if (moved) call prescribe_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
     largest = 0
@@ -111,13 +110,6 @@ contains
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (allocated(error)) return
       call operator%renew(model, state, 1.0_wp, mass_factor(model), error)
-      if (allocated(error) .and. iteration > 0 .and. model%rig%unilateral) then
-        ! The last correction has lifted the plate off its frame, so that nothing holds it: half of it is taken back.
-        deallocate (error)
-        correction = correction/2
-        state%motion%displacement = state%motion%displacement - correction
-        cycle
-      end if
       if (.not. allocated(error)) call operator%correct(model, residual, correction, error)
       if (allocated(error)) return
       operator%solves = operator%solves + 1
