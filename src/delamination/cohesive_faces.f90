@@ -54,7 +54,7 @@ contains
     type(cohesive_point_t), intent(out) :: new
     real(wp) :: friction(2)
 
-    call cohesive_traction(self%law, jumps, 0.0_wp, old, force, new)
+    call cohesive_traction(self%law, jumps, old, force, new)
     if (jumps(3) < 0) force(3) = closing_stiffness(self, old)*jumps(3)
     if (.not. self%friction > 0) return
     call friction_traction(self%law%stiffness_shear, jumps(:2), old%sliding, friction, new%sliding)
@@ -93,8 +93,8 @@ contains
     first = old%damage
     work = 0
     if (damage > first) then
-      first = min(damage, grown_damage(self%law, separation_of(self%law, from, 0.0_wp), old))
-      separation = separation_of(self%law, to, 0.0_wp)
+      first = min(damage, grown_damage(self%law, separation_of(self%law, from), old))
+      separation = separation_of(self%law, to)
       work = separation%toughness*fraction_growth(self%law, first, damage)
     end if
     work = work + (1 - damage)*undamaged_energy(self%law, to) - (1 - first)*undamaged_energy(self%law, from)
@@ -128,7 +128,7 @@ contains
     !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(3, 3)
 
-    slopes = traction_slopes(self%law, jumps, separation_of(self%law, jumps, 0.0_wp), old)
+    slopes = traction_slopes(self%law, jumps, separation_of(self%law, jumps), old)
     if (jumps(3) < 0) slopes(3, 3) = closing_stiffness(self, old)
     if (self%friction > 0) slopes(:2, :2) = slopes(:2, :2) + sticking(self, jumps, old)
   end function slopes
@@ -145,7 +145,7 @@ contains
     real(wp) :: diagonal(3)
     real(wp) :: slopes(2, 2)
 
-    diagonal = operator_stiffness(self%law, jumps, 0.0_wp, old)
+    diagonal = operator_stiffness(self%law, jumps, old)
     if (jumps(3) < 0) diagonal(3) = closing_stiffness(self, old)
     if (.not. self%friction > 0) return
     slopes = sticking(self, jumps, old)

@@ -29,8 +29,6 @@ module cohesive_laws
     real(wp) :: mixing_exponent = 1.75_wp
     !> Strength sigma of pure opening and tau of pure shear
     real(wp) :: strength_opening = 0, strength_shear = 0
-    !> Increase of the shear strength with pressure, mu; the toughness increases with its square, N is constant
-    real(wp) :: pressure_strengthening = 0
     !> Jump at failure over jump at onset, N
     real(wp) :: failure_ratio = 0
   end type cohesive_law_t
@@ -38,8 +36,7 @@ module cohesive_laws
 contains
 
   !> The law of an interface. Values that `cohesive_objection` refuses give a law without stiffness.
-  pure function create_cohesive_law(toughness, mixing_exponent, strength, stiffness, modulus, thickness, &
-                                    pressure_strengthening) result(law)
+  pure function create_cohesive_law(toughness, mixing_exponent, strength, stiffness, modulus, thickness) result(law)
     !> G_Ic and G_IIc
     real(wp), intent(in) :: toughness(2)
     !> Exponent eta of Benzeggagh and Kenane
@@ -52,8 +49,6 @@ contains
     real(wp), intent(in) :: modulus
     !> Thickness of the thinner layer
     real(wp), intent(in) :: thickness
-    !> mu
-    real(wp), intent(in) :: pressure_strengthening
     !> The law
     type(cohesive_law_t) :: law
 
@@ -62,7 +57,6 @@ contains
     law%mixing_exponent = mixing_exponent
     law%strength_opening = strength(1)
     law%strength_shear = strength(2)
-    law%pressure_strengthening = pressure_strengthening
     if (.not. (all(toughness > 0) .and. all(strength > 0))) return
     law%stiffness_opening = stiffness
     if (.not. abs(stiffness) > 0) then
@@ -95,8 +89,6 @@ contains
       objection = 'the exponent eta must be positive'
     else if (.not. (positive(law%strength_opening) .and. positive(law%strength_shear))) then
       objection = 'strength_opening and strength_shear must be positive'
-    else if (.not. (law%pressure_strengthening >= 0 .and. law%pressure_strengthening <= huge(1.0_wp))) then
-      objection = 'pressure_strengthening must not be negative'
     else if (.not. (positive(law%stiffness_opening) .and. positive(law%stiffness_shear))) then
       objection = 'stiffness must be positive'
     else if (law%failure_ratio < min_ratio*(1 - sqrt(epsilon(1.0_wp)))) then

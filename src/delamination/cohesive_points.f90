@@ -33,7 +33,7 @@ module cohesive_points
     real(wp) :: unit(3) = 0
     !> Energy per area of these unit jumps in an undamaged interface, and its fraction of shear B
     real(wp) :: unit_energy = 0, shear_share = 0
-    !> Toughness G_c of this mixture of modes under this pressure
+    !> Toughness G_c of this mixture of modes
     real(wp) :: toughness = 0
     !> Jump over that of the onset, x, at most N
     real(wp) :: ratio = 0
@@ -42,13 +42,11 @@ module cohesive_points
 contains
 
   !> Traction of trial jumps, and the history variables of the trial state.
-  pure subroutine cohesive_traction(law, jumps, pressure, old, traction, new)
+  pure subroutine cohesive_traction(law, jumps, old, traction, new)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> Contact pressure of the last accepted state
-    real(wp), intent(in) :: pressure
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Force per area against the jumps; normal component zero in closing
@@ -57,27 +55,24 @@ contains
     type(cohesive_point_t), intent(out) :: new
     type(separation_t) :: separation
 
-    separation = separation_of(law, jumps, pressure)
+    separation = separation_of(law, jumps)
     new%damage = grown_damage(law, separation, old)
     new%dissipated = old%dissipated + separation%toughness*fraction_growth(law, old%damage, new%damage)
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
   !> Position of jumps on the curve: x = sqrt(N Y/G_c).
-  pure function separation_of(law, jumps, pressure) result(separation)
+  pure function separation_of(law, jumps) result(separation)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> Contact pressure; negative: none
-    real(wp), intent(in) :: pressure
     !> Position on the curve
     type(separation_t) :: separation
     real(wp) :: size, s1, s2, n, shear, energy, share, unit_ratio, toughness
 
     ! Scalars, since arrays and components take five times as long.
     toughness = law%toughness_opening
-    if (pressure > 0) toughness = toughness*(1 + law%pressure_strengthening*pressure/law%strength_shear)**2
     separation%toughness = toughness
     size = max(abs(jumps(1)), abs(jumps(2)), jumps(3))
     if (.not. size > 0) return
@@ -177,7 +172,7 @@ contains
     real(wp), intent(in) :: jumps(3)
     type(separation_t) :: separation
 
-    separation = separation_of(law, jumps, 0.0_wp)
+    separation = separation_of(law, jumps)
     share = separation%shear_share
   end function mode_mixity
 

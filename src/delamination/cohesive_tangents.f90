@@ -58,13 +58,11 @@ contains
   end function damage_slopes
 
   !> Derivative of the dissipated energy G_c (phi(d) - phi(d_old)); zero unless damage grows.
-  pure function dissipation_slopes(law, jumps, pressure, old) result(slopes)
+  pure function dissipation_slopes(law, jumps, old) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> Contact pressure of the last accepted state
-    real(wp), intent(in) :: pressure
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Energy per area by jump
@@ -74,7 +72,7 @@ contains
     real(wp) :: remainder
 
     slopes = 0
-    separation = separation_of(law, jumps, pressure)
+    separation = separation_of(law, jumps)
     new%damage = grown_damage(law, separation, old)
     if (point_class(old, new) /= point_growing) return
     remainder = law%failure_ratio*(1 - new%damage) + new%damage
@@ -106,13 +104,11 @@ contains
   !> Diagonal for a factored operator, constant within a class of points: K if undamaged, (1 - d) K if damaged, with
   !> growing damage 0 along the jump and (1 - d) K across it, 0 after failure. It is not negative and does not depend on
   !> closing: contact is added separately.
-  pure function operator_stiffness(law, jumps, pressure, old) result(diagonal)
+  pure function operator_stiffness(law, jumps, old) result(diagonal)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
-    !> Contact pressure of the last accepted state
-    real(wp), intent(in) :: pressure
     !> The point in the last accepted state
     type(cohesive_point_t), intent(in) :: old
     !> Pressure per jump
@@ -121,7 +117,7 @@ contains
     type(cohesive_point_t) :: new
     integer :: class_of_point
 
-    separation = separation_of(law, jumps, pressure)
+    separation = separation_of(law, jumps)
     new%damage = grown_damage(law, separation, old)
     class_of_point = point_class(old, new)
     diagonal = 0

@@ -355,7 +355,7 @@ contains
     associate (d => delamination)
       if (.not. (d%strength_opening > 0 .and. d%strength_shear > 0) .or. toughness_objection(d) /= '') return
       objection = cohesive_objection(create_cohesive_law(toughnesses(d), d%mixing_exponent, [d%strength_opening, &
-                                                         d%strength_shear], d%stiffness, 0.0_wp, 0.0_wp, 0.0_wp))
+                                                         d%strength_shear], d%stiffness, 0.0_wp, 0.0_wp))
     end associate
     if (objection /= '') call report(settings, problems, group, 'stiffness', objection//'.', place)
   end subroutine check_law

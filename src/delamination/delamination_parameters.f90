@@ -62,8 +62,6 @@ module delamination_parameters
     logical :: shear_cracks = .false.
     !> Strength factor of cracks_as_flaws: the fraction of the strengths that the cells resolve
     real(wp) :: flaw_strength = 1
-    !> Increase of the cohesive law's shear strength with pressure, mu
-    real(wp) :: pressure_strengthening = 0
     !> release_two_state or release_vcct
     integer :: energy_release = release_vcct
     !> growth_equilibrium or growth_one_per_step

@@ -91,7 +91,7 @@ contains
         if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
         faces = cohesive%faces_of(model, model%zone(p + j), strength)
       end associate
-      damage = grown_damage(faces%law, separation_of(faces%law, jumps(:, j), 0.0_wp), work%points(j))
+      damage = grown_damage(faces%law, separation_of(faces%law, jumps(:, j)), work%points(j))
       if (.not. damage > work%points(j)%damage) cycle
       grows = .true.
       energy = faces%work(work%start(:, j), jumps(:, j), work%points(j), damage)

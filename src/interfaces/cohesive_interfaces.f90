@@ -174,7 +174,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (self%cohesive(i)) slopes(1:3, i) = slopes(1:3, i) + model%contact_area(i) &
-        *dissipation_slopes(self%law_at(model, i), displacement(1:3, i), 0.0_wp, old%points(i))
+        *dissipation_slopes(self%law_at(model, i), displacement(1:3, i), old%points(i))
     end do
   end subroutine add_dissipation_slopes
 

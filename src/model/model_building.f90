@@ -295,7 +295,7 @@ contains
             self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
                                                            [interface%strength_opening, interface%strength_shear], &
                                                            interface%stiffness, self%plies(below)%elasticity%e2, &
-                                                           thickness, interface%pressure_strengthening)
+                                                           thickness)
         end associate
       end do
     end associate

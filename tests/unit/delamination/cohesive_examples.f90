@@ -5,30 +5,25 @@ module cohesive_examples
   use kinds, only: wp
   implicit none
   private
-  public :: tough_law, even_law, brittle_law, strengthened_law, extreme_law, jumps_of, toughness_by_hand, grown_to, &
+  public :: tough_law, even_law, brittle_law, extreme_law, jumps_of, toughness_by_hand, grown_to, &
             traction_differences, differs_by
 
 contains
 
   !> Toughnesses of IM7/8552 with moderate strengths: N = 346.
   pure type(cohesive_law_t) function tough_law() result(law)
-    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 90e9_wp, 1e-3_wp, 0.0_wp)
+    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 90e9_wp, 1e-3_wp)
   end function tough_law
 
   !> One toughness for every mode.
   pure type(cohesive_law_t) function even_law() result(law)
-    law = create_cohesive_law([600.0_wp, 600.0_wp], 1.75_wp, [27e6_wp, 40e6_wp], 4e14_wp, 0.0_wp, 0.0_wp, 0.0_wp)
+    law = create_cohesive_law([600.0_wp, 600.0_wp], 1.75_wp, [27e6_wp, 40e6_wp], 4e14_wp, 0.0_wp, 0.0_wp)
   end function even_law
 
   !> The least N, 20.
   pure type(cohesive_law_t) function brittle_law() result(law)
-    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.3_wp, [60e6_wp, 90e6_wp], 0.0_wp, 9e9_wp, 1e-2_wp, 0.0_wp)
+    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.3_wp, [60e6_wp, 90e6_wp], 0.0_wp, 9e9_wp, 1e-2_wp)
   end function brittle_law
-
-  !> A law that pressure strengthens by mu = 0.3.
-  pure type(cohesive_law_t) function strengthened_law() result(law)
-    law = create_cohesive_law([280.0_wp, 790.0_wp], 1.75_wp, [27e6_wp, 60e6_wp], 0.0_wp, 90e9_wp, 1e-3_wp, 0.3_wp)
-  end function strengthened_law
 
   !> N from 1e6 (case 0) down to 1e3 (case 3), exponents of all kinds.
   pure type(cohesive_law_t) function extreme_law(case) result(law)
@@ -36,7 +31,7 @@ contains
     real(wp), parameter :: exponents(0:3) = [0.3_wp, 0.97_wp, 1.75_wp, 7.3_wp]
 
     law = create_cohesive_law([280.0_wp, 790.0_wp], exponents(case), [27e6_wp, 60e6_wp], 13e17_wp*10.0_wp**(-case), &
-                              0.0_wp, 0.0_wp, 0.4_wp)
+                              0.0_wp, 0.0_wp)
   end function extreme_law
 
   !> Jumps of a size, turned from opening towards shear.
@@ -61,19 +56,19 @@ contains
   end function toughness_by_hand
 
   !> A point that has been to these jumps.
-  pure type(cohesive_point_t) function grown_to(law, jumps, pressure) result(point)
+  pure type(cohesive_point_t) function grown_to(law, jumps) result(point)
     type(cohesive_law_t), intent(in) :: law
-    real(wp), intent(in) :: jumps(3), pressure
+    real(wp), intent(in) :: jumps(3)
     type(cohesive_point_t) :: fresh
     real(wp) :: unused(3)
 
-    call cohesive_traction(law, jumps, pressure, fresh, unused, point)
+    call cohesive_traction(law, jumps, fresh, unused, point)
   end function grown_to
 
   !> Derivatives of each traction (row) by each jump (column) by central differences.
-  pure function traction_differences(law, jumps, pressure, old, step) result(slopes)
+  pure function traction_differences(law, jumps, old, step) result(slopes)
     type(cohesive_law_t), intent(in) :: law
-    real(wp), intent(in) :: jumps(3), pressure, step
+    real(wp), intent(in) :: jumps(3), step
     type(cohesive_point_t), intent(in) :: old
     real(wp) :: slopes(3, 3), moved(3), above(3), below(3)
     type(cohesive_point_t) :: unused
@@ -82,9 +77,9 @@ contains
     do i = 1, 3
       moved = jumps
       moved(i) = jumps(i) + step
-      call cohesive_traction(law, moved, pressure, old, above, unused)
+      call cohesive_traction(law, moved, old, above, unused)
       moved(i) = jumps(i) - step
-      call cohesive_traction(law, moved, pressure, old, below, unused)
+      call cohesive_traction(law, moved, old, below, unused)
       slopes(:, i) = (above - below)/(2*step)
     end do
   end function traction_differences
