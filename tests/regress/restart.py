@@ -8,10 +8,7 @@ rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
 ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
 limit        the wall-clock limit ends runs in time with a checkpoint and that exit code: bitwise
-kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise
-found        without a file the newest whole checkpoint of a folder is taken, and results keep the name of the case
-mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
-damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
+kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise"""
 
 import filecmp
 import os
@@ -25,7 +22,6 @@ from pathlib import Path
 
 from solver_runs import (
     EXIT_DONE,
-    EXIT_FILES,
     EXIT_STOPPED,
     TrialError,
     checkpoint_of,
@@ -360,106 +356,8 @@ def check_kill(implam, folder, _):
     print("8 kills; the same to the last bit")
 
 
-def check_damaged(implam, folder, _):
-    """Files that aren't checkpoints, or not whole ones."""
-    deck = write_deck(folder / "sound", IMPACT, split_at(0.53, SHORT))
-    run_deck(implam, deck)
-    sound = checkpoint_of(deck.parent).read_bytes()
-    moments = random.Random(2)
-    damaged = {"empty": b"", "text": b"&case /\n", "noise": moments.randbytes(len(sound)),
-               "fields": history_of(deck.parent).with_name("sun_chen_tan_sun.h5").read_bytes(),
-               "longer": sound + b"\0" * 512}
-    for share in (0.001, 0.1, 0.5, 0.9, 0.999):
-        damaged[f"cut at {share}"] = sound[:int(share * len(sound))]
-    for _ in range(10):
-        place = moments.randrange(len(sound))
-        damaged[f"byte {place}"] = sound[:place] + bytes([sound[place] ^ 0x41]) + sound[place + 1:]
-    for name, content in damaged.items():
-        path = folder / "damaged_restart.h5"
-        path.write_bytes(content)
-        said = run([implam, "restart", path], EXIT_FILES)
-        lines = [line for line in said.splitlines() if line.strip()]
-        require(len(lines) == 1 and lines[0].startswith("implam: ") and lines[0].endswith("."),
-                f"{name}: not one sentence is said but\n{said}")
-        require(path.read_bytes() == content, f"{name}: the file was changed.")
-        print(f"{name}: {lines[0]}")
-    said = run([implam, "restart", folder / "nowhere.h5"], EXIT_FILES)
-    print(f"absent: {said.strip()}")
-
-
-def one_sentence_of(said, what):
-    """Return what was said, which must be one sentence."""
-    lines = [line for line in said.splitlines() if line.startswith("implam: ")]
-    require(len(lines) == 1 and lines[0].endswith("."), f"{what}: not one sentence is said but\n{said}")
-    return lines[0]
-
-
-def refuse(implam, checkpoint, what):
-    """Restart where it must be refused; no result may change."""
-    def results():
-        return {path.name: path.read_bytes() for path in checkpoint.parent.iterdir() if path.suffix != ".log"}
-
-    before = results()
-    print(f"{what}: {one_sentence_of(run([implam, 'restart', checkpoint], EXIT_FILES), what)}")
-    require(results() == before, f"{what}: results were changed.")
-
-
-def check_found(implam, folder, _):
-    """A case named by its deck's file, and another one beside it that is older, newer or damaged."""
-    deck = write_deck(folder / "whole", DAMAGE, ["time%end=60e-6"])
-    text = deck.read_text(encoding="utf-8")
-    unnamed = text.replace("name='damage'", "")
-    require(unnamed != text, "The deck has a name still.")
-    references = {}
-    for name, content in (("rs", unnamed), ("damage", text)):
-        deck = deck.with_name(f"{name}.nml")
-        deck.write_text(content, encoding="utf-8")
-        run([implam, deck, "--output", folder / "whole"])
-        references[name] = (folder / "whole" / f"{name}_history.csv").read_bytes()
-        run([implam, deck, "--output", folder / "stopped", *SINGLE_STEP], EXIT_STOPPED)
-    os.utime(folder / "stopped" / "rs_restart.h5", (0, 0))
-    content = (folder / "stopped" / "damage_restart.h5").read_bytes()
-    for name, way in (("damage", ["restart"]), ("rs", ["restart"]), ("rs", ["restart", "."]),
-                      ("rs", ["restart", "--output", folder.resolve() / "here"])):
-        here = copy_run(folder / "stopped", folder / "here")
-        if name == "rs":
-            (here / "damage_restart.h5").write_bytes(content[:-1])
-        said = run([implam, *way], folder=here)
-        require(f"{name}_restart.h5" in said, f"Nobody says what it goes on from:\n{said}")
-        require((here / f"{name}_history.csv").read_bytes() == references[name], f"{name} did not go on as it was.")
-        histories = sorted(path.name for path in here.glob("*_history.csv"))
-        require(histories == ["damage_history.csv", "rs_history.csv"], f"There are {histories}.")
-        print(f"{name} by {way}: the same to the last bit")
-    for path in here.glob("*_restart.h5"):
-        path.write_bytes(content[:-1])
-    print(one_sentence_of(run([implam, "restart"], EXIT_FILES, here), "no checkpoint"))
-
-
-def check_mixed(implam, folder, _):
-    """A run with checkpoints, another one in its folder without, then a restart."""
-    deck = write_deck(folder / "both", DAMAGE, ["output%checkpoint_every=50e-6", "output%fields_every=50e-6"])
-    run_deck(implam, deck)
-    alone = copy_run(deck.parent, folder / "alone")
-    checkpoint = checkpoint_of(deck.parent)
-    content = checkpoint.read_bytes()
-    other = write_deck(folder / "other", DAMAGE, ["impactor%velocity=4", "output%checkpoint_at_end=.false."])
-    said = run([implam, other, "--output", deck.parent])
-    old = checkpoint.with_name(checkpoint.name + ".old")
-    require(not checkpoint.exists() and old.read_bytes() == content and old.name in said,
-            f"The older checkpoint is still there, or nobody says where it is:\n{said}")
-    refuse(implam, old, "history")
-    history_of(deck.parent).rename(folder / "history.csv")
-    refuse(implam, old, "fields")
-    (deck.parent / "damage.h5").unlink()
-    (folder / "history.csv").rename(deck.parent / "damage_history.csv")
-    refuse(implam, old, "history alone")
-    reference = history_of(alone).read_bytes()
-    require(go_on(implam, alone).read_bytes() == reference, "Alone it does not go on as it was.")
-
-
 TRIALS = {"integrators": check_integrators, "contact": check_contact, "ranks": check_ranks, "rejected": check_rejected,
-          "signal": check_signal, "ranks_signal": check_ranks_signal, "limit": check_limit, "kill": check_kill,
-          "found": check_found, "mixed": check_mixed, "damaged": check_damaged}
+          "signal": check_signal, "ranks_signal": check_ranks_signal, "limit": check_limit, "kill": check_kill}
 
 
 def main(trials, trial, implam, folder, *launcher):
