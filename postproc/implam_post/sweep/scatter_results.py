@@ -15,7 +15,7 @@ import pandas as pd
 
 from implam_post.io.deck import Deck
 from implam_post.io.deck_text import deck_value
-from implam_post.io.errors import FileError, ImplamError
+from implam_post.io.errors import FileError, ImplamError, reason
 from implam_post.io.fields import Fields
 from implam_post.io.files import write_table, write_text
 from implam_post.io.history import History, read_history
@@ -181,7 +181,7 @@ def _head(path: Path) -> str:
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"the measured curve {path} cannot be read ({error}).") from None
+        raise FileError(f"the measured curve {path} cannot be read ({reason(error)}).") from None
     return next((line for line in lines if line.strip() and line[0] != "#"), "")
 
 
