@@ -192,6 +192,10 @@ def _command(options: argparse.Namespace) -> int:
     """Read the sweep and work on it, alone in its folder."""
     program = find_program(options.program)
     plan = read_plan(options.sweep, options.output, program)
+    if plan.measured is not None:
+        # Before hours of runs, after which the curve is drawn.
+        from implam_post.sweep.scatter_results import curves_of
+        curves_of(plan.measured)
     sweep = Sweep(only(plan, options.only) if options.only else plan, program)
     try:
         sweep.plan.output.mkdir(parents=True, exist_ok=True)
