@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from implam_post.exchange import from_nastran
 from implam_post.exchange.export import to_abaqus, to_nastran
 from implam_post.io.errors import FileError
 from implam_post.io.history import ENERGIES, read_history
@@ -19,6 +20,7 @@ from implam_post.regress import command as regress
 from implam_post.regress import compare
 from implam_post.regress.expectations import read_expectations
 from implam_post.report import command as report
+from implam_post.sweep.case_run import read_record
 from tests.decks import SUN_CHEN, deck
 
 
@@ -84,11 +86,34 @@ class CommandTest(unittest.TestCase):
         for content, sentence in (('[[expect]]\nvalue = 1.0\nabsolute = 0.1\n', "lacks quantity"),
                                   ('[[expect]]\nquantity = "peak_force"\nvlaue = 1.0\n', "has no vlaue"),
                                   ('[[expect]]\nquantity = 1\nvalue = 1.0\nabsolute = 0.1\n', "are texts"),
+                                  ('[[expect]]\nquantity = "at"\ncolumn = "force"\ntime = "x"\nvalue = 0\n',
+                                   "at: time is a finite number"),
                                   ('variant = [1]\n', "list of tables"), ('[[variant]]\nname = 1\n', "has a name")):
             path.write_text(content)
             with self.subTest(content), self.assertRaisesRegex(FileError, sentence) as caught:
                 read_expectations(path)
             self.assertNotIn("__init__", str(caught.exception))
+
+    def test_files_that_are_not_there(self) -> None:
+        """The sentence names the file once, and not by the numbers of the system's errors."""
+        none, expected = self.folder / "none.csv", self.folder / "case.toml"
+        expected.write_text('[[expect]]\nquantity = "rms_force"\nagainst = "none.csv"\nvalue = 0\nabsolute = 1\n')
+        for command, *words in ((plot.main, none), (plot.main, self.history, "--measured", none),
+                                (compare.main, self.history, none), (compare.main, self.history, expected),
+                                (compare.main, self.history, self.folder), (check_impact.main, none),
+                                (regress.main, none), (from_nastran.main, none)):
+            with self.subTest(command=command.__module__, words=words):
+                code, text = self.run_quietly(command, *words)
+                self.assertEqual((code, len(text.splitlines())), (4, 1), text)
+                self.assertNotIn("Errno", text)
+                self.assertEqual(text.count("none.csv"), 0 if self.folder in words else 1, text)
+
+    def test_damaged_record(self) -> None:
+        """What is no record of a run is reported with what to do, whatever it is."""
+        for content in ("", "[]", '{"exit_code": 0, "other": 1}', '{"exit_code": 0, "cpu_time": "x"}', "[" * 100000):
+            (self.folder / "run.json").write_text(content)
+            with self.subTest(content[:40]), self.assertRaisesRegex(FileError, "is damaged: delete it"):
+                read_record(self.folder)
 
     def test_check_fails_beyond_the_tolerance_only(self) -> None:
         """Two percent too much force is reported, and fails if a tolerance is given."""

@@ -55,6 +55,8 @@ class BulkCard:
         sentence = (lines or [type(error).__name__])[0].rstrip(".")
         if match := re.match(r"invalid literal for int\(\) with base 10: ('.*')$", sentence):
             sentence = f"{match[1]} isn't an integer"
+        if isinstance(error, (LookupError, AttributeError, TypeError)):
+            sentence = "its fields aren't those of such a card"  # words of Python on pyNastran's inside
         for word, plain in _WORDS:
             sentence = sentence.replace(word, plain)
         return self.error(f"{sentence}.")

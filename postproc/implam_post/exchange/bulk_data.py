@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from implam_post.exchange.bulk_cards import READING_ERRORS, BulkCard, read_cards, with_exponent
-from implam_post.io.errors import DeckError, FileError, ImplamError
+from implam_post.io.errors import DeckError, FileError, ImplamError, reason
 
 _BEGIN = re.compile(r"\s*BEGIN(\s+|\s*,\s*)BULK", re.I)
 _CEND = re.compile(r"\s*CEND\b", re.I)
@@ -125,7 +125,7 @@ def read_bulk_data(path: Path) -> BulkData:
     try:
         text = path.read_bytes().removeprefix(codecs.BOM_UTF8).decode("latin-1")
     except OSError as error:
-        raise FileError(f"{path} cannot be read ({error}).") from None
+        raise FileError(f"{path} cannot be read ({reason(error)}).") from None
     if "\0" in text:
         raise FileError(f"{path} is no text: bulk data are wanted, as a file .bdf or .dat.")
     return BulkData(path, text)

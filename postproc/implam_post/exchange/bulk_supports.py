@@ -44,7 +44,7 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
         card, grid = pins[0]
         raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of an entire edge.")
     for card, _ in pins:
-        remarks.add(card, "some of it holds rigid motion in the plane; Implam does so by itself")
+        remarks.add(card, "part of it suppresses rigid-body motion in the plane; Implam does so by itself")
     for number in sorted({edge for edge, _ in lines}):
         remarks.edge(EDGES[number], "held in-plane by &line, as the edges aren't held alike or both ways")
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
@@ -91,6 +91,7 @@ def _constraints(bulk: BulkData, sets: set[int]) -> Iterable[tuple[BulkCard, lis
         if bulk.integer(card, 1) not in sets:
             continue
         if card.name == "SPC1":
+            _check_ranges(bulk, card)
             read = bulk.read(card, SPC1)
             yield card, read.nodes, read.components
             continue
@@ -99,6 +100,17 @@ def _constraints(bulk: BulkData, sets: set[int]) -> Iterable[tuple[BulkCard, lis
             raise bulk.error(card, "it moves a grid; the supports of a panel stand still.")
         for number, components in zip(read.nodes, read.components, strict=True):
             yield card, [number], components
+
+
+def _check_ranges(bulk: BulkData, card: BulkCard) -> None:
+    """Refuse a range of grids without its last one, or that runs backwards, of which no grid would be held."""
+    for number in range(4, len(card.fields)):
+        if str(card.fields.field(number) or "").upper() == "THRU":
+            first, last = (card.fields.field(place) for place in (number - 1, number + 1))
+            if last is None:
+                raise bulk.error(card, f"no grid follows THRU after {first}.")
+            if bulk.integer(card, number - 1) >= bulk.integer(card, number + 1):
+                raise bulk.error(card, f"{first} THRU {last}: the second number needs to be the greater one.")
 
 
 def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], components: str,

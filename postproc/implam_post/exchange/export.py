@@ -9,7 +9,7 @@ from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
 from implam_post.io.counts import counted
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, finite, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, finite, reason, run
 
 
 def summary(panel: Panel) -> Iterator[str]:
@@ -33,7 +33,7 @@ def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, a
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise FileError(f"{output} cannot be written ({error}).") from None
+        raise FileError(f"{output} cannot be written ({reason(error)}).") from None
     print(*summary(panel), output, sep="\n")
     return EXIT_DONE
 

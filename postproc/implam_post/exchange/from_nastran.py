@@ -15,7 +15,7 @@ from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
 from implam_post.laminate.sections import Ply
 
 TAKEN = KNOWN
@@ -90,7 +90,7 @@ def _command(options: argparse.Namespace) -> int:
     try:
         output.write_text(text, encoding="utf-8")
     except OSError as error:
-        raise FileError(f"{output} cannot be written ({error}).") from None
+        raise FileError(f"{output} cannot be written ({reason(error)}).") from None
     print(*report(bulk, remarks), f"deck: {output}", sep="\n")
     return EXIT_DONE
 

@@ -27,6 +27,11 @@ class FileError(ImplamError):
     exit_code = EXIT_FILES
 
 
+def reason(error: Exception) -> str:
+    """Return why a file or program failed; of the system's errors without number and path, which the user knows."""
+    return error.strerror.lower() if isinstance(error, OSError) and error.strerror else str(error)
+
+
 class CommandParser(argparse.ArgumentParser):
     """Parser of a command line that ends with the solver's exit code for wrong usage."""
 

@@ -15,11 +15,15 @@ from implam_post.io.contours import WEIGHTS, above, area, areas, level_of, outli
 from implam_post.io.deck import Deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 
-__all__ = ["IMAGES", "MODES", "Fields", "Interface", "Mesh", "Snapshot", "area", "deck_in", "extents", "opened",
-           "outline", "read_fields", "struck_point"]
+__all__ = ["IMAGES", "MODES", "Fields", "Interface", "Mesh", "NoTimeError", "Snapshot", "area", "deck_in", "extents",
+           "opened", "outline", "read_fields", "struck_point"]
 MODES = {"fibre failure": 1, "matrix cracking": 2, "matrix crushing": 4}
 # What h5py and numpy raise over a file whose bytes are damaged, or that is another program's.
 _DAMAGED = (KeyError, IndexError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError)
+
+
+class NoTimeError(FileError):
+    """The run ended, or was stopped, before fields were written."""
 
 
 @dataclass(frozen=True)
@@ -214,7 +218,7 @@ def read_fields(path: Path | str) -> Fields:
         snapshots = [_snapshot(group, meshes) for group in _in_order(file["times"])]
         part = file["part"][()].decode()
     if not snapshots:
-        raise FileError(f"{path} holds no time yet.")
+        raise NoTimeError(f"{path} holds no time yet.")
     if part not in IMAGES:
         raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
     return Fields(str(path), part, snapshots)

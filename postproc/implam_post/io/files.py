@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from implam_post.io.errors import FileError
+from implam_post.io.errors import FileError, reason
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,7 +24,7 @@ def replaced(path: Path) -> Iterator[Path]:
             os.fsync(file.fileno())
         draft.replace(path)
     except OSError as error:
-        raise FileError(f"{path} cannot be written ({error}).") from None
+        raise FileError(f"{path} cannot be written ({reason(error)}).") from None
 
 
 def write_text(path: Path, text: str) -> None:
@@ -43,7 +43,7 @@ def read_text(path: Path, what: str) -> str:
     try:
         return path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise FileError(f"{what} {path} cannot be read ({error}).") from None
+        raise FileError(f"{what} {path} cannot be read ({reason(error)}).") from None
     except UnicodeDecodeError:
         raise FileError(f"{what} {path} cannot be read: it is no text.") from None
 
@@ -56,7 +56,7 @@ def try_lock(path: Path) -> int | None:
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
     except OSError as error:
-        raise FileError(f"{path} cannot be opened ({error}).") from None
+        raise FileError(f"{path} cannot be opened ({reason(error)}).") from None
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -64,5 +64,5 @@ def try_lock(path: Path) -> int | None:
         return None
     except OSError as error:
         os.close(descriptor)
-        raise FileError(f"{path} cannot be locked ({error}).") from None
+        raise FileError(f"{path} cannot be locked ({reason(error)}).") from None
     return descriptor

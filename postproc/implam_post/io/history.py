@@ -4,7 +4,7 @@ import io
 import json
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -33,11 +33,13 @@ class History:
     """Columns by name, all of one length, `time` among them.
 
     `impact_energy` is that of the impactor before the first row, as in the summary of the run; None: not known.
+    Of a run by load steps the times are load factors.
     """
 
     columns: dict[str, np.ndarray]
     name: str = ""
     impact_energy: float | None = None
+    by_load_steps: bool = False
 
     def __getitem__(self, column: str) -> np.ndarray:
         """Return a column by its name."""
@@ -50,16 +52,16 @@ class History:
         """Times of the rows."""
         return self["time"]
 
-    def table(self, system: str = "", load_steps: bool = False) -> "pd.DataFrame":
+    def table(self, system: str = "") -> "pd.DataFrame":
         """Return the columns as a table, with the unit of each in `attrs["units"]`; empty where it is not known.
 
-        `system` is that of the deck. The time of load steps is a load factor.
+        `system` is that of the deck.
         """
         import pandas as pd
 
         table = pd.DataFrame(self.columns)
         table.attrs = {"name": self.name, "units": {name: unit_of(dimension_of(name), system) for name in table}}
-        if load_steps:
+        if self.by_load_steps:
             table.attrs["units"]["time"] = ""
         return table
 
@@ -76,26 +78,40 @@ class History:
 
 
 def read_history(path: Path | str) -> History:
-    """Read a history from the solver's CSV, and the impact energy from the summary beside it.
+    """Read a history from the solver's CSV, and from the other results of the run the impact energy and its kind.
 
     Lines that begin with # are comments.
     """
     history = read_columns(path)
     if not np.all(np.diff(history.time) > 0):
         raise FileError(f"the times of the history {path} do not increase.")
-    return replace(history, impact_energy=_impact_energy(Path(path)))
+    summary = _summary_beside(Path(path))
+    energy = summary.get("energy_impact")
+    return replace(history, impact_energy=float(energy) if isinstance(energy, (int, float)) else None,
+                   by_load_steps="load_factor_reached" in summary if summary else _is_static(Path(path)))
 
 
-def _impact_energy(path: Path) -> float | None:
-    """Return the impact energy in the summary beside a history; None without one, as of a run that goes on."""
+def _summary_beside(path: Path) -> dict[str, Any]:
+    """Return the summary beside a history; empty without one, as of a run that goes on."""
     summary = path.with_name(path.name.removesuffix(_ENDING) + "_summary.json")
     if not path.name.endswith(_ENDING) or not summary.exists():
-        return None
+        return {}
     try:
-        energy = json.loads(read_text(summary, "the summary"))["energy_impact"]
-    except (FileError, ValueError, RecursionError, KeyError, TypeError):
-        return None  # nothing has struck, or the summary is damaged, which those who need it report
-    return float(energy) if isinstance(energy, (int, float)) else None
+        found = json.loads(read_text(summary, "the summary"))
+    except (FileError, ValueError, RecursionError):
+        return {}  # damaged, which those who need it report
+    return found if isinstance(found, dict) else {}
+
+
+def _is_static(path: Path) -> bool:
+    """Return whether the deck in the fields beside a history has load steps."""
+    if not path.name.endswith(_ENDING) or not path.with_name(path.name.removesuffix(_ENDING) + ".h5").exists():
+        return False
+    # h5py takes a while to load.
+    from implam_post.io.fields import deck_in
+
+    deck = deck_in(path)
+    return deck is not None and deck.has("static")
 
 
 def read_columns(path: Path | str) -> History:

@@ -7,7 +7,7 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from implam_post.io.errors import FileError
+from implam_post.io.errors import FileError, reason
 
 EXIT_CONVERGENCE, EXIT_STOPPED = 3, 75
 PROGRAM_HELP = ("the program and what starts it, as \"mpirun -n 2 build/implam\" (default: the environment's IMPLAM, "
@@ -46,7 +46,7 @@ def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
                                stderr=subprocess.STDOUT, text=True, errors="replace", timeout=_WAITING, check=False,
                                env=environment())
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise FileError(f"the program {program[-1]} cannot check a deck ({error}).") from None
+        raise FileError(f"the program {program[-1]} cannot check a deck ({reason(error)}).") from None
     printed = [line for line in ended.stdout.splitlines() if line.strip() and not line.endswith(": no errors.")]
     return ended.returncode == 0, printed
 

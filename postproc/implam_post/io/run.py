@@ -11,7 +11,7 @@ import numpy as np
 
 from implam_post.io.deck import Deck, recorded_deck, system_of_deck
 from implam_post.io.errors import FileError, ImplamError
-from implam_post.io.fields import Fields, opened, read_fields
+from implam_post.io.fields import Fields, NoTimeError, opened, read_fields
 from implam_post.io.files import read_text
 from implam_post.io.history import History, read_history
 from implam_post.io.summary_shape import misshapen_member
@@ -118,13 +118,16 @@ class Run:
         """The history as a table, a row for each accepted step; `attrs["units"]` has the unit of each column."""
         if self.columns is None:
             raise FileError(f"there is no history {self._file(HISTORY)}.")
-        return self.columns.table(self.system, load_steps="load_factor_reached" in self.summary)
+        return self.columns.table(self.system)
 
     @cached_property
     def fields(self) -> Fields | None:
-        """State of interfaces and plies in plan at the times written; None if there are no fields."""
+        """State of interfaces and plies in plan at the times written; None if there are none, or none yet."""
         path = self._file(FIELDS)
-        return read_fields(path) if path.exists() else None
+        try:
+            return read_fields(path) if path.exists() else None
+        except NoTimeError:
+            return None
 
     @cached_property
     def times(self) -> np.ndarray:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from implam_post.io.deck_text import KeyPath, deck_value, key_path, set_keys
-from implam_post.io.errors import EXIT_DONE, DeckError, FileError, ImplamError
+from implam_post.io.errors import EXIT_DONE, DeckError, FileError, ImplamError, reason
 from implam_post.io.files import read_text, write_text
 from implam_post.io.program import environment, find_program, last_words, shell_code
 
@@ -86,7 +86,7 @@ def run_deck(deck: Path | str, changes: Mapping[str | KeyPath, object] | None = 
             process = subprocess.Popen([*words, "run", str(written), "--output", str(folder)], env=environment(),
                                        stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT)
     except OSError as error:
-        raise FileError(f"the run cannot be started ({error}).") from None
+        raise FileError(f"the run cannot be started ({reason(error)}).") from None
     return StartedRun(folder, process)
 
 

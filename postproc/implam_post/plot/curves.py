@@ -7,8 +7,9 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from implam_post.io.errors import FileError
+from implam_post.io.errors import FileError, reason
 from implam_post.io.history import History, read_columns
+from implam_post.io.units import Axis
 from implam_post.plot.style import PictureStyle
 
 # What columns are called on an axis, and their dimensions.
@@ -26,7 +27,8 @@ def plot_curves(history: History, files: Sequence[Path], path: Path, style: Pict
         for axes, curve in zip(figure.subplots(len(curves), squeeze=False)[:, 0], curves, strict=True):
             along, up = _columns(curve)
             shown = history if along == "time" else in_contact(history)
-            horizontal, vertical = (style.axis(*AXES[name], [*curve[name], *shown[name]]) for name in (along, up))
+            horizontal, vertical = (axis_of_column(name, [*curve[name], *shown[name]], history, style)
+                                    for name in (along, up))
             axes.plot(horizontal.factor * shown[along], vertical.factor * shown[up], label="Implam")
             axes.plot(horizontal.factor * curve[along], vertical.factor * curve[up], "k.", markersize=4,
                       label=f"measured ({Path(curve.name).stem})")
@@ -37,8 +39,13 @@ def plot_curves(history: History, files: Sequence[Path], path: Path, style: Pict
             path.parent.mkdir(parents=True, exist_ok=True)
             figure.savefig(path, dpi=style.dots_per_inch)
         except (OSError, ValueError) as error:
-            raise FileError(f"{path} cannot be written ({error}).") from None
+            raise FileError(f"{path} cannot be written ({reason(error)}).") from None
     return path
+
+
+def axis_of_column(name: str, values: Sequence[float] | np.ndarray, history: History, style: PictureStyle) -> Axis:
+    """Return factor and label of an axis of a column."""
+    return style.clock(values, [history.by_load_steps]) if name == "time" else style.axis(*AXES[name], values)
 
 
 def in_contact(history: History) -> History:

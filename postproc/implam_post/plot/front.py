@@ -12,7 +12,7 @@ from matplotlib.ticker import MultipleLocator
 
 from implam_post.io.contours import outline
 from implam_post.io.fields import IMAGES, Fields, Snapshot, struck_point
-from implam_post.plot.plan_frame import frame, reach_of
+from implam_post.plot.plan_frame import frame, is_by_load_steps, reach_of, state_of
 from implam_post.plot.style import PictureStyle
 
 _MAX_TIMES = 8
@@ -46,7 +46,7 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, s
     axes.add_collection(shown)
     delaminated = fields.delaminated(fields.place(snapshot.time), below_ply)
     axes.add_collection(LineCollection(outline(delaminated), colors="black", linewidths=0.8))
-    axes.set_title(f"time {style.shown('time', snapshot.time)}", fontsize="medium")
+    axes.set_title(state_of(fields, snapshot.time, style), fontsize="medium")
     frame(axes, fields, reach_of(np.concatenate([cells, delaminated]), fields), style)
     axes.figure.colorbar(shown, ax=axes, location="bottom", shrink=0.8, label="$G/G_c$ ahead of the front")
 
@@ -54,13 +54,15 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, s
 def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot],
                  style: PictureStyle) -> None:
     """Draw G/G_c against the angle from x to the cells ahead of the front; one quarter stands for all."""
+    by_load_steps = is_by_load_steps(fields)
     colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
     for snapshot, colour in zip(snapshots, colours, strict=False):
         cells, ratio = snapshot.release(below_ply)
         x, y = (np.mean(cells, axis=1) - struck_point(fields)).T
         angle = np.degrees(np.arctan2(y, x))
         order = np.argsort(angle)
-        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1, label=style.shown("time", snapshot.time))
+        axes.plot(angle[order], ratio[order], ".-", color=colour, linewidth=1,
+                  label=f"{snapshot.time:.3g}" if by_load_steps else style.shown("time", snapshot.time))
     axes.axhline(1, color="black", linestyle="--", linewidth=1)
     axes.set(xlabel="angle from x around the struck point (degrees)", ylabel="$G/G_c$",
              xlim=(0, 90) if fields.quarter else (-180, 180))
@@ -68,7 +70,8 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
     axes.xaxis.set_major_locator(MultipleLocator(15 if fields.quarter else 45))
     axes.grid(alpha=0.3)
     if snapshots:
-        axes.legend(title="time", fontsize="small", loc="center left", bbox_to_anchor=(1, 0.5))
+        axes.legend(title="load factor" if by_load_steps else "time", fontsize="small", loc="center left",
+                    bbox_to_anchor=(1, 0.5))
 
 
 def _chosen(fields: Fields, below_ply: int, times: Sequence[float] | None) -> list[Snapshot]:

@@ -12,11 +12,11 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from implam_post.io.compression import STRESS
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, run
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
 from implam_post.io.fields import Fields, read_fields
 from implam_post.io.history import History, read_history
 from implam_post.plot.compression import is_compressed
-from implam_post.plot.plan_frame import fill, frame, reach_of
+from implam_post.plot.plan_frame import fill, frame, reach_of, state_of
 from implam_post.plot.style import PictureStyle, add_options, style_of
 
 # What is drawn against time: without and with lines that compress the plate.
@@ -43,11 +43,11 @@ def _picture(fields: Fields, history: History | None, style: PictureStyle, momen
         fill(plan, fields.delaminated(moment, interfaces[place]), facecolor=f"C{place % 10}", linewidth=0)
     plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
                          for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
-    plan.set_title(f"time {style.shown('time', time)}")
+    plan.set_title(state_of(fields, time, style))
     last = len(fields.snapshots) - 1
     frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), style)
     if history is not None:
-        clock = style.axis("time", "time", history.time)
+        clock = style.clock(history.time, [history.by_load_steps])
         column, label, dimension = _LOADS[is_compressed(history)]
         load = style.axis(label, dimension, history[column])
         below[0].plot(clock.factor * history.time, load.factor * history[column], linewidth=1)
@@ -72,7 +72,7 @@ def _command(options: argparse.Namespace) -> int:
     try:
         pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)
     except (OSError, ValueError) as error:
-        raise FileError(f"{path} cannot be written ({error}).") from None
+        raise FileError(f"{path} cannot be written ({reason(error)}).") from None
     print(path)
     return EXIT_DONE
 

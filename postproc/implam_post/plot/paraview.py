@@ -59,7 +59,7 @@ def write_files(fields: Fields, history: History | None, base: Path) -> list[Pat
     """Write BASE_paraview.h5, BASE_through.xdmf, BASE_impactor.xdmf if one moves, BASE_paraview.py; return paths."""
     deck = deck_in(fields.path)
     if deck is None:
-        raise FileError(f"{fields.path} holds no deck, which has radius and thickness.")
+        raise FileError(f"{fields.path} holds no deck, from which radius and thickness are taken.")
     thickness = sum(ply.thickness for ply in plies_of(deck))
     radius = deck.number("impactor", "radius", 0.0) if deck.has("impactor") else 0.0
     data = base.with_name(f"{base.name}_paraview.h5")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from implam_post.io.errors import FileError
+from implam_post.io.errors import FileError, reason
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
@@ -115,7 +115,7 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
     shown = {column: values for column, values in balance.items() if np.any(values)}
     colours = [f"C{list(ENERGY_NAMES).index(column)}" for column in shown]
     start = sum(values[0] for values in balance.values())
-    time = style.axis("time", "time", history.time)
+    time = style.clock(history.time, [history.by_load_steps])
     energy = style.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
     if shown:
         labels = [ENERGY_NAMES[column] for column in shown]
@@ -142,7 +142,8 @@ def _draw(axes: Axes, histories: Sequence[History], column: str, style: PictureS
     """Draw a column of several histories, each in a style of its own, and what was measured as dots."""
     words, dimension = RESPONSES[column]
     drawn = [*histories, *([measured] if measured is not None and column in measured.columns else [])]
-    time = style.axis("time", "time", np.concatenate([history.time for history in drawn]))
+    time = style.clock(np.concatenate([history.time for history in drawn]),
+                       [history.by_load_steps for history in histories])
     value = style.axis(words, dimension, np.concatenate([response_of(history, column) for history in drawn]))
     names = _names([history.name for history in histories])
     for position, history in enumerate(histories):
@@ -192,5 +193,5 @@ def _save(figure: Figure, path: Path, style: PictureStyle = _PLAIN) -> Path:
         lay_out(figure)
         figure.savefig(path, dpi=style.dots_per_inch)
     except (OSError, ValueError) as error:
-        raise FileError(f"{path} cannot be written ({error}).") from None
+        raise FileError(f"{path} cannot be written ({reason(error)}).") from None
     return path

@@ -48,7 +48,7 @@ def delamination_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
 
 def draw_delamination(axes: Axes, fields: Fields, below_ply: int, style: PictureStyle = _PLAIN,
                       reach: Sequence[float] | None = None) -> None:
-    """Draw the delamination below a ply: when it came to which place, and its outline at every time written.
+    """Draw the delamination below a ply: when each place delaminated, and its outline at every time written.
 
     What had delaminated before the run is the starter, in grey. `reach` is what the picture has to hold.
     """
@@ -59,7 +59,7 @@ def draw_delamination(axes: Axes, fields: Fields, below_ply: int, style: Picture
 
 
 def title_of(fields: Fields, below_ply: int, style: PictureStyle = _PLAIN) -> str:
-    """Return what an interface has come to at the last time, with the figures of the summary."""
+    """Return area and extents of an interface at the last time, those of the summary."""
     figures = fields.interface(len(fields.snapshots) - 1, below_ply)
     kind = "dissipated area" if figures.is_cohesive else "delaminated area"
     along, across = (style.shown("length", length) for length in figures.extents)

@@ -50,12 +50,21 @@ def outlines(cells: np.ndarray) -> Outline | None:
     return Outline(np.array(corners), codes)
 
 
-def clock_of(fields: Fields, style: PictureStyle) -> Axis:
-    """Return how times are shown; load steps have a load factor instead."""
+def is_by_load_steps(fields: Fields) -> bool:
+    """Return whether the times of the fields are load factors."""
     deck = deck_in(fields.path)
-    if deck is not None and deck.has("static"):
-        return Axis(1.0, "load factor")
-    return style.axis("time", "time", [fields.snapshots[-1].time])
+    return deck is not None and deck.has("static")
+
+
+def clock_of(fields: Fields, style: PictureStyle) -> Axis:
+    """Return how times are shown."""
+    return style.clock([fields.snapshots[-1].time], [is_by_load_steps(fields)])
+
+
+def state_of(fields: Fields, time: float, style: PictureStyle, digits: int = 3) -> str:
+    """Return a time of the fields in words."""
+    by_load_steps = is_by_load_steps(fields)
+    return ("" if by_load_steps else "time ") + style.instant(time, by_load_steps, digits)
 
 
 def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True) -> str:
@@ -63,10 +72,7 @@ def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True)
 
     z points from the struck face to the back, so that with x to the right and y up it points at whoever looks.
     """
-    clock = clock_of(fields, style)
-    name, _, unit = clock.label.partition(" [")
-    state = f"{name} {clock.factor * fields.snapshots[-1].time:.4g} {unit.rstrip(']')}".strip().replace(
-        "(the deck's units)", "").strip()
+    state = state_of(fields, fields.snapshots[-1].time, style, 4)
     law = "outlines enclose the area dissipated, where its share is largest; " if outlined and any(
         found.is_cohesive for found in fields.snapshots[-1].interfaces.values()) else ""
     return f"State at {state}; {law}0° along x;\nview on the back face (z points at you), + struck point"

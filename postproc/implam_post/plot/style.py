@@ -37,6 +37,17 @@ class PictureStyle:
         """Return factor and label of an axis, in units that suit its values."""
         return axis_of(label, dimension, values, self.system)
 
+    def clock(self, times: Iterable[float], by_load_steps: Iterable[bool]) -> Axis:
+        """Return factor and label of an axis of times of some runs; those of load steps are load factors."""
+        kinds = set(by_load_steps)
+        if kinds == {True}:
+            return Axis(1.0, "load factor")
+        return Axis(1.0, "time (the deck's units), load factor") if True in kinds else self.axis("time", "time", times)
+
+    def instant(self, time: float, by_load_steps: bool, digits: int = 3) -> str:
+        """Return a time with its unit, or what else it is: a load factor."""
+        return f"load factor {time:.{digits}g}" if by_load_steps else self.shown("time", time, digits)
+
     def shown(self, dimension: str, value: float, digits: int = 3) -> str:
         """Return a value with its unit, to some digits; without one in an unknown system."""
         axis = self.axis("", dimension, [value])

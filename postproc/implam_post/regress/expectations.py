@@ -70,6 +70,8 @@ class Expectation:
 
     def __post_init__(self) -> None:
         """Refuse entries that could not be measured or could not fail."""
+        if self.time is not None and not _is_number(self.time):
+            raise FileError(f"{self.quantity}: time is a finite number.")
         known = [*QUANTITIES, *COLUMN_QUANTITIES, "at", *AGAINST_QUANTITIES]
         tolerances = [tolerance for tolerance in (self.relative, self.absolute) if tolerance is not None]
         if self.quantity not in known:
@@ -122,8 +124,8 @@ class Expectations:
         """Return a variant by its name, which may be left out if there is only one."""
         names = [variant.name for variant in self.variants]
         if name not in names and (name is not None or len(names) > 1):
-            reason = "the file has several variants" if name is None else f"no variant is named '{name}'"
-            raise FileError(f"{self.path}: {reason}; there are {', '.join(names)}.")
+            problem = "the file has several variants" if name is None else f"no variant is named '{name}'"
+            raise FileError(f"{self.path}: {problem}; there are {', '.join(names)}.")
         return self.variants[0 if name is None else names.index(name)]
 
 

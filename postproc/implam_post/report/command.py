@@ -12,7 +12,7 @@ from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import write_text
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
-from implam_post.io.run import SUMMARY, Run, material_of, open_run
+from implam_post.io.run import FIELDS, SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.io.summary_shape import missing_member
 from implam_post.plot.compression import remark_of
@@ -72,7 +72,7 @@ def report(run: Run, undamaged: float | None = None) -> str:
     return render(
         "run.html", title=summary["title"] or summary["case"], summary=summary, base=run.name,
         reached=_reached(summary, style), has_units=bool(style.system),
-        has_fields=run.fields is not None, figures=_figures(summary, style),
+        no_maps=_no_maps(run), figures=_figures(summary, style),
         resistance=_resistance(run, found, style) if "energy_absorbed" in summary and run.columns is not None else None,
         compression=compression_rows(run, style, undamaged), interfaces=_interfaces(summary, style),
         plate=_plate(summary, style), plan=image(plan_figure(summary, style)),
@@ -82,6 +82,14 @@ def report(run: Run, undamaged: float | None = None) -> str:
         balance=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
         provenance=[*((key.replace("_", " "), str(summary["provenance"][key])) for key in _PROVENANCE),
                     *((key.replace("_", " "), value) for key, value in summary["costs"].items())])
+
+
+def _no_maps(results: Run) -> str:
+    """Return why a page has no maps, if it has none."""
+    if results.fields is not None:
+        return "The fields hold neither interfaces nor failures of plies."
+    name = f"{results.name}{FIELDS}"
+    return f"{name} holds no time yet." if results.base.with_name(name).exists() else f"There is no {name}."
 
 
 def _resistance(results: Run, found: Mapping[str, Measured], style: PictureStyle) -> str:
@@ -97,10 +105,11 @@ def _resistance(results: Run, found: Mapping[str, Measured], style: PictureStyle
     behind = f", behind a low pass of {_frequency(style, corner)}" if corner else ""
     unknown = "the force never drops by damage" if corner else "not known without units"
     reached = "threshold_at" in found and not math.isnan(found["threshold_at"].value)
-    when = f"at {shown(style, 'time', found['threshold_at'].value)}" if reached else ""
+    by_load_steps = _is_by_load_steps(summary)
+    when = f"at {_instant(style, found['threshold_at'].value, by_load_steps)}" if reached else ""
     rows = [row(f"threshold: force where its curve first drops by damage{behind}", "threshold_force", unknown, when),
             ("peak force", shown(style, "force", summary["peak_force"]),
-             f"at {shown(style, 'time', summary['peak_force_at'])}"),
+             f"at {_instant(style, summary['peak_force_at'], by_load_steps)}"),
             row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
             ("absorbed energy", "contact has not ended" if summary["energy_absorbed"] is None
              else shown(style, "energy", summary["energy_absorbed"]), "")]
@@ -130,25 +139,30 @@ def _sizes(results: Run, style: PictureStyle) -> list[tuple[str, str, str]]:
                    for angle in DIRECTIONS]
 
 
-def _time(summary: Mapping[str, Any]) -> str:
-    """Return the dimension of the times of a run, none if they are load factors."""
-    return "time" if "time_reached" in summary else ""
+def _is_by_load_steps(summary: Mapping[str, Any]) -> bool:
+    """Return whether the times of a run are load factors."""
+    return "load_factor_reached" in summary
+
+
+def _instant(style: PictureStyle, time: float | None, by_load_steps: bool) -> str:
+    """Return a time or a load factor to four digits; a dash for a missing one."""
+    return rounded(None) if time is None else style.instant(time, by_load_steps, 4)
 
 
 def _reached(summary: Mapping[str, Any], style: PictureStyle) -> str:
     """Return how far the run came."""
-    if "time_reached" in summary:
-        return f"time {shown(style, 'time', summary['time_reached'])}"
-    return f"load factor {rounded(summary['load_factor_reached'])}"
+    if _is_by_load_steps(summary):
+        return style.instant(summary["load_factor_reached"], True, 4)
+    return f"time {shown(style, 'time', summary['time_reached'])}"
 
 
 def _figures(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[str, ...]]:
     """Return the rows of the table at the top."""
-    rows = []
+    rows, by_load_steps = [], _is_by_load_steps(summary)
     for name, key, dimension, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
             value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(style, dimension, summary[key])
-            when = f"{_WHEN.get(key, 'at')} {shown(style, _time(summary), summary[at])}" if at in summary else ""
+            when = f"{_WHEN.get(key, 'at')} {_instant(style, summary[at], by_load_steps)}" if at in summary else ""
             rows.append((name, value, when))
     if summary.get("in_contact"):
         rows.append(("contact at the end", "yes", ""))
@@ -164,20 +178,20 @@ def _range(style: PictureStyle, ends: Sequence[float]) -> str:
     return " to ".join(rounded(axis.factor * end) for end in ends) + f" {unit}".rstrip()
 
 
-def _event(event: Mapping[str, float] | None, style: PictureStyle, time: str) -> str:
+def _event(event: Mapping[str, float] | None, style: PictureStyle, by_load_steps: bool) -> str:
     """Return time and force of an event."""
     if event is None:
         return "none"
     force = f"{shown(style, 'force', event['force'])} " if "force" in event else ""
-    return f"{force}at {shown(style, time, event['at'])}"
+    return f"{force}at {_instant(style, event['at'], by_load_steps)}"
 
 
 def _interfaces(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[object, ...]]:
     """Return the rows of the interfaces."""
-    time = _time(summary)
+    by_load_steps = _is_by_load_steps(summary)
     return [(entry["ply_above"], "cohesive" if entry["is_cohesive"] else "front", shown(style, "area", entry["area"]),
              _range(style, entry["x"]), _range(style, entry["y"]), shown(style, "energy", entry["energy"]),
-             _event(entry["onset"], style, time), _event(entry["first_growth"], style, time),
+             _event(entry["onset"], style, by_load_steps), _event(entry["first_growth"], style, by_load_steps),
              shown(style, "force", entry["threshold_force"]), "yes" if entry["border_reached"] else "no")
             for entry in summary.get("interfaces", [])]
 

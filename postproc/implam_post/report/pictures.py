@@ -16,7 +16,7 @@ from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
 from implam_post.io.quantities import growth_rows
 from implam_post.io.run import material_of
 from implam_post.plot.compression import compression_figure, is_compressed
-from implam_post.plot.curves import AXES, in_contact
+from implam_post.plot.curves import axis_of_column, in_contact
 from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
 from implam_post.plot.plan_frame import draw_plate
 from implam_post.plot.style import PictureStyle
@@ -92,9 +92,10 @@ def history_pictures(history: History, style: PictureStyle, threshold: tuple[flo
     Time and force of a threshold are marked on the curve of the force. Of a compression there may be a remark and the
     strength of the undamaged plate.
     """
+    clock = "load factor" if history.by_load_steps else "time"
     if np.any(history["force"]):
         shown = in_contact(history)
-        yield "contact force against time", _curve(history, "time", "force", style, threshold)
+        yield f"contact force against {clock}", _curve(history, "time", "force", style, threshold)
         if np.any(history.columns.get("impactor_displacement", 0)):
             yield "contact force against displacement of the impactor", _curve(shown, "impactor_displacement", "force",
                                                                                style)
@@ -103,14 +104,14 @@ def history_pictures(history: History, style: PictureStyle, threshold: tuple[flo
         remark, undamaged = compression
         yield "stress of the compression, and strains of gauges", compression_figure({"": history}, style, {"": remark},
                                                                                      undamaged)
-    yield "deflection against time", _curve(history, "time", "deflection", style)
+    yield f"deflection against {clock}", _curve(history, "time", "deflection", style)
     areas = {name: name.replace("area_below_", "below ply ") for name in history.columns
              if name.startswith("area_below_")}
     if areas:
-        yield "delaminated area against time", _curves(history, areas, "delaminated area", "area", style)
+        yield f"delaminated area against {clock}", _curves(history, areas, "delaminated area", "area", style)
     energies = {column: name for column, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
                 if column in history.columns and np.any(history[column])}
-    yield "energies against time", _curves(history, energies, "energy", "energy", style)
+    yield f"energies against {clock}", _curves(history, energies, "energy", "energy", style)
 
 
 def _curve(history: History, against: str, column: str, style: PictureStyle,
@@ -118,7 +119,7 @@ def _curve(history: History, against: str, column: str, style: PictureStyle,
     """Draw one column; steps in which delaminations grew are marked on the force, and a threshold if there is one."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
-    along, up = (style.axis(*AXES[name], history[name]) for name in (against, column))
+    along, up = (axis_of_column(name, history[name], history, style) for name in (against, column))
     axes.plot(along.factor * history[against], up.factor * history[column])
     grown = growth_rows(history)
     if column == "force" and len(grown):
@@ -134,10 +135,10 @@ def _curve(history: History, against: str, column: str, style: PictureStyle,
 
 
 def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, style: PictureStyle) -> Figure:
-    """Draw several columns, each with its name, against time."""
+    """Draw several columns, each with its name, against time or load factor."""
     figure = Figure(figsize=(7, max(3.4, _ENTRY * (len(columns) + 2))), layout="constrained")
     axes = figure.subplots()
-    along = style.axis("time", "time", history.time)
+    along = style.clock(history.time, [history.by_load_steps])
     up = style.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
     for column, name in columns.items():
         axes.plot(along.factor * history.time, up.factor * history[column], label=name,

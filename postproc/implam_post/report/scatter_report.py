@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from implam_post.io.errors import FileError
+from implam_post.io.errors import FileError, reason
 from implam_post.io.files import read_text, write_text
 from implam_post.io.summary_shape import OrNull, misshapen
 from implam_post.plot.style import PictureStyle
@@ -41,7 +41,7 @@ def write_page(folder: Path, output: Path | None) -> Path:
     try:
         text = _page(content, folder)
     except OSError as error:
-        raise FileError(f"a picture of {folder} cannot be read ({error}).") from None
+        raise FileError(f"a picture of {folder} cannot be read ({reason(error)}).") from None
     written = (output or folder) / f"{folder.absolute().name}_report.html"
     write_text(written, text)
     return written

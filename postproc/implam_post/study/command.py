@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from implam_post.io.counts import counted
-from implam_post.io.errors import EXIT_USAGE, CommandParser, FileError, count, run
+from implam_post.io.errors import EXIT_USAGE, CommandParser, FileError, count, reason, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, find_program
 from implam_post.plot.style import FORMATS
@@ -84,7 +84,7 @@ def _command(options: argparse.Namespace) -> int:
     try:
         study.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"the folder {study.output} cannot be made ({error}).") from None
+        raise FileError(f"the folder {study.output} cannot be made ({reason(error)}).") from None
     lock = try_lock(study.output / "lock")
     if lock is None:
         raise FileError(f"another implam-study works in {study.output}.")

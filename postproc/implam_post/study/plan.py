@@ -126,7 +126,7 @@ def _check_words(words: Mapping[str, object], figures: object) -> None:
     if not isinstance(repeats, int) or isinstance(repeats, bool) or not 1 <= repeats <= _MAX_REPEATS:
         raise DeckError(f"repeats is an integer from 1 to {_MAX_REPEATS}.")
     if not isinstance(figures, dict) or not all(way in _WAYS for way in figures.values()):
-        raise DeckError(f"[figures] says of columns of the history one of {', '.join(_WAYS)}.")
+        raise DeckError(f"[figures] gives for each column of the history one of {', '.join(_WAYS)}.")
 
 
 class _Maker:

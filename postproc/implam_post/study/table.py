@@ -4,7 +4,6 @@ Errors are parts of the reference's figure, with their sign, over the time that 
 a relative L2 norm.
 """
 
-import json
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from implam_post.io.files import write_table
 from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in, version_in
 from implam_post.io.quantities import COLUMN_QUANTITIES
+from implam_post.io.run import read_summary
 from implam_post.study.plan import ERRORS, Study, Trial
 from implam_post.study.references import References
 from implam_post.sweep.case_run import read_record
@@ -152,7 +152,7 @@ def _costs(sweep: Sweep, runs: list[Case], folder: Path) -> dict[str, float]:
     times = [record.cpu_time for record in records if record is not None and record.exit_code == 0]
     costs = {"cpu_time_min": min(times), "cpu_time_median": float(np.median(times)), "repeats": len(times)}
     path = next(iter(sorted(folder.glob("*_summary.json"))), None)
-    summary = json.loads(path.read_text(encoding="utf-8")) if path else {}
+    summary = read_summary(path) if path else {}
     counted = summary.get("costs", {})
     costs |= {name: float(counted.get(key, math.nan)) for name, key in _COSTS.items() if key}
     costs["steps"] = float(summary.get("accepted_steps", math.nan))

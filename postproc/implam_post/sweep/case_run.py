@@ -63,9 +63,11 @@ def read_record(folder: Path) -> Record | None:
         return None
     try:
         record = Record(**json.loads(read_text(path, "the record")))
-        return None if record.exit_code == EXIT_DONE and _is_lost(folder) else record
-    except (ValueError, TypeError) as error:
-        raise FileError(f"the record {path} cannot be read ({error}).") from None
+        if not all(isinstance(value, (int, float)) for value in asdict(record).values()):
+            raise ValueError
+    except (ValueError, TypeError, RecursionError):
+        raise FileError(f"the record {path} is damaged: delete it, and the case is run again.") from None
+    return None if record.exit_code == EXIT_DONE and _is_lost(folder) else record
 
 
 def _is_lost(folder: Path) -> bool:

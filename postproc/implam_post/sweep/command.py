@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from implam_post.io.counts import counted
-from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, run
+from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, reason, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
 from implam_post.sweep.case_run import case_command, remove_results
@@ -125,7 +125,7 @@ def print_outcomes(sweep: Sweep) -> int:
     for case, failure in failed:
         print(f"  case {case.number} ({sweep.folder(case)}): {case.label}: {failure}", file=sys.stderr)
     if left:
-        print(f"{len(left)} of {total} cases have not ended; the same command goes on with them.", file=sys.stderr)
+        print(f"{len(left)} of {total} cases have not ended; the same command continues with them.", file=sys.stderr)
     return EXIT_USAGE if failed else EXIT_STOPPED if left else EXIT_DONE
 
 
@@ -192,11 +192,15 @@ def _command(options: argparse.Namespace) -> int:
     """Read the sweep and work on it, alone in its folder."""
     program = find_program(options.program)
     plan = read_plan(options.sweep, options.output, program)
+    if plan.measured is not None:
+        # Before hours of runs, after which the curve is drawn.
+        from implam_post.sweep.scatter_results import curves_of
+        curves_of(plan.measured)
     sweep = Sweep(only(plan, options.only) if options.only else plan, program)
     try:
         sweep.plan.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"the folder {sweep.plan.output} cannot be made ({error}).") from None
+        raise FileError(f"the folder {sweep.plan.output} cannot be made ({reason(error)}).") from None
     lock = try_lock(sweep.plan.output / "lock")
     if lock is None:
         raise FileError(f"another implam-sweep works in {sweep.plan.output}.")

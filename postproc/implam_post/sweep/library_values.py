@@ -7,7 +7,7 @@ from pathlib import Path
 
 from implam_post.io.deck import Deck, system_of_deck
 from implam_post.io.deck_text import KeyPath, deck_value, set_keys
-from implam_post.io.errors import DeckError, FileError
+from implam_post.io.errors import DeckError, FileError, reason
 from implam_post.io.program import environment
 from implam_post.io.units import SYSTEMS
 
@@ -29,7 +29,7 @@ def asking(program: Sequence[str] | None) -> Callable[[], Library]:
             ended = subprocess.run([program[-1], "explain", "materials"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, timeout=_WAITING, check=False, env=environment())
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise FileError(f"the program {program[-1]} lists no published materials ({error}).") from None
+            raise FileError(f"the program {program[-1]} lists no published materials ({reason(error)}).") from None
         return read_library(ended.stdout)
     return request
 

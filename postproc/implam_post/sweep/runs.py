@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from implam_post.io.errors import EXIT_DONE, FileError
+from implam_post.io.errors import EXIT_DONE, FileError, reason
 from implam_post.io.files import read_text, write_text
 from implam_post.io.program import EXIT_STOPPED, last_words
 from implam_post.io.progress import Progress
@@ -86,7 +86,7 @@ def _start(sweep: Sweep, case: Case) -> _Job:
             [*case_command(sweep.folder(case), sweep.program), "--lifeline", str(reading)], stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, pass_fds=[reading], start_new_session=True)
     except OSError as error:
-        raise FileError(f"a run cannot be started ({error}).") from None
+        raise FileError(f"a run cannot be started ({reason(error)}).") from None
     finally:
         os.close(reading)
     return _Job(case, process, lifeline)

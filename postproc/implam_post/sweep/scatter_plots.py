@@ -38,7 +38,9 @@ def band_figure(groups: Sequence[Group], curves: Sequence[History], style: Pictu
     figure = Figure(figsize=(8, 4.8), layout="constrained")
     axes = figure.subplots()
     bands = [group.band() for group in groups]
-    time = style.axis("time", "time", np.concatenate([band["time"] for band in bands]))
+    time = style.clock(np.concatenate([band["time"] for band in bands]),
+                       [run.results.columns.by_load_steps for group in groups for run in group.ended
+                        if run.results.columns is not None])
     force = style.axis("contact force", "force", np.concatenate([band["high"] for band in bands]))
     for place, (group, band) in enumerate(zip(groups, bands, strict=True)):
         colour, name = f"C{place % 10}", f"{group.name}: " if group.name else ""

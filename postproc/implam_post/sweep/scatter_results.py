@@ -15,9 +15,9 @@ import pandas as pd
 
 from implam_post.io.deck import Deck
 from implam_post.io.deck_text import deck_value
-from implam_post.io.errors import FileError, ImplamError
+from implam_post.io.errors import ImplamError
 from implam_post.io.fields import Fields
-from implam_post.io.files import write_table, write_text
+from implam_post.io.files import read_text, write_table, write_text
 from implam_post.io.history import History, read_history
 from implam_post.io.quantities import AGAINST_QUANTITIES
 from implam_post.io.run import Run, open_run
@@ -178,10 +178,7 @@ def curves_of(measured: Path | None) -> list[History]:
 
 def _head(path: Path) -> str:
     """Return the line with the names of the columns."""
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"the measured curve {path} cannot be read ({error}).") from None
+    lines = read_text(path, "the measured curve").splitlines()
     return next((line for line in lines if line.strip() and line[0] != "#"), "")
 
 

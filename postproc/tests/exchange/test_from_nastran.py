@@ -393,6 +393,8 @@ class RefusedTest(ImportTest):
         self.refused(Bulk(edges=("15", "1234", "24", "1235")), "line of symmetry")
         self.refused(Bulk(edges=("12", "34", "35", "35")), "x-min is held, but not against deflection")
         self.refused(Bulk(cells=(1, 1)), "no grid between its corners")
+        self.refused(Bulk(more=[("SPC1", 1, "3", 1, "THRU")]), "SPC1: no grid follows THRU after 1")
+        self.refused(Bulk(more=[("SPC1", 1, "3", 9, "THRU", 1)]), "SPC1: 9 THRU 1: the second number needs")
 
     def test_corners(self) -> None:
         """They are compared with the kind of their edges; their rotation is a remark only."""

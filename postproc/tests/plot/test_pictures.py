@@ -5,6 +5,7 @@ import io
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import h5py
 import numpy as np
@@ -14,10 +15,14 @@ from matplotlib.patches import PathPatch
 from PIL import Image
 
 from implam_post.io.fields import Fields, Mesh, Snapshot, area, read_fields
-from implam_post.io.history import ENERGIES, History
+from implam_post.io.history import ENERGIES, History, read_history
 from implam_post.plot import command, movie, pictures
+from implam_post.plot.curves import axis_of_column
+from implam_post.plot.front import front_figure
 from implam_post.plot.plan import along_fibres, delamination_figure, failures_figure, projected_figure
+from implam_post.plot.plan_frame import caption
 from implam_post.plot.style import PictureStyle, lay_out
+from implam_post.report.pictures import history_pictures
 from implam_post.sweep.scatter_plots import share_figure
 from implam_post.sweep.scatter_results import EndedRun, Group
 from tests.io.test_fields import write_fields
@@ -88,6 +93,39 @@ class PicturesTest(unittest.TestCase):
             drawn.append((axes.get_ylabel(), axes.get_lines()[0].get_ydata()))
         self.assertEqual(drawn[0][0], drawn[1][0])
         np.testing.assert_allclose(drawn[0][1], drawn[1][1], rtol=1e-12)
+
+    def test_load_factors(self) -> None:
+        """Of a run by load steps every axis, legend and title has load factors, with or without a summary."""
+        with h5py.File(self.path, "a") as file:
+            del file["provenance/deck"]
+            file["provenance/deck"] = np.bytes_(f"{DECK}&static steps=2 /\n")
+        path, style = self.write(history("case"), "case_history.csv"), PictureStyle("SI")
+        goes_on, fields = read_history(path), read_fields(self.path)
+        (self.folder / "case_summary.json").write_text('{"load_factor_reached": 1}')
+        self.path.rename(self.folder / "moved.h5")
+        ended = read_history(path)
+        (self.folder / "moved.h5").rename(self.path)
+        (self.folder / "case_summary.json").write_text('{"time_reached": 1}')
+        self.assertEqual(read_history(path).by_load_steps, False)
+        for loaded in (goes_on, ended):
+            axes = Figure().subplots(2)
+            pictures._draw(axes[0], [loaded], "force", style)
+            pictures._stack(axes[1], loaded, style)
+            labels = {part.get_xlabel() for figure in (f for name, f in history_pictures(loaded, style) if
+                      "against load factor" in name) for part in figure.axes} | {part.get_xlabel() for part in axes}
+            self.assertEqual(labels, {"load factor"})
+            self.assertEqual(axis_of_column("time", loaded.time, loaded, style).label, "load factor")
+        pictures._draw(axes[0], [goes_on, history("a")], "force", style)
+        self.assertEqual(axes[0].get_xlabel(), "time (the deck's units), load factor")
+        left, right = front_figure(fields, style=style).axes[:2]
+        self.assertEqual(left.get_legend().get_title().get_text(), "load factor")
+        self.assertRegex(right.get_title(), "^load factor")
+        self.assertRegex(caption(fields, style), "State at load factor 1.5;")
+        with mock.patch.object(movie, "FigureCanvasAgg") as canvas:
+            canvas.return_value.buffer_rgba.return_value = np.zeros((1, 1, 4), np.uint8)
+            movie.frames(fields, goes_on, style)
+        plan, below = canvas.call_args.args[0].axes
+        self.assertEqual((plan.get_title(), below.get_xlabel()), ("load factor 1.5", "load factor"))
 
     def test_projected_interfaces(self) -> None:
         """What has delaminated is one region; its area stands in the title."""

@@ -10,6 +10,7 @@ from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
 
+import h5py
 import numpy as np
 from matplotlib.image import imread
 
@@ -139,10 +140,15 @@ class ReportTest(unittest.TestCase):
         page = self.page(path)
         self.assertEqual(set(page.pictures), {"plate in plan", "lay-up from the struck face"})
         self.assertIn("There is no cohesive.h5.", page.text)
+        with h5py.File(self.folder / "cohesive.h5", "w") as file:
+            file["part"] = np.bytes_("whole")
+            file.create_group("meshes"), file.create_group("times")
+        self.assertIn("cohesive.h5 holds no time yet.", self.page(path).text)
         page = self.page(self.solve("static_damage"))
         self.assertIn("load factor 1", page.text)
         self.assertNotIn("peak force", page.cells)
-        self.assertNotIn("contact force against time", page.pictures)
+        self.assertNotIn("contact force", " ".join(page.pictures))
+        self.assertIn("energies against load factor", page.pictures)
 
     def test_impactor_of_given_travel(self) -> None:
         """In load steps the peak force is at a load factor, which the page gives without a unit."""
@@ -150,8 +156,9 @@ class ReportTest(unittest.TestCase):
         run = run_deck(self.folder / "pressed.nml", output=self.folder / "pressed", program=str(implam())).wait(100)
         self.assertEqual(run.summary["peak_force_at"], 1)
         page = self.page(self.folder / "pressed" / "pressed_summary.json")
-        self.assertIn("at 1", page.cells[page.cells.index("peak force") + 2])
-        self.assertIn("contact force against time", page.pictures)
+        for row in ("peak force", "largest deflection"):
+            self.assertEqual("at load factor 1", page.cells[page.cells.index(row) + 2])
+        self.assertIn("contact force against load factor", page.pictures)
 
     def test_folders_and_faults(self) -> None:
         """All summaries of a folder; a sentence for what is none."""

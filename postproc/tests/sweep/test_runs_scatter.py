@@ -103,6 +103,14 @@ class ScatterTest(unittest.TestCase):
         code, text = run_quietly(report.main, self.output)
         self.assertEqual((code, len(text.splitlines())), (4, 1), text)
 
+    def test_unreadable_measurement(self) -> None:
+        """What is measured is read before anything is run."""
+        self.path.write_text(SWEEP.replace("expect.toml", "measured.csv"))
+        (self.folder / "measured.csv").write_bytes(b"\xff\xfe\x00")
+        code, text = run_quietly(sweep.main, self.path, "--output", self.output, "--program", implam())
+        self.assertEqual((code, self.output.exists()), (4, False), text)
+        self.assertIn("measured.csv cannot be read: it is no text", text)
+
     def test_lost_runs(self) -> None:
         """What a run has left is emptied: it alone runs again, and all tables are as before."""
         self.sweep()
