@@ -4,7 +4,7 @@ module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_line_supports, only: check_line_supports, check_moved_lines
+  use deck_line_supports, only: check_line_supports, check_in_plane_balance, check_moved_lines
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: report, remark, remark_idle, are_clear
   use interface_places, only: delamination_group, key_below_ply
@@ -138,6 +138,7 @@ contains
     else if (.not. problems%concern(line_group)) then
       call check_line_supports(deck, problems)
     end if
+    if (size(deck%lines) > 0 .and. .not. problems%concern(line_group)) call check_in_plane_balance(deck, problems)
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
     do line = 1, size(deck%lines)

@@ -3,6 +3,7 @@
 module deck_extents
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
+  use deck_line_conflicts, only: check_line_conflicts
   use deck_mesh_lines, only: check_window_lines
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, are_clear
@@ -249,6 +250,7 @@ contains
     if (problems%errors() > 0) return
     call check_window_lines(deck, problems)
     call check_line_nodes(deck, problems)
+    call check_line_conflicts(deck, problems)
     if (size(deck%delaminations) == 0) return
     x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
     y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)

@@ -26,18 +26,24 @@ contains
     type(deck_t), intent(in) :: deck
     !> Receives the warnings
     type(problems_t), intent(inout) :: problems
-    integer :: place
+    logical :: within(size(deck%delaminations)), beyond(size(deck%delaminations))
+    integer :: i
 
     if (problems%errors() > 0) return
-    do place = 1, size(deck%delaminations)
-      if (lies_within_a_block(deck, deck%delaminations(place)%below_ply)) &
-        call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are of '// &
-                    'one material and angle, and act as one thick ply; impacts delaminate plies of different &
-                      &angles.', place)
-      if (any(beyond_core(deck, deck%delaminations(place)%zone)) .and. .not. deck%delaminations(place)%is_adaptive) &
-        call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
-                    'where cells are up to '//short_text(longest_cell(deck, deck%delaminations(place)%zone))// &
-                    ' long; make the core as large as the zone.', place)
+    do i = 1, size(deck%delaminations)
+      associate (d => deck%delaminations(i), groups => deck%delaminations%group)
+        within(i) = lies_within_a_block(deck, d%below_ply)
+        beyond(i) = any(beyond_core(deck, d%zone)) .and. .not. d%is_adaptive
+        ! Each is said once of a group.
+        if (within(i) .and. .not. any(within(:i - 1) .and. groups(:i - 1) == d%group)) &
+          call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are '// &
+                      'of one material and angle, and act as one thick ply; impacts delaminate plies of different '// &
+                      'angles.', d%group)
+        if (beyond(i) .and. .not. any(beyond(:i - 1) .and. groups(:i - 1) == d%group)) &
+          call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
+                      'where cells are up to '//short_text(longest_cell(deck, d%zone))// &
+                      ' long; make the core as large as the zone.', d%group)
+      end associate
     end do
   end subroutine check_interfaces
 

@@ -1,4 +1,5 @@
-!> Checks that supports and lines constrain rigid-body motions, and that prescribed lines do not act on supports.
+!> Checks that supports and lines constrain rigid-body motions and carry the forces along them, and that prescribed
+!> lines do not act on supports.
 module deck_line_supports
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -6,11 +7,12 @@ module deck_line_supports
   use kinds, only: wp
   use line_deck, only: line_group, key_displacement
   use line_loads, only: line_load_t, along_x, along_y
-  use mesh_parameters, only: is_mirrored, edge_clamped, edge_elastic, edge_free
+  use mesh_parameters, only: is_mirrored, symmetry_point, edge_clamped, edge_elastic, edge_free
+  use model_building, only: unrestrained
   use support_parameters, only: support_t, bearing_face, window_none, window_circle
   implicit none
   private
-  public :: check_line_supports, check_moved_lines
+  public :: check_line_supports, check_in_plane_balance, check_moved_lines
 
   !> Difference of lengths, relative to them, that is none: above round-off, 1e-16, and below the last digit of a deck.
   real(wp), parameter :: rounding = 1.0e-9_wp
@@ -39,11 +41,43 @@ contains
       tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(supporting%component == 3 + along) .or. &
                      any(supporting%component == 3 .and. .not. across)
     end do
-    tilts = tilts .or. is_mirrored(deck%plate%symmetry)
+    ! A rotation about an axis in the plane turns its sign as the plate is turned by 180 degrees about z.
+    tilts = tilts .or. is_mirrored(deck%plate%symmetry) .or. deck%plate%symmetry == symmetry_point
     if (all(tilts) .and. (any(supporting%component == 3) .or. any(edges))) return
     call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports
+
+  !> Checks that forces in the plane balance where nothing holds the plate against them: the struck point, which is held
+  !> against rigid-body motions, would carry the rest.
+  subroutine check_in_plane_balance(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    logical :: mirrored(2), free(3)
+    real(wp) :: net(3), total
+    integer :: line
+
+    mirrored = is_mirrored(deck%plate%symmetry)
+    free = unrestrained(deck%setup_t) .and. .not. [mirrored, any(mirrored)]
+    if (deck%plate%symmetry == symmetry_point) free(1:2) = .false.
+    net = 0
+    total = 0
+    do line = 1, size(deck%lines)
+      associate (l => deck%lines(line), normal => merge(1, 2, deck%lines(line)%direction == along_y))
+        if (l%prescribed .or. l%component > 2) cycle
+        ! A line off the cut stands for its mirror image, too.
+        net(l%component) = net(l%component) + merge(2, 1, mirrored(normal) .and. abs(l%at) > 0)*l%value
+        if (l%component /= normal) net(3) = net(3) + merge(1, -1, normal == 1)*l%at*l%value/maxval(deck%plate%length)
+        total = total + abs(l%value)
+      end associate
+    end do
+    if (.not. any(free .and. abs(net) > rounding*total)) return
+    call report(deck%settings, problems, line_group, '', 'forces of lines in the plane do not balance, and nothing '// &
+                'holds the plate against them in a static analysis; give a line with a displacement u or v, or an '// &
+                'edge with in_plane = ''fixed''.', 1)
+  end subroutine check_in_plane_balance
 
   !> Reports prescribed deflections of lines where supports constrain the plate.
   subroutine check_moved_lines(deck, problems)

@@ -120,12 +120,16 @@ contains
       call add(of_density, deck%materials(i)%density, material_group, key_density, i)
     end do
     do i = 1, size(deck%delaminations)
-      toughness = toughnesses(deck%delaminations(i))
-      if (deck%delaminations(i)%toughness > 0) then
-        call add(of_toughness, toughness(2), delamination_group, key_toughness, i)
-      else
-        call add(of_toughness, toughness(2), delamination_group, key_toughness_shear, i)
-      end if
+      associate (d => deck%delaminations(i))
+        ! Interfaces of one group share its values.
+        if (any(deck%delaminations(:i - 1)%group == d%group)) cycle
+        toughness = toughnesses(d)
+        if (d%toughness > 0) then
+          call add(of_toughness, toughness(2), delamination_group, key_toughness, d%group)
+        else
+          call add(of_toughness, toughness(2), delamination_group, key_toughness_shear, d%group)
+        end if
+      end associate
     end do
     if (.not. deck%has_impactor) return
     if (deck%moves_impactor()) then

@@ -188,7 +188,7 @@ contains
 
     associate (last => scan%blocks(size(scan%blocks)))
       call problems%error(last%line, '', '', '&'//shown(last%name)//': '//event// &
-                          ' before the group does; end the group with /')
+                          ' before the group ends; end the group with /')
     end associate
   end subroutine report_missing_slash
 

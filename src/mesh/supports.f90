@@ -6,7 +6,7 @@ module supports
   use nine_node_grids, only: last_line
   implicit none
   private
-  public :: fixed_unknowns
+  public :: fixed_unknowns, fixed_by_edge
 
 contains
 

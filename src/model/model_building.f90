@@ -28,7 +28,7 @@ module model_building
   use symmetry_images, only: find_images
   implicit none
   private
-  public :: create_model, zones_of, is_membrane_idle, uncoupled
+  public :: create_model, zones_of, is_membrane_idle, uncoupled, unrestrained
 
   !> Coupling of membrane and bending that consists of round-off, relative to what it couples
   real(wp), parameter :: round_off = 1.0e-12_wp
@@ -94,7 +94,8 @@ contains
     type(section_t), intent(in) :: section
 
     idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_ply_damage &
-             .or. setup%has_thermal) .and. .not. any(lines_in_plane(setup))
+             .or. setup%has_thermal)
+    if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)
     idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
   end function is_membrane_idle
 

@@ -1,8 +1,10 @@
 """Lines on quarters of plates, in time, on ranks and across restarts.
-Usage: lines.py quarter|time|edges|ranks|restart IMPLAM FOLDER [LAUNCHER...]
+Usage: lines.py quarter|plane|turned|time|edges|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
 quarter  a strip and the quarter or half that stands for it: deflection and forces to 1e-9
+plane    a force along a strip stretches it with linear strains as with von Karman's: F L/(E A) to 1e-6
+turned   a strip on two lines under two forces, and half of it with point symmetry: to 1e-9
 time     prescribed lines are held exactly, with the force of equilibrium: fixed as in load steps, ramps and smooth
          starts the same with half the steps, the ledger closed; also beside a pressure, with two integrators
 edges    a line that runs to edges which hold the plate: its work is half its force times its way, in load steps, in
@@ -97,6 +99,34 @@ def check_time(implam, folder, _):
             require(difference < SAME_FORCE[kind], f"{name}: the force is not the same with half the steps.")
 
 
+def check_plane(implam, folder, _):
+    """In the plane a plate moves though strains are linear and nothing couples it with bending."""
+    force, expected = 1e3, 1e3*0.1/(70e9*0.02*2e-3)
+    for kinematics in ("linear", "von_karman"):
+        case = folder / kinematics
+        case.mkdir(parents=True, exist_ok=True)
+        (case / "deck.nml").write_text(CANTILEVER.replace("linear", kinematics).replace("nu=0.3", "nu=0")
+                                       + f"&line at=0.05 component='u' force={force} /\n&static /\n", encoding="utf-8")
+        place = read_history(run_deck(implam, case / "deck.nml"))["line_displacement_1"][-1]
+        require(abs(place/expected - 1) < 1e-6, f"{kinematics}: the end moves by {place!r}, not {expected!r}.")
+
+
+def check_turned(implam, folder, _):
+    """A plate turned by 180 degrees about z can't tilt, so that one line and its image hold it."""
+    found = {}
+    for symmetry, elements, sides in (("none", "8,4", (1, -1)), ("point", "4,4", (1,))):
+        case = folder / symmetry
+        case.mkdir(parents=True, exist_ok=True)
+        lines = "".join(f"&line at={0.05*side} displacement=0 /\n&line at={0.0125*side} force=30 /\n" for side in sides)
+        (case / "deck.nml").write_text(CANTILEVER.replace("'clamped',", "'free',").replace("elements=20, 4", (
+            f"grading=1 elements={elements}")).replace("in_plane", f"symmetry='{symmetry}' in_plane")
+            + lines + "&static /\n", encoding="utf-8")
+        found[symmetry] = read_history(run_deck(implam, case / "deck.nml"))
+    for name in ("deflection", "work_external", "line_force_1", "line_displacement_2"):
+        value, expected = found["point"][name][-1], found["none"][name][-1]
+        require(abs(value - expected) <= 1e-9*abs(expected), f"{name}: {value!r} of the half, not {expected!r}.")
+
+
 # Nodes at the ends of the line are held by the edges.
 BETWEEN_EDGES = CANTILEVER.replace("'clamped','free','free','free'", "{}").replace("0.1, 0.02", "0.1, 0.06")
 
@@ -145,8 +175,8 @@ def check_restart(implam, folder, _):
 
 def trial(kind, implam, folder, *launcher):
     """One of them."""
-    checks = {"quarter": check_quarter, "time": check_time, "edges": check_edges, "ranks": check_ranks,
-              "restart": check_restart}
+    checks = {"quarter": check_quarter, "plane": check_plane, "turned": check_turned, "time": check_time,
+              "edges": check_edges, "ranks": check_ranks, "restart": check_restart}
     require((DECKS / "enf.nml").exists(), "The decks are missing.")
     checks[kind](implam, Path(folder), launcher)
 

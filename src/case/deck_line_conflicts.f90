@@ -1,0 +1,98 @@
+!> Checks that a motion of a node is prescribed by one line, and lines act on motions that edges leave free.
+module deck_line_conflicts
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: report
+  use kinds, only: wp
+  use line_deck, only: line_group, key_at, key_layer
+  use line_loads, only: line_load_t, along_x, all_layers
+  use mesh_parameters, only: is_halved
+  use nodal_lines, only: node_line
+  use supports, only: fixed_by_edge
+  use text, only: to_text
+  implicit none
+  private
+  public :: check_line_conflicts
+
+contains
+
+  !> Checks every line by itself and against the lines before it.
+  subroutine check_line_conflicts(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+    integer :: line, earlier
+
+    do line = 1, size(deck%lines)
+      if (deck%lines(line)%layer > size(deck%delaminations) + 1) &
+        call report(deck%settings, problems, line_group, key_layer, 'there are fewer layers; allowed: 1 to '// &
+                    to_text(size(deck%delaminations) + 1)//'.', line)
+      if (acts_on_held_edge(deck, deck%lines(line))) &
+        call report(deck%settings, problems, line_group, key_at, 'the edge of the plate holds this component, so '// &
+                    'that the line has no effect; free the edge, for u and v by in_plane = ''free'', or move the '// &
+                    'line.', line)
+      do earlier = 1, line - 1
+        if (.not. meet(deck%lines(line), deck%lines(earlier))) cycle
+        if (deck%lines(line)%direction /= deck%lines(earlier)%direction) then
+          if (move_alike(deck%lines(line), deck%lines(earlier))) cycle
+        else if (node_of(deck, deck%lines(line)) /= node_of(deck, deck%lines(earlier))) then
+          cycle
+        end if
+        call report(deck%settings, problems, line_group, '', '&line number '//to_text(earlier)//' of the deck '// &
+                    'prescribes the same component of the same nodes; leave one of the two out.', line)
+      end do
+    end do
+  end subroutine check_line_conflicts
+
+  !> True: a line moves or loads an edge in a component that the edge holds. A support of a support is harmless.
+  pure logical function acts_on_held_edge(deck, line) result(acts)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The line
+    type(line_load_t), intent(in) :: line
+    logical :: held(5), halved(2)
+    integer :: normal, node
+
+    normal = merge(2, 1, line%direction == along_x)
+    node = node_of(deck, line)
+    halved = is_halved(deck%plate%symmetry)
+    held = .false.
+    if (node == 0 .and. .not. halved(normal)) then
+      held = fixed_by_edge(deck%plate%edges(2*normal - 1), normal, deck%plate)
+    else if (node == 2*(size(cell_edges(deck%plate, deck%mesh, normal)) - 1)) then
+      held = fixed_by_edge(deck%plate%edges(2*normal), normal, deck%plate)
+    end if
+    acts = held(line%component) .and. abs(line%value) > 0
+  end function acts_on_held_edge
+
+  !> Index of the line of nodes that a line acts on, from 0.
+  pure integer function node_of(deck, line) result(node)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The line
+    type(line_load_t), intent(in) :: line
+
+    node = node_line(cell_edges(deck%plate, deck%mesh, merge(2, 1, line%direction == along_x)), line%at)
+  end function node_of
+
+  !> True: two lines prescribe the same component of a layer.
+  pure logical function meet(one, other)
+    !> The lines
+    type(line_load_t), intent(in) :: one, other
+
+    meet = one%prescribed .and. other%prescribed .and. one%component == other%component .and. &
+           (one%layer == other%layer .or. one%layer == all_layers .or. other%layer == all_layers)
+  end function meet
+
+  !> True: two lines have the same motion, so that both may hold the node where they cross.
+  pure logical function move_alike(one, other) result(alike)
+    !> The lines
+    type(line_load_t), intent(in) :: one, other
+    real(wp) :: difference
+
+    difference = max(abs(one%value - other%value), abs(one%rise - other%rise))
+    alike = .not. difference > 0 .and. (one%history == other%history .or. .not. abs(one%value) > 0)
+  end function move_alike
+end module deck_line_conflicts
