@@ -101,7 +101,7 @@ class CommandTest(unittest.TestCase):
         for command, *words in ((plot.main, none), (plot.main, self.history, "--measured", none),
                                 (compare.main, self.history, none), (compare.main, self.history, expected),
                                 (compare.main, self.history, self.folder), (check_impact.main, none),
-                                (regress.main, none), (from_nastran.main, none)):
+                                (regress.main, none, "--program", "true"), (from_nastran.main, none)):
             with self.subTest(command=command.__module__, words=words):
                 code, text = self.run_quietly(command, *words)
                 self.assertEqual((code, len(text.splitlines())), (4, 1), text)

@@ -89,7 +89,7 @@ class StudyPlanTest(unittest.TestCase):
                 ('deck = "karas.nml"\nrepeats = 0\n' + grid, "repeats is an integer"),
                 ('deck = "karas.nml"\nerror = "force"\n' + grid, "error is one of"),
                 ('deck = "karas.nml"\nrepeat = 2\n' + grid, "'repeat' is none of"),
-                ('deck = "karas.nml"\n' + grid + '[figures]\nforce = "mean"\n', r"\[figures\] says"),
+                ('deck = "karas.nml"\n' + grid + '[figures]\nforce = "mean"\n', r"\[figures\] gives"),
                 ('deck = "karas.nml"\n[grid]\ninterval = [1]\n' + REFERENCE.replace("part", '"time.step"'),
                  "no formula of"),
                 ('deck = "karas.nml"\n[reference]\n"time.step" = 1e-7\n', "nothing is swept")):
