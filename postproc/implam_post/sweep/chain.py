@@ -5,6 +5,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from implam_post.io.counts import counted
 from implam_post.io.deck_text import copy_groups, deck_value, key_path, set_keys
 from implam_post.io.errors import EXIT_DONE, DeckError, ImplamError
 from implam_post.io.files import read_text
@@ -26,6 +29,7 @@ FIGURES = {
     "projected_area": (0, "area", "projected delaminated area"),
     "residual_strength": (1, "stress", "residual strength"),
     "shortening_at_strength": (1, "length", "shortening at the strength"),
+    "has_failed": (1, "", "whether the plate has failed"),
     "failure_code": (1, "", "failure code"),
 }
 
@@ -74,7 +78,22 @@ def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
 
 def _cell(value: object, missing: object) -> object:
     """Return the value of a cell."""
+    if isinstance(value, bool):
+        return str(value).lower()
     return missing if value is None else value
+
+
+def lower_bounds(table: Table) -> np.ndarray:
+    """Return for each row whether its strength is a lower bound, as the plate has not failed."""
+    return np.array([value == "false" for value in table.columns["has_failed"]])
+
+
+def remark_of_bounds(table: Table) -> str:
+    """Return what is to be said of runs that end before the plate fails; empty if there are none."""
+    count = int(np.count_nonzero(lower_bounds(table)))
+    return "" if count == 0 else (
+        f"warning: in {counted(count, 'run')} of {len(table.columns['has_failed'])} the plate has not failed: the "
+        "strength is a lower bound, and so are means; give the &line of the second deck a larger displacement.")
 
 
 def _summary(sweep: Sweep, case: Case) -> Mapping[str, object]:

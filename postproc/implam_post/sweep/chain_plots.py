@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from implam_post.io.files import replaced
 from implam_post.io.units import axis_of
-from implam_post.sweep.chain import FIGURES
+from implam_post.sweep.chain import FIGURES, lower_bounds
 from implam_post.sweep.plots import series
 from implam_post.sweep.table import FIGURES as TABLE_FIGURES
 from implam_post.sweep.table import Table
@@ -27,6 +27,7 @@ def plot_strength(table: Table, path: Path) -> Path | None:
     strength = table.numbers(STRENGTH)
     if strength is None or not np.any(np.isfinite(strength)):
         return None
+    bounds = lower_bounds(table)
     drawing = Figure(figsize=(12, 4.2), layout="constrained")
     up = axis_of(FIGURES[STRENGTH][2], "stress", strength, table.system)
     for axes, name in zip(drawing.subplots(1, len(_AGAINST), sharey=True), _AGAINST, strict=True):
@@ -37,7 +38,7 @@ def plot_strength(table: Table, path: Path) -> Path | None:
             dimension, label = TABLE_FIGURES[name].dimension, TABLE_FIGURES[name].label
         along = axis_of(label, dimension, values, table.system)
         for place, (title, rows) in enumerate(series(table).items()):
-            _draw(axes, along.factor * values[rows], up.factor * strength[rows],
+            _draw(axes, along.factor * values[rows], up.factor * strength[rows], bounds[rows],
                   groups(table.numbers("impact_energy")[rows]), f"C{place % 10}", title)
         axes.set_xlabel(along.label)
         axes.grid(alpha=0.3)
@@ -57,9 +58,12 @@ def groups(energies: np.ndarray) -> list[np.ndarray]:
     return [np.flatnonzero(rounded == energy) for energy in np.unique(rounded)]
 
 
-def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, together: list[np.ndarray], colour: str, title: str) -> None:
+def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, bounds: np.ndarray, together: list[np.ndarray], colour: str,
+          title: str) -> None:
     """Draw the points of a series, and means with standard deviations where several runs have one energy."""
-    axes.plot(x, y, "o", color=colour, markersize=4, alpha=0.6)
+    axes.plot(x[~bounds], y[~bounds], "o", color=colour, markersize=4, alpha=0.6)
+    if np.any(bounds):
+        axes.plot(x[bounds], y[bounds], "^", color=colour, fillstyle="none", label="lower bound: not failed")
     means = [(np.mean(x[kept]), np.mean(y[kept]), np.std(y[kept], ddof=1) if len(kept) > 1 else 0.0)
              for rows in together if len(kept := rows[np.isfinite(x[rows]) & np.isfinite(y[rows])])]
     if not means:

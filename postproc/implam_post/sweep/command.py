@@ -176,7 +176,7 @@ def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) 
 
 def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
     """Write the table of both runs and the picture of the strengths, list failed cases, and return the exit code."""
-    from implam_post.sweep.chain import add_figures
+    from implam_post.sweep.chain import add_figures, remark_of_bounds
     from implam_post.sweep.chain_plots import plot_strength
     from implam_post.sweep.table import write_csv, write_hdf5
     table, output = tables.write(), sweep.plan.output
@@ -185,6 +185,8 @@ def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
     write_hdf5(table, output / "table.h5")
     drawn = plot_strength(table, output / "strength.png")
     print(output / "table.csv", output / "table.h5", *[] if drawn is None else [drawn], sep="\n")
+    if remark := remark_of_bounds(table):
+        print(remark)
     return print_outcomes(second)
 
 

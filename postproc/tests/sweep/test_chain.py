@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from implam_post.io.deck_text import copy_groups
-from implam_post.sweep.chain import add_figures, following
+from implam_post.sweep.chain import add_figures, following, remark_of_bounds
 from implam_post.sweep.chain_plots import groups, plot_strength
 from implam_post.sweep.plan import read_plan
 from implam_post.sweep.runs import Sweep
@@ -78,12 +78,14 @@ class ChainTest(unittest.TestCase):
         """Cases without a second run have no strength."""
         self._end(self.sweep, 0, {"dent_depth": 1e-4, "projected_area": 2e-4})
         second = following(self.sweep)
-        self._end(second, 0, {"residual_strength": 3e8, "failure_code": "LDM"})
+        self._end(second, 0, {"residual_strength": 3e8, "failure_code": "LDM", "has_failed": False})
         table = Table()
         add_figures(table, self.sweep, second)
         self.assertEqual(table.columns["residual_strength"][0], 3e8)
         self.assertEqual(table.columns["dent_depth"][0], 1e-4)
         self.assertEqual(table.columns["failure_code"], ["LDM", "", "", ""])
+        self.assertEqual(table.columns["has_failed"], ["false", "", "", ""])
+        self.assertIn("in 1 run of 4 the plate has not failed", remark_of_bounds(table))
         self.assertTrue(np.all(np.isnan(table.columns["residual_strength"][1:])))
 
     def test_groups_are_copied(self) -> None:
@@ -94,7 +96,8 @@ class ChainTest(unittest.TestCase):
     def test_picture(self) -> None:
         """Runs of one energy are together; without a strength there is no picture."""
         self.assertEqual([list(rows) for rows in groups(np.array([2.0, 1.0, 2.0000000001]))], [[1], [0, 2]])
-        numbers = {"impact_energy": [1.0, 2, 2], "dent_depth": [0.0, 1e-4, 2e-4], "projected_area": [0.0, 1e-4, 2e-4]}
+        numbers = {"has_failed": ["true", "false", "true"], "impact_energy": [1.0, 2, 2],
+                   "dent_depth": [0.0, 1e-4, 2e-4], "projected_area": [0.0, 1e-4, 2e-4]}
         nothing = Table(numbers | {"residual_strength": [float("nan")] * 3})
         self.assertIsNone(plot_strength(nothing, self.folder / "none.png"))
         drawn = plot_strength(Table(numbers | {"residual_strength": [3e8, 2e8, 2.2e8]}), self.folder / "strength.png")
