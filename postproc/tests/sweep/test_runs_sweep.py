@@ -193,7 +193,7 @@ class SweepTest(unittest.TestCase):
             process.send_signal(signal.SIGTERM)
             text, _ = process.communicate(timeout=PATIENCE)
         self.assertEqual(process.returncode, EXIT_STOPPED, text)
-        self.assertRegex(text, r"\d of 6 cases have not ended; the same command goes on")
+        self.assertRegex(text, r"\d of 6 cases have not ended; the same command continues")
         self.assertEqual(self.processes(), [])
         code, text = run("sweep", *self.arguments(LONG))
         self.assertEqual(code, 0, text)
