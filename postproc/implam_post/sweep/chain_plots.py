@@ -63,7 +63,9 @@ def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, bounds: np.ndarray, together
     """Draw the points of a series, and means with standard deviations where several runs have one energy."""
     axes.plot(x[~bounds], y[~bounds], "o", color=colour, markersize=4, alpha=0.6)
     if np.any(bounds):
-        axes.plot(x[bounds], y[bounds], "^", color=colour, fillstyle="none", label="lower bound: not failed")
+        named = "lower bound: not failed"
+        again = named in axes.get_legend_handles_labels()[1]
+        axes.plot(x[bounds], y[bounds], "^", color=colour, fillstyle="none", label=None if again else named)
     means = [(np.mean(x[kept]), np.mean(y[kept]), np.std(y[kept], ddof=1) if len(kept) > 1 else 0.0)
              for rows in together if len(kept := rows[np.isfinite(x[rows]) & np.isfinite(y[rows])])]
     if not means:

@@ -186,7 +186,7 @@ def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
     drawn = plot_strength(table, output / "strength.png")
     print(output / "table.csv", output / "table.h5", *[] if drawn is None else [drawn], sep="\n")
     if remark := remark_of_bounds(table):
-        print(remark)
+        print(remark, file=sys.stderr)
     return print_outcomes(second)
 
 
