@@ -6,7 +6,6 @@
 module initial_equilibrium
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp
-  use mathematical_constants, only: pi
   use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
   use models, only: model_t
   use residual_norms, only: relative_residual
@@ -17,9 +16,6 @@ module initial_equilibrium
   private
   public :: has_initial_motion, find_initial_equilibrium, find_acceleration
 
-  !> Factor of mass over that which doubles the lowest stiffness of a bending plate as long as this one. It makes the
-  !> operator of a free plate definite, and an iteration leaves a thousandth of the lowest mode.
-  real(wp), parameter :: negligible_mass = 1.0e-3_wp
   !> Residual over the forces of the suppressed strains: loads 1e-5 times as large still get the usual tolerance of
   !> 1e-6, and round-off, 1e-16, is far below it.
   real(wp), parameter :: tolerance = 1.0e-11_wp
@@ -236,13 +232,12 @@ contains
     end do
   end function square_of_forces
 
-  !> Mass in the operator.
+  !> Mass in the operator: it makes that of a free plate definite, and an iteration leaves a thousandth of the lowest
+  !> mode.
   pure real(wp) function mass_factor(model) result(factor)
     type(model_t), intent(in) :: model
 
     factor = 0
-    if (.not. model%setup%has_inertia()) return
-    factor = negligible_mass*min(model%section%stiffness(13), model%section%stiffness(16))/model%section%mass(1) &
-             *(pi/maxval(model%setup%plate%length))**4
+    if (model%setup%has_inertia()) factor = model%negligible_stiffness()/model%section%mass(1)
   end function mass_factor
 end module initial_equilibrium

@@ -4,7 +4,6 @@
 !> with the gap -w and one multiplier per node, updated until it converges.
 module rig_contact
   use kinds, only: wp
-  use mathematical_constants, only: pi
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
   use rank_totals, only: totals_of
@@ -14,10 +13,6 @@ module rig_contact
   implicit none
   private
   public :: rig_contact_t, new_rig_contact
-
-  !> Stiffness of open contact over that of the lowest wave of a bending plate as long as this one: corrections of
-  !> elastic modes are exact to a thousandth.
-  real(wp), parameter :: negligible_stiffness = 1.0e-3_wp
 
   !> State of the contact with frames; unallocated lists: no unilateral frame.
   type :: rig_contact_t
@@ -193,23 +188,14 @@ contains
     integer :: i
 
     if (.not. (model%rig%unilateral .or. model%rig%elastic)) return
-    open = open_stiffness(model)
+    open = 0
+    ! An iteration of load steps may lift the plate off its frame, so that nothing else holds it.
+    if (.not. model%setup%has_inertia()) open = model%negligible_stiffness()
     do i = 1, model%distribution%owned
       added(:, i) = added(:, i) + stiffness_factor*model%rig%springs(:, i)
       if (model%rig%frame(i) > 0) added(3, i) = added(3, i) + model%rig_area(i)*max(-self%slope(i), open)
     end do
   end subroutine add_stiffness
-
-  !> Stiffness of open contact in the operator of load steps, per area: an iteration may lift the plate off its frame,
-  !> so that nothing else holds it. As residuals are exact, it affects the number of iterations, not the result.
-  pure real(wp) function open_stiffness(model) result(stiffness)
-    type(model_t), intent(in) :: model
-
-    stiffness = 0
-    if (model%setup%has_inertia()) return
-    stiffness = negligible_stiffness*min(model%section%stiffness(13), model%section%stiffness(16)) &
-                *(pi/maxval(model%setup%plate%length))**4
-  end function open_stiffness
 
   !> Forces of each rig on the full plate, positive against the impact: residual of the equations of motion at
   !> constrained w, pressure on its frame, and springs of its clamps. The same on every rank.
