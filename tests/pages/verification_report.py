@@ -12,8 +12,8 @@ from pathlib import Path
 
 HEAD = """# Verification
 
-Runs are compared with references: {cases} cases with {figures} figures, and {scripts} tests by scripts. This page is written from
-the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is
+Runs are compared with references: {cases} cases with {figures} figures, and {scripts} tests by scripts. This page is
+written from the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is
 met when its test passes: `ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L regress`.
 A reference of earlier runs is no evidence that the figure is right; such rows show that it has not changed.
 
@@ -86,7 +86,8 @@ def rows_of(path):
     own = [(row, case.get("name", "")) for case in cases for row in case.get("expect", [])]
     reference, what = reference_and_case(comment(text))
     for row, case in common + own:
-        yield (f"`verify_{path.stem}`", joined(what, case), reference, figure_of(row), expected_of(row), tolerance_of(row))
+        figure = (figure_of(row), expected_of(row), tolerance_of(row))
+        yield (f"`verify_{path.stem}`", joined(what, case), reference, *figure)
 
 
 def unrolled(listed):
