@@ -13,8 +13,9 @@ from pathlib import Path
 HEAD = """# Verification
 
 Runs are compared with references: {cases} cases with {figures} figures, and {scripts} tests by scripts. This page is
-written from the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date.
-A row is met when its test passes: `ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L regress`.
+written from the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to
+date. A row is met when its test passes: `ctest --test-dir build -R NAME`, or all of them,
+`ctest --test-dir build -L regress`.
 A reference of earlier runs is no evidence that the figure is right; such rows show that it has not changed.
 
 A tolerance in % is relative; the others are in the unit of the figure. Units are SI.
