@@ -41,7 +41,7 @@ contains
         !> Null: all streams
         type(c_ptr), value :: stream
       end function flush_streams
-      !> C library: the way out past the libraries' own ends.
+      !> C library: ends the process without the exit handlers of libraries.
       subroutine leave_process(status) bind(c, name='_exit')
         import :: c_int
         !> Exit code

@@ -143,7 +143,7 @@ contains
 
   !> A number that is not negative, rounded to the nearest.
   pure real(wp) function rounded_magnitude(chunks) result(value)
-    !> Its places, all below 2^32
+    !> Its digits in base 2^32
     integer(long), intent(in) :: chunks(:)
     integer(long) :: leading
     integer :: top, dropped, place, within

@@ -20,9 +20,9 @@ contains
     real(wp), intent(in) :: value
     !> Its digits as an integer
     integer(long), intent(out) :: digits
-    !> Power of ten that they count
+    !> Power of ten of the last digit
     integer, intent(out) :: exponent
-    !> False: it is not decided
+    !> False: undecided in this precision
     logical, intent(out) :: known
     integer :: power
     ! Exact up to 10**48, and to 34 digits beyond.

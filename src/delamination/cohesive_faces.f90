@@ -1,4 +1,4 @@
-!> Two faces at a point of a cohesive interface: cohesive law in opening, penalty stiffness of the undamaged interface
+!> Surfaces at a point of a cohesive interface: cohesive law in opening, penalty stiffness of the undamaged interface
 !> in closing, and friction on the damaged part of the area under pressure. Without contact the damaged part, with the
 !> damage at the start of the step, has no stiffness in closing, so that tractions have a potential within a step; the
 !> undamaged part acts in both directions, and growing damage releases the energy stored in closing.
@@ -13,11 +13,11 @@ module cohesive_faces
   private
   public :: cohesive_faces_t
 
-  !> Law, contact and friction of the faces at a point.
+  !> Law, contact and friction of the surfaces at a point.
   type :: cohesive_faces_t
     !> The cohesive law
     type(cohesive_law_t) :: law
-    !> True: contact prevents penetration of damaged faces
+    !> True: contact prevents penetration of damaged surfaces
     logical :: closing = .true.
     !> Coulomb's coefficient of friction; 0: none
     real(wp) :: friction = 0
@@ -28,7 +28,7 @@ module cohesive_faces
     procedure :: stored
     !> Work per area on the cohesive law in a step.
     procedure :: work
-    !> Energy per area that growing damage takes from closed faces without contact.
+    !> Energy per area that growing damage takes from closed surfaces without contact.
     procedure :: closing_loss
     !> Derivative of the traction.
     procedure :: slopes
@@ -42,7 +42,7 @@ contains
 
   !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine traction(self, jumps, old, force, new)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -63,7 +63,7 @@ contains
 
   !> Energy per area stored by the jumps.
   pure real(wp) function stored(self, jumps, point)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -79,7 +79,7 @@ contains
   !> energy dissipated, and loss in closing. It begins from the law at the first jumps: where flaws or a mapping have
   !> weakened the point, damage at fixed jumps takes no work.
   pure real(wp) function work(self, from, to, old, damage)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening at the start and at the end
     real(wp), intent(in) :: from(3), to(3)
@@ -104,9 +104,9 @@ contains
            + self%closing_loss(from(3), to(3), damage - first)
   end function work
 
-  !> Energy per area that growing damage takes from closed faces without contact, by the trapezoidal rule.
+  !> Energy per area that growing damage takes from closed surfaces without contact, by the trapezoidal rule.
   pure real(wp) function closing_loss(self, from, to, growth)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Opening at the start and at the end
     real(wp), intent(in) :: from, to
@@ -119,7 +119,7 @@ contains
 
   !> Derivative of the traction.
   pure function slopes(self, jumps, old)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -135,7 +135,7 @@ contains
 
   !> Diagonal for a factored operator, constant within a class of points.
   pure function diagonal(self, jumps, old)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -155,7 +155,7 @@ contains
   !> Friction limit of an accepted state: coefficient of friction times pressure times damaged fraction of the area (G.
   !> Alfano, E. Sacco 2006).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -168,7 +168,7 @@ contains
 
   !> Derivatives of the friction traction.
   pure function sticking(self, jumps, old) result(slopes)
-    !> The faces
+    !> The surfaces
     type(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -180,9 +180,9 @@ contains
     slopes = friction_slopes(self%law%stiffness_shear, jumps(:2), old%sliding)
   end function sticking
 
-  !> Stiffness of closing faces: that of the undamaged interface with contact, that of its undamaged part without.
+  !> Stiffness of closing surfaces: that of the undamaged interface with contact, that of its undamaged part without.
   pure real(wp) function closing_stiffness(self, point) result(stiffness)
-    !> The faces
+    !> The surfaces
     type(cohesive_faces_t), intent(in) :: self
     !> The point with its jumps
     type(cohesive_point_t), intent(in) :: point
@@ -191,9 +191,9 @@ contains
     if (.not. self%closing) stiffness = (1 - point%damage)*stiffness
   end function closing_stiffness
 
-  !> True if the faces are under contact pressure.
+  !> True if the surfaces are under contact pressure.
   pure logical function is_in_contact(self, jumps)
-    !> The faces
+    !> The surfaces
     class(cohesive_faces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)

@@ -1,4 +1,4 @@
-!> Cohesive law of an interface: parameters of the traction against the jumps between two faces.
+!> Cohesive law of an interface: parameters of the traction against the jumps between two surfaces.
 !>
 !> The curve is bilinear: linear up to the onset, then linear softening to zero at N times the jump of the onset. The
 !> area under it is the toughness of the present mixture of modes (M. L. Benzeggagh and M. Kenane, Composites Science

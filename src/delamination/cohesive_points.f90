@@ -1,4 +1,4 @@
-!> One point of a cohesive interface: traction against the jumps between its faces, damage, energies.
+!> One point of a cohesive interface: traction against the jumps between its surfaces, damage, energies.
 !>
 !> Components are ordered as: two shears along the interface, opening. A negative opening counts as zero and is subject
 !> to contact. Finite jumps of any size cause no overflow.
@@ -21,7 +21,7 @@ module cohesive_points
     real(wp) :: damage = 0
     !> Energy dissipated per area, e
     real(wp) :: dissipated = 0
-    !> Friction of its faces
+    !> Friction of its surfaces
     type(sliding_t) :: sliding
   end type cohesive_point_t
 

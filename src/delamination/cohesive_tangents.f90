@@ -12,7 +12,7 @@ module cohesive_tangents
 contains
 
   !> Derivative of the traction: (1 - d) diag(K), where damage grows less (K v) (x) dd/dv with dd/dx = N/((N - 1) x**2)
-  !> and dx/dv = (dY/Y - dG_c/G_c) x/2. Closing faces have no normal part. It is unsymmetric only for growth in a mixed
+  !> and dx/dv = (dY/Y - dG_c/G_c) x/2. Closed surfaces have no normal part. It is unsymmetric for growth in a mixed
   !> mode with G_Ic /= G_IIc.
   pure function traction_slopes(law, jumps, separation, old) result(slopes)
     !> The law

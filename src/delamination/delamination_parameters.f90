@@ -15,11 +15,11 @@ module delamination_parameters
   !> Growth: cells are released at frozen time until no front exceeds its toughness, or one cell per step (section 3.3.3
   !> of the paper).
   integer, parameter, public :: growth_equilibrium = 1, growth_one_per_step = 2
-  !> Ties of intact faces: jumps are eliminated, or penalised as in the paper.
+  !> Ties of intact surfaces: jumps are eliminated, or penalised as in the paper.
   integer, parameter, public :: tie_eliminate = 1, tie_penalty = 2
-  !> Contact of delaminated faces.
+  !> Contact of delaminated surfaces.
   integer, parameter, public :: contact_augmented_lagrangian = 1, contact_continuous_penalty = 2, contact_none = 3
-  !> Faces while the impactor rebounds: contact, or glued (Eq. 13b).
+  !> Surfaces while the impactor rebounds: contact, or glued (Eq. 13b).
   integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
 
   !> One interface that may delaminate. It has many components because two laws share
@@ -54,7 +54,7 @@ module delamination_parameters
     real(wp) :: strength_opening = 0, strength_shear = 0
     !> Stiffness K_n of the cohesive law, pressure per jump; 0: from E2 of the plies
     real(wp) :: stiffness = 0
-    !> Coulomb's coefficient of friction between separated faces
+    !> Coulomb's coefficient of friction between separated surfaces
     real(wp) :: friction = 0
     !> True: reduced strengths beside cracks of the adjacent plies
     logical :: cracks_as_flaws = .false.

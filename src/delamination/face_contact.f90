@@ -1,4 +1,4 @@
-!> Contact of two delaminated faces at one node: pressure against gap, frictionless.
+!> Contact of two delaminated surfaces at one node: pressure against gap, frictionless.
 !>
 !> Both methods keep an estimate of the pressure, the multiplier, constant while the equations of motion are solved with
 !> the pressure as a function of the gap. The outer loop sets the multiplier to this pressure until the gap is zero
@@ -29,7 +29,7 @@ module face_contact
   !> Slope of the steepest tail over the stiffness: rounding of the gap is still less than the pressures' own error. A
   !> factor of ten either way changes nothing (doc/studies/solution_controls.md).
   real(wp), parameter :: steepest = 1.0e5_wp
-  !> A pressure below this part of stiffness times gap is none: the faces are clearly open. A factor of ten either way
+  !> A pressure below this part of stiffness times gap is none: the surfaces are open. A factor of ten either way
   !> changes nothing (doc/studies/solution_controls.md).
   real(wp), parameter :: open_fraction = 1.0e-9_wp
 
@@ -74,14 +74,14 @@ contains
   end function create_contact_law
 
   !> Decay for given gaps: 1.5 over the mean gap (section 3.4 of the paper, where it is printed as proportional to it),
-  !> weighted by the pressures. The unweighted mean is dominated by widely open faces, with which most pressures have
-  !> not converged after 80 updates. The weighted mean decreases as the faces under pressure close, and 2 to 6 updates
+  !> weighted by the pressures. The unweighted mean is dominated by widely open surfaces, with which most pressures have
+  !> not converged after 80 updates. The weighted mean decreases as surfaces under pressure close, and 2 to 6 updates
   !> suffice, in load steps and in steps in time. A new step starts with the slope of the tail equal to the contact
   !> stiffness.
   elemental real(wp) function updated_decay(law, gaps, pressures, largest_pressure, converged) result(decay)
     !> The law
     type(contact_law_t), intent(in) :: law
-    !> Sums over the faces of area times pressure times size of the gap, and of area times pressure
+    !> Sums over the surfaces of area times pressure times size of the gap, and of area times pressure
     real(wp), intent(in) :: gaps, pressures
     !> Largest pressure
     real(wp), intent(in) :: largest_pressure
@@ -169,7 +169,7 @@ contains
     end if
   end subroutine continuous_pressure
 
-  !> The next multiplier: the pressure found, or zero where the faces are open.
+  !> The next multiplier: the pressure found, or zero where the surfaces are open.
   elemental real(wp) function updated_multiplier(law, gap, pressure) result(updated)
     !> The law
     type(contact_law_t), intent(in) :: law

@@ -1,6 +1,6 @@
-!> Coulomb friction between faces under pressure: tangential traction against sliding.
+!> Coulomb friction between surfaces under pressure: tangential traction against sliding.
 !>
-!> Faces stick elastically up to a limit, as in G. Alfano and E. Sacco, International Journal for Numerical Methods in
+!> Surfaces stick elastically up to a limit, as in Alfano and Sacco, International Journal for Numerical Methods in
 !> Engineering 68 (2006) 542-582: the traction is K (s - slip), and jumps s beyond the limit become slip. The limit is
 !> constant in a step, so that the traction has a potential, its derivative is symmetric, and the frictional heat is not
 !> negative, however the pressure changes.
@@ -24,15 +24,15 @@ contains
 
   !> Friction traction, and the history variables of the trial state.
   pure subroutine friction_traction(stiffness, jumps, old, traction, new)
-    !> Stiffness of sticking faces, pressure per jump
+    !> Stiffness of sticking surfaces, pressure per jump
     real(wp), intent(in) :: stiffness
     !> Tangential jumps
     real(wp), intent(in) :: jumps(2)
-    !> The faces in the last accepted state, with the limit of this step
+    !> The surfaces in the last accepted state, with the limit of this step
     type(sliding_t), intent(in) :: old
     !> Force per area against the jumps
     real(wp), intent(out) :: traction(2)
-    !> The faces with these jumps
+    !> The surfaces with these jumps
     type(sliding_t), intent(out) :: new
     real(wp) :: size
 
@@ -47,11 +47,11 @@ contains
 
   !> Derivative of the friction traction; during slip only its direction changes.
   pure function friction_slopes(stiffness, jumps, old) result(slopes)
-    !> Stiffness of sticking faces, pressure per jump
+    !> Stiffness of sticking surfaces, pressure per jump
     real(wp), intent(in) :: stiffness
     !> Tangential jumps
     real(wp), intent(in) :: jumps(2)
-    !> The faces in the last accepted state, with the limit of this step
+    !> The surfaces in the last accepted state, with the limit of this step
     type(sliding_t), intent(in) :: old
     !> Derivatives of each traction (row) with respect to each jump (column)
     real(wp) :: slopes(2, 2)
@@ -67,13 +67,13 @@ contains
     slopes(:, 2) = part*([0.0_wp, 1.0_wp] - trial*trial(2))
   end function friction_slopes
 
-  !> Elastic energy per area of sticking faces.
+  !> Elastic energy per area of sticking surfaces.
   pure real(wp) function friction_energy(stiffness, jumps, point) result(energy)
-    !> Stiffness of sticking faces, pressure per jump
+    !> Stiffness of sticking surfaces, pressure per jump
     real(wp), intent(in) :: stiffness
     !> Tangential jumps
     real(wp), intent(in) :: jumps(2)
-    !> The faces with these jumps
+    !> The surfaces with these jumps
     type(sliding_t), intent(in) :: point
 
     energy = stiffness*sum((jumps - point%slip)**2)/2

@@ -119,7 +119,7 @@ contains
     real(wp), intent(in) :: distance
     !> Length of the cells ahead and behind
     real(wp), intent(in) :: ahead, behind
-    !> True: the faces are tied there
+    !> True: the surfaces are tied there
     logical, intent(in) :: tied
     !> Weight of the node's jump
     real(wp), intent(in) :: weight
@@ -147,7 +147,7 @@ contains
   end function closure_moments
 
   !> Energy release rates G_I (opening), G_II (sliding across the front) and G_III (sliding along it) from sums of the
-  !> moments of nodes. A negative rate of a mode (faces under pressure) counts as zero.
+  !> moments of nodes. A negative rate of a mode (surfaces under pressure) counts as zero.
   pure function closure_rates(figures, length, extension) result(modes)
     !> The sums
     real(wp), intent(in) :: figures(closure_figures)

@@ -26,7 +26,7 @@ module energy_balance
     real(wp) :: jerk_new = 0, jerk_old = 0, jerk_change = 0
     !> Energy that cohesive points store beyond the work on them
     real(wp) :: cohesive = 0
-    !> Work of the forces between faces
+    !> Work of the forces between surfaces
     real(wp) :: faces = 0
     !> Work of the lines, and change of displacement times change of force of lines with a given force
     real(wp) :: lines = 0, lines_change = 0

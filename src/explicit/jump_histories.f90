@@ -22,13 +22,13 @@ module jump_histories
     real(wp), allocatable :: forces(:, :)
     !> Change of the jumps in the last step, and in the one before, (3, points)
     real(wp), allocatable :: change(:, :), earlier(:, :)
-    !> Change of the elastic jumps of sticking faces in the last step, and in the one before, (4, points)
+    !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before, (4, points)
     real(wp), allocatable :: sticking(:, :)
     !> Friction, (points)
     type(friction_history_t), allocatable :: friction(:)
-    !> Work on the cohesive law of damaged faces in the last step, (points)
+    !> Work on the cohesive law of damaged surfaces in the last step, (points)
     real(wp), allocatable :: work(:)
-    !> Energy dissipated by contact of faces, and numerically by the tractions, (2, points)
+    !> Energy dissipated by contact of surfaces, and numerically by the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
     !> Takes over force and change of a step.

@@ -136,7 +136,7 @@ contains
                   + (force - stacks%history%forces(:, p))*stacks%history%change(:, p)/2)
   end function work_of
 
-  !> The same for the pressure of closed faces, a spring at the end of each step, beyond what it stores.
+  !> The same for the pressure of closed surfaces, a spring at the end of each step, beyond what it stores.
   pure real(wp) function lost_in_contact(stacks, p, steps, before, change) result(lost)
     !> The stacks, with the change of the step before
     type(interface_stacks_t), intent(in) :: stacks
@@ -154,15 +154,15 @@ contains
                                    + (to - from)*stacks%history%change(3, p)/2 - (to**2 - from**2)/2)
   end function lost_in_contact
 
-  !> Slip of faces, and the change of their elastic jumps.
+  !> Slip of surfaces, and the change of their elastic jumps.
   pure subroutine slip_faces(friction, jumps, old, new, sticking, change)
     !> Friction in the step
     type(friction_t), intent(in) :: friction
     !> Tangential jumps at the end
     real(wp), intent(in) :: jumps(2)
-    !> The faces at the start
+    !> The surfaces at the start
     type(sliding_t), intent(in) :: old
-    !> The faces at the end; receive the slip
+    !> The surfaces at the end; receive the slip
     type(sliding_t), intent(inout) :: new
     !> Change of the elastic jumps in the last two steps; receives that of this one
     real(wp), intent(inout) :: sticking(4)
@@ -176,22 +176,22 @@ contains
       new%slip = jumps - friction%elastic
     end if
     sticking = [change, sticking(1:2)]
-    ! Forces of faces that slip do not depend on what they were before.
+    ! Forces of surfaces that slip do not depend on what they were before.
     if (friction%slips .or. .not. friction%limit > 0) sticking = 0
   end subroutine slip_faces
 
-  !> Heat of slipping faces: the work of friction beyond what sticking stores in half of this step and half of the one
+  !> Heat of slipping surfaces: the work of friction beyond what sticking stores in halves of this step and the one
   !> before, while forces depend on a slip. Where this is negative, that much less heat follows.
   pure subroutine add_heat(stiffness, from, to, work, old, new, history)
-    !> Stiffness of sticking faces, pressure per jump
+    !> Stiffness of sticking surfaces, pressure per jump
     real(wp), intent(in) :: stiffness
     !> Tangential jumps at the start and at the end
     real(wp), intent(in) :: from(2), to(2)
     !> Work of friction per area
     real(wp), intent(in) :: work
-    !> The faces at the start
+    !> The surfaces at the start
     type(sliding_t), intent(in) :: old
-    !> The faces at the end; receive the heat
+    !> The surfaces at the end; receive the heat
     type(sliding_t), intent(inout) :: new
     !> Earlier steps; receives this one
     type(friction_history_t), intent(inout) :: history

@@ -42,7 +42,7 @@ module stack_solutions
     real(wp), allocatable :: secant(:, :), given(:, :)
     !> Damage and sliding at the start
     type(cohesive_point_t), allocatable :: points(:)
-    !> True: faces do not penetrate each other
+    !> True: surfaces do not penetrate each other
     logical, allocatable :: closing(:)
     !> Friction
     type(friction_t), allocatable :: friction(:)
@@ -54,7 +54,7 @@ module stack_solutions
 
 contains
 
-  !> Forces normal to the faces. The active set of contacts is that of the last solution, until it no longer changes;
+  !> Forces normal to the surfaces. The active set of contacts is that of the last solution, until it no longer changes;
   !> the law is monotonic, so the iteration converges.
   pure subroutine solve_openings(stack)
     !> The stack; receives normal forces and the limits of friction
@@ -149,9 +149,9 @@ contains
   pure subroutine return_to_limit(friction, stiffness, elastic)
     !> The friction of an interface; receives force and elastic jumps
     type(friction_t), intent(inout) :: friction
-    !> Stiffness of sticking faces, force per jump
+    !> Stiffness of sticking surfaces, force per jump
     real(wp), intent(in) :: stiffness
-    !> Elastic jumps at the end of the step if the faces stick
+    !> Elastic jumps at the end of the step if the surfaces stick
     real(wp), intent(in) :: elastic(2)
     real(wp) :: trial
 

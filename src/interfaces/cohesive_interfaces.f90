@@ -1,8 +1,8 @@
 !> Cohesive interfaces: tractions between layers, damage and dissipated energy.
 !>
-!> Tractions act at nodal points as internal forces on the jumps. Closing faces are in contact by the penalty stiffness
+!> Tractions act at nodal points as internal forces on the jumps. Closing surfaces touch by the penalty stiffness
 !> of the undamaged interface, independent of the damage: contact is conservative, and the factored operator is
-!> unchanged where undamaged faces change between pressure and tension.
+!> unchanged where undamaged surfaces change between pressure and tension.
 module cohesive_interfaces
   use kinds, only: wp
   use archives, only: archive_t
@@ -49,7 +49,7 @@ module cohesive_interfaces
     procedure :: pressure
     !> True for zones in which damage has reached the border.
     procedure :: border_reached
-    !> Faces of an interface, and law of a point.
+    !> Surfaces of an interface, and law of a point.
     procedure :: faces_of
     procedure :: law_at
     !> Saves or loads.
@@ -284,7 +284,7 @@ contains
     end do
   end function shear_share
 
-  !> Pressure on closed faces at this rank's points.
+  !> Pressure on closed surfaces at this rank's points.
   pure function pressure(self, model, displacement)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
@@ -304,7 +304,7 @@ contains
     end do
   end function pressure
 
-  !> True if contact prevents penetration of the faces of a zone.
+  !> True if contact prevents penetration of the surfaces of a zone.
   pure logical function prevents_penetration(model, zone)
     type(model_t), intent(in) :: model
     !> Index of the zone
@@ -345,7 +345,7 @@ contains
     law = weakened(model%cohesive_laws(model%zone(i)), self%strength(i))
   end function law_at
 
-  !> Faces of an interface.
+  !> Surfaces of an interface.
   pure type(cohesive_faces_t) function faces_of(self, model, zone, strength) result(faces)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self

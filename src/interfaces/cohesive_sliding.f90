@@ -1,4 +1,4 @@
-!> Friction between the faces of cohesive interfaces: friction limits at their points, and frictional heat.
+!> Friction between the surfaces of cohesive interfaces: friction limits at their points, and frictional heat.
 module cohesive_sliding
   use kinds, only: wp
   use archives, only: archive_t

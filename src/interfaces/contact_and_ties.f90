@@ -1,4 +1,4 @@
-!> Tied, open and closed faces: forces of ties and contact on the jumps.
+!> Tied, open and closed surfaces: forces of ties and contact on the jumps.
 !>
 !> The pressure is constant over a step, and complementarity is required at its end. The work of contact is then minus
 !> the pressure times the gap that closed: contact never creates energy, with any integrator of the plate.
@@ -163,7 +163,7 @@ contains
     self%peak = max(self%peak, maxval(largest))
   end subroutine update_multipliers
 
-  !> Violation of complementarity: no pressure on open faces, no negative pressure. Relative to the largest pressure so
+  !> Violation of complementarity: no pressure on open surfaces, no negative pressure. Relative to the largest so
   !> far. The same on every rank.
   real(wp) function complementarity(self, model, displacement)
     !> The state
@@ -249,7 +249,7 @@ contains
 
   contains
 
-    !> Penalty of a tied opening: the contact stiffness if that is at least as large, so that the release of faces under
+    !> Penalty of a tied opening: the contact stiffness if that is as large, so that the release of surfaces under
     !> pressure does not change the operator.
     pure real(wp) function tie_like_contact(i) result(stiffness)
       !> Point of this rank

@@ -26,7 +26,7 @@ contains
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive new delaminated cells and the largest ratio
     type(interface_state_t), intent(inout) :: state
-    !> Fracture energy of the full plate; that of the new faces is added
+    !> Fracture energy of the full plate; that of the new surfaces is added
     real(wp), intent(inout) :: fracture
     !> True if cells delaminated
     logical, intent(out) :: grown
@@ -77,7 +77,7 @@ contains
     integer, intent(in) :: zone
     !> The front
     type(front_energy_release_t), intent(in) :: front
-    !> Fracture energy of the full plate; that of the new faces is added
+    !> Fracture energy of the full plate; that of the new surfaces is added
     real(wp), intent(inout) :: fracture
     !> Set true if cells delaminated
     logical, intent(inout) :: grown
@@ -88,7 +88,7 @@ contains
     ! At the border of the layers there is no tie force for virtual crack closure, so a rate cannot show blocked growth.
     state%border_reached(zone) = state%border_reached(zone) .or. any(front%segments%at_border)
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
-    ! A delamination that fills its zone has no front but the border; faces that are glued cannot delaminate.
+    ! A delamination that fills its zone has no front but the border; surfaces that are glued cannot delaminate.
     if (foremost == 0) return
     if (state%faces%glued .and. model%setup%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
@@ -151,7 +151,7 @@ contains
     end do
   end function closest_to_front
 
-  !> Releases the jumps of the new delamination; faces under pressure start in contact.
+  !> Releases the jumps of the new delamination; surfaces under pressure start in contact.
   subroutine open_faces(model, motion, state)
     type(model_t), intent(in) :: model
     !> Motion with its forces

@@ -16,7 +16,7 @@ module interface_columns
     'delaminated_area | real | area | Delaminated area of all interfaces together, their starters included; &
       &with a cohesive law the area dissipated.']
 
-  !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of faces.
+  !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of surfaces.
   character(len=result_row_length), parameter, public :: release_rows(*) = [character(len=result_row_length) :: &
     'release_ratio | real | - | Largest energy release rate on all fronts over its critical value; in a static &
       &analysis fronts do not grow.', &
@@ -65,7 +65,7 @@ contains
     values = [sum(interfaces%faces%area(model)) + sum(interfaces%cohesive%area(model))]
   end function area_values
 
-  !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of faces.
+  !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of surfaces.
   !> Collective.
   function release_values(model, interfaces, displacement) result(values)
     type(model_t), intent(in) :: model

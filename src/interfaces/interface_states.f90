@@ -20,7 +20,7 @@ module interface_states
 
   !> State of all interfaces.
   type :: interface_state_t
-    !> Ties and contacts of the faces
+    !> Ties and contacts of the surfaces
     type(contact_and_ties_t) :: faces
     !> Points with cohesive laws
     type(cohesive_interfaces_t) :: cohesive
@@ -85,7 +85,7 @@ contains
     call self%rig%add_to_residual(model, displacement, residual)
   end subroutine add_to_residual
 
-  !> Sets the multipliers of faces and frames to the contact pressures found.
+  !> Sets the multipliers of surfaces and frames to the contact pressures found.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(interface_state_t), intent(inout) :: self
@@ -109,7 +109,7 @@ contains
     if (converged) call update_friction_limits(self%cohesive, model, displacement, updates, converged)
   end subroutine update_contact
 
-  !> Keeps closed contacts of faces and frames closed in the predictor.
+  !> Keeps closed contacts of surfaces and frames closed in the predictor.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(interface_state_t), intent(in) :: self

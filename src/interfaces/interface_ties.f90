@@ -19,7 +19,7 @@ module interface_ties
     type(delaminated_region_t), allocatable :: regions(:)
     !> True where a lower point's jumps are free, (local points); allocated only with layers
     logical, allocatable :: free(:)
-    !> True: separated faces move together (the paper's shortcut for unloading)
+    !> True: separated surfaces move together (the paper's shortcut for unloading)
     logical :: glued = .false.
     !> Fracture energy of the cells that fronts have released, of the full plate, (zones), the same on every rank
     real(wp), allocatable :: fracture(:)
@@ -28,7 +28,7 @@ module interface_ties
     procedure :: free_jumps
     !> Kind of connection at a point.
     procedure :: connection
-    !> Owned points with contact of faces.
+    !> Owned points with contact of surfaces.
     procedure :: in_contact
     !> Sets the correction of tied jumps to zero.
     procedure :: constrain_correction
@@ -110,7 +110,7 @@ contains
     stiffness = stiffness*model%contact_area(i)
   end function tie_stiffness
 
-  !> Owned points with contact of faces.
+  !> Owned points with contact of surfaces.
   pure function in_contact(self, model) result(points)
     !> The connections
     class(interface_ties_t), intent(in) :: self
@@ -139,7 +139,7 @@ contains
     end do
   end subroutine constrain_correction
 
-  !> Largest penetration of separated faces, the same on every rank.
+  !> Largest penetration of separated surfaces, the same on every rank.
   real(wp) function penetration(self, model, displacement)
     !> The connections
     class(interface_ties_t), intent(in) :: self

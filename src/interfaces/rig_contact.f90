@@ -1,6 +1,6 @@
 !> Contact with rigs: pressure where it rests on a frame that it may lift off, springs of clamps, and reactions.
 !>
-!> A frame is rigid and constrains w at its nodes by an inequality. The law is that of contact of faces (`face_contact`)
+!> A frame is rigid and constrains w at its nodes by an inequality. The law is that of surfaces (`face_contact`)
 !> with the gap -w and one multiplier per node, updated until it converges.
 module rig_contact
   use kinds, only: wp

@@ -64,7 +64,7 @@ contains
     end do
   end function new_tie_release
 
-  !> Releases the ties whose jumps have become free; where the faces press on each other contact takes over at once, if
+  !> Releases the ties whose jumps have become free; where surfaces press on each other contact takes over at once, if
   !> there is any.
   pure subroutine release(self, model, free_before, free, forces)
     !> The ties

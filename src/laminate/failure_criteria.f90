@@ -58,7 +58,7 @@ contains
   pure function needed_strengths(criteria, bands, material) result(names)
     !> criteria_hou, criteria_hashin or criteria_puck
     integer, intent(in) :: criteria
-    !> True: plies soften by their fracture energies, where stresses in the plane count only
+    !> True: plies soften by their fracture energies, with criteria of the in-plane stresses
     logical, intent(in) :: bands
     !> The material
     type(material_t), intent(in) :: material

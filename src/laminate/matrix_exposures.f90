@@ -13,7 +13,7 @@ module matrix_exposures
   !> Inclinations of Puck's curve at no stress across the fibres, tension and compression, for carbon fibres
   !> (A. Puck, J. Kopp, M. Knops, Composites Science and Technology 62 (2002) 371-378).
   real(wp), parameter :: inclination_tension = 0.35_wp, inclination_compression = 0.30_wp
-  !> Planes that are looked at, a degree apart: between two of them the exposure is larger by less than 2e-4.
+  !> Planes that are evaluated, a degree apart: between two of them the exposure is larger by less than 2e-4.
   integer, parameter :: planes = 180
 
   !> Strengths for the matrix criteria.
@@ -99,13 +99,13 @@ contains
 
   !> Exposure after Puck with transverse shear: the largest of all planes along the fibres (Puck, Schuermann, 1998). The
   !> inclination over the strength is the same for shear along and across the fibres, as in modes A, B and C, which
-  !> it finds again without transverse shear.
+  !> it reproduces without transverse shear.
   pure real(wp) function plane_exposure(strengths, stress, enough) result(exposure)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
-    !> Exposure from which on planes are looked at no further; absent: all are
+    !> Exposure at which the search of planes ends; absent: all are evaluated
     real(wp), intent(in), optional :: enough
     real(wp) :: c, s, normal, along, across, strength_across, limit
     integer :: i
@@ -130,7 +130,7 @@ contains
     end associate
   end function plane_exposure
 
-  !> True if stresses crack the matrix on a plane. Where no plane can be near to it none is looked at.
+  !> True if stresses crack the matrix on a plane. Planes are evaluated only where a bound of their exposures reaches 1.
   pure logical function cracks_on_a_plane(strengths, stress) result(cracks)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths

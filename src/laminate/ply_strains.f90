@@ -43,7 +43,7 @@ contains
     end do
   end function strain_moments
 
-  !> The means one behind the other.
+  !> The means in one array.
   pure function values_of(moments) result(values)
     !> The means
     type(strain_moments_t), intent(in) :: moments

@@ -79,7 +79,7 @@ contains
     end do
   end subroutine fill_supports
 
-  !> Each rig by itself and against the plate.
+  !> Checks each rig, and its fit to the plate.
   subroutine check_rigs(settings, plate, supports, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

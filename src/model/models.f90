@@ -43,7 +43,7 @@ module models
     real(wp), allocatable :: lumped(:, :)
     !> Area of each point of a lower layer, (local points)
     real(wp), allocatable :: contact_area(:)
-    !> Contact of each zone's faces
+    !> Contact of each zone's surfaces
     type(contact_law_t), allocatable :: contact_laws(:)
     !> Cohesive law of each zone; not used where fronts release ties
     type(cohesive_law_t), allocatable :: cohesive_laws(:)

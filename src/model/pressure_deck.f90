@@ -27,7 +27,7 @@ module pressure_deck
 
 contains
 
-  !> The pressure; the time of a ramp is the run's.
+  !> Fills in the pressure; a ramp ends with the run.
   subroutine fill_pressure(settings, end_time, pressure)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -67,21 +67,21 @@ module lagrange9
 
 contains
 
-  !> Quadratics of the nodes -1, 0, 1 of a line.
+  !> Quadratic shape functions of the nodes -1, 0, 1 of a line.
   pure function line_values(x) result(values)
-    !> Where, between -1 and 1
+    !> Coordinate from -1 to 1
     real(wp), intent(in) :: x
-    !> One value a node
+    !> Value of each
     real(wp) :: values(3)
 
     values = [0.5_wp*x*(x - 1.0_wp), 1.0_wp - x*x, 0.5_wp*x*(x + 1.0_wp)]
   end function line_values
 
-  !> Slopes of the quadratics of the nodes -1, 0, 1 of a line.
+  !> Derivatives of the quadratic shape functions of the nodes -1, 0, 1 of a line.
   pure function line_slopes(x) result(slopes)
-    !> Where, between -1 and 1
+    !> Coordinate from -1 to 1
     real(wp), intent(in) :: x
-    !> One slope a node
+    !> Derivative of each
     real(wp) :: slopes(3)
 
     slopes = [x - 0.5_wp, -2.0_wp*x, x + 0.5_wp]

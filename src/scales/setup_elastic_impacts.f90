@@ -221,7 +221,7 @@ contains
   pure subroutine largest_step(self, end, bounds, step, error)
     !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
-    !> Time looked at
+    !> End of the time considered
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)
@@ -268,7 +268,7 @@ contains
     type(setup_elastic_impact_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
-    !> Time looked at
+    !> End of the time considered
     real(wp), intent(in) :: end
     !> Relative errors of peak and history allowed
     real(wp), intent(in) :: bounds(2)

@@ -21,7 +21,7 @@ module static_deck
 
 contains
 
-  !> Load steps.
+  !> Fills in the load steps.
   subroutine fill_static(settings, static)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

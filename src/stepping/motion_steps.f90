@@ -108,7 +108,7 @@ contains
     end associate
   end subroutine prepare_operator
 
-  !> Notes where an impactor that moves back has left the faces glued.
+  !> Notes where an impactor that moves back has left the surfaces glued.
   subroutine complete_trial(self, stepper, model)
     !> The kind
     class(motion_steps_t), intent(in) :: self

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds meshes and steps that `&case accuracy` chooses against semi-analytic responses. See README.md."""
+"""Semi-analytic responses against meshes and steps that `&case accuracy` chooses. See README.md."""
 import argparse
 import csv
 import json

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Writes doc/verification.md from what the tests check: the expectations of tests/regress/expect and the scripts that
-tests/regress/CMakeLists.txt registers. Usage: verification_report.py [ROOT] [--check]
+tests/regress/CMakeLists.txt registers, with its loops. Usage: verification_report.py [ROOT] [--check]
 
 --check writes nothing and ends with code 1 if the page is not up to date."""
 
@@ -12,10 +12,11 @@ from pathlib import Path
 
 HEAD = """# Verification
 
-What the tests hold runs against: {cases} cases with {figures} figures, and {scripts} scripts. It is written from
-the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to date. A row is
-met when its test passes:
-`ctest --test-dir build -R NAME`, or all of them, `ctest --test-dir build -L regress`.
+Runs are compared with references: {cases} cases with {figures} figures, and {scripts} tests by scripts. This page is
+written from the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to
+date. A row is met when its test passes: `ctest --test-dir build -R NAME`, or all of them,
+`ctest --test-dir build -L regress`.
+A reference of earlier runs is no evidence that the figure is right; such rows show that it has not changed.
 
 A tolerance in % is relative; the others are in the unit of the figure. Units are SI.
 
@@ -27,16 +28,22 @@ SCRIPTS = """
 ## Scripts
 Comparisons that need more than one figure of one run: closed forms of specimens, symmetries, ranks, restarts.
 
-| test | label | held by |
-|---|---|---|
+| test | label | reference | case and tolerance |
+|---|---|---|---|
 """
 KNOWN = ("quantity", "column", "value", "relative", "absolute", "against", "at")
 
 
 def first_sentence(text):
     """The first sentence of a comment or docstring."""
-    text = re.split(r"(?<=[.!?;])\s|(?<=\w):\s", " ".join(text.split()), maxsplit=1)[0]
+    text = re.split(r"(?<=[.!?;])\s", " ".join(text.split()), maxsplit=1)[0]
     return text.rstrip(".:;").replace("|", "\\|")
+
+
+def reference_and_case(text):
+    """The first sentence of a comment or docstring, such as `Closed form: a cantilever`, at its colon."""
+    reference, _, case = first_sentence(text).partition(": ")
+    return reference, case
 
 
 def comment(text):
@@ -78,17 +85,42 @@ def rows_of(path):
     cases = data.get("variant") or [{"name": ""}]
     common = [(row, "all" if data.get("variant") else "") for row in data.get("expect", [])]
     own = [(row, case.get("name", "")) for case in cases for row in case.get("expect", [])]
-    reference = first_sentence(comment(text))
+    reference, what = reference_and_case(comment(text))
     for row, case in common + own:
-        yield (f"`verify_{path.stem}`", case, reference, figure_of(row), expected_of(row), tolerance_of(row))
+        figure = (figure_of(row), expected_of(row), tolerance_of(row))
+        yield (f"`verify_{path.stem}`", joined(what, case), reference, *figure)
+
+
+def unrolled(listed):
+    """The text of a CMakeLists.txt with its loops written out and its variables of one or more words replaced."""
+
+    def written_out(loop):
+        return "".join(loop[3].replace(f"${{{loop[1]}}}", word) for word in loop[2].split())
+
+    text = re.sub(r"foreach\((\w+) ([^)]*)\)(.*?)endforeach\(\)", written_out, listed, flags=re.S)
+    for name, value in re.findall(r"^set\((\w+) ([^)\n]*)\)$", text, re.M):
+        text = text.replace(f"${{{name}}}", value)
+    return text
+
+
+def entry_of(printed, trial):
+    """What a docstring says of a trial: the line that begins with its name, and the indented ones after it."""
+    found = re.search(rf"^{re.escape(trial)}:? +(.*(?:\n +.*)*)", printed, re.M) if trial else None
+    return first_sentence(found[1]) if found else ""
+
+
+def joined(*parts):
+    """Those that are not empty, separated by semicolons."""
+    return "; ".join(part for part in parts if part)
 
 
 def scripts_of(folder):
-    """Registered scripts with the first sentence of their docstrings."""
-    listed = (folder / "CMakeLists.txt").read_text(encoding="utf-8")
-    for test, label, script in re.findall(r"implam_add_script\((\w+) ([\w-]+) (\w+\.py)", listed):
+    """Registered scripts with the first sentence of their docstrings and what these say of the trial."""
+    listed = unrolled((folder / "CMakeLists.txt").read_text(encoding="utf-8"))
+    for test, label, script, trial in re.findall(r"implam_add_script\((\S+) ([\w-]+) ([\w./]+\.py)\s+(\S+)", listed):
         printed = ast.get_docstring(ast.parse((folder / script).read_text(encoding="utf-8"))) or ""
-        yield f"`{test}`", label, first_sentence(printed)
+        reference, case = reference_and_case(printed)
+        yield f"`{test}`", label, reference, joined(case, entry_of(printed, trial))
 
 
 def page_of(root):

@@ -1,4 +1,4 @@
-"""A layer over a circular delamination buckles and grows under equal compression along x and y: closed forms.
+"""Closed forms: a layer over a circular delamination buckles and grows under equal compression along x and y.
 Usage: buckled_circle.py IMPLAM FOLDER     (formulas: input/verify/buckled_circle.nml)"""
 
 import math

@@ -1,9 +1,9 @@
-"""Which checkpoint a restart takes, and which it refuses.
+"""Checkpoints that a restart accepts, and those that it refuses.
 Usage: checkpoint_files.py TRIAL IMPLAM FOLDER
 
-found        without a file the newest whole checkpoint of a folder is taken, and results keep the name of the case
-mixed        results of another run are neither gone on with nor left with a checkpoint that isn't theirs
-damaged      a checkpoint that isn't one, or not whole, ends with the exit code for files and a sentence"""
+found        without a file the newest complete checkpoint of a folder is read, and results keep the name of the case
+mixed        results of another run are neither continued nor combined with the checkpoint of another
+damaged      a file that is no checkpoint, or incomplete, ends with the exit code of files and a sentence"""
 
 import os
 import random

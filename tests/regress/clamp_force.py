@@ -1,4 +1,4 @@
-"""Clamps that press a panel on its frame by a force. Usage: clamp_force.py IMPLAM FOLDER
+"""Limiting cases of clamps with a force: rigid clamps and no clamps. Usage: clamp_force.py IMPLAM FOLDER
 
 Four clamps that press hard hold the plate as rigid ones do, four that hardly press let it lift off as without any, and
 those between never hold it by more than they press, which they do while it is off the frame. Energy is conserved with

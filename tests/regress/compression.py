@@ -1,17 +1,17 @@
-"""An impact and the compression of what it has left.
+"""An impact and the compression of the damaged panel.
 Usage: compression.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
-chain    what the impact has left is there at the start, comes to rest, is pressed and fails; the ledger closes
-again    from a checkpoint in the midst, without the impact's: bitwise
+chain    the damage of the impact is inherited, the panel comes to rest and fails in compression; the ledger closes
+again    from a checkpoint within the run, without that of the impact: bitwise
 ranks    on two and three ranks, and from a checkpoint of two on three: bitwise
 mapped   on finer cells, of the half and of the full plate: areas, energies and damage stay; from a checkpoint, bitwise
 mapped_ranks   the same on two ranks: bitwise
-whole    the full plate from the half that was struck: to rounding until it fails
-buckling the elastic panel in the frame against the eigenvalue and the path beyond it of another program
-bent     the same panel with a shape without stress in place of the pressure
-closing  with cracks that close, also from a checkpoint: the ledger closes
+whole    the full plate from the half that was struck: to round-off until it fails
+buckling the elastic panel in the frame against eigenvalue and postbuckling of CalculiX
+bent     the same panel with a stress-free imperfection instead of the pressure
+closing  with cracks that close, also from a checkpoint: energies balance
 coupon   [0]8 fails at XC
-refused  another plate, a deck that cannot begin so, a checkpoint that is none: one sentence with both values each"""
+refused  another plate, an unsuitable deck, a file that is no checkpoint: one sentence with both values each"""
 
 import filecmp
 import json

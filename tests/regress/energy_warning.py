@@ -1,4 +1,4 @@
-"""Whether the warning of created energy comes where it must and stays away where it must.
+"""Runs that create energy warn of it, and others do not.
 Usage: energy_warning.py IMPLAM FOLDER"""
 
 import sys

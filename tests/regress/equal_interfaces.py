@@ -1,4 +1,5 @@
-"""Equal circular delaminations above each other. Usage: equal_interfaces.py IMPLAM FOLDER
+"""Closed form of the threshold force of equal circular delaminations above each other.
+Usage: equal_interfaces.py IMPLAM FOLDER
 
 Under a force in the middle of a thin plate the release rate of each of n is (n + 2) P**2/(32 pi**2 D), so they grow
 together at P = pi sqrt(32 D G_c/(n + 2)): 1756, 1521 and 1361 N for 1, 2 and 3."""

@@ -1,4 +1,4 @@
-"""Runs whose output times all but coincide with the end, or with each other, take no step between them.
+"""Output times that nearly coincide with the end or with each other make no tiny steps.
 Usage: event_times.py IMPLAM FOLDER"""
 
 import sys

@@ -1,5 +1,5 @@
-"""Panels that other programs take, whole, with failed plies and delaminated: their deflections against Implam's; and
-the example of the manual. Usage: exchange.py calculix|mystran|manual IMPLAM FOLDER
+"""Deflections by other programs: exported panels, intact, with failed plies and delaminated; and the example of the
+manual. Usage: exchange.py calculix|mystran|manual IMPLAM FOLDER
 
 Ends with 77 where ccx, mystran or pyNastran isn't installed."""
 

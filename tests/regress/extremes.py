@@ -1,5 +1,5 @@
-"""Runs each row of extremes.toml as a deck: it has to end with the result of an independent figure or bound, or in one
-sentence with the exit code that the row says.
+"""Extreme cases of extremes.toml against independent figures and bounds: each ends with its
+result, or in one sentence with the exit code that the row gives.
 
 usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names hold one of the words; with none of them
 all)

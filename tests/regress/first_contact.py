@@ -1,4 +1,4 @@
-"""An impactor meets a plate that residual stress has deflected. Usage: first_contact.py IMPLAM FOLDER
+"""First contact with a plate that residual stress has deflected. Usage: first_contact.py IMPLAM FOLDER
 
 An unsymmetric laminate is deflected towards the impactor or away from it, by more than its thickness. The run starts at
 first contact all the same, and conserves the energy of the impact."""

@@ -4,7 +4,7 @@ Usage: flaws.py whole|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 
 Each with cracks_as_flaws, and with shear_cracks.
 
-whole    flaws bring damage, and a quarter, a half and a plate cut and turned stand for the whole: to 1e-6
+whole    flaws cause damage, and quarter, half and point-symmetric half agree with the full plate: to 1e-6
 ranks    on 1 and 2 ranks: to 1e-6
 restart  from a checkpoint while cracks grow: bitwise"""
 

@@ -1,4 +1,5 @@
-"""A weak interface over a frame: the frame carries the plate from below. Usage: frame_layers.py IMPLAM FOLDER
+"""The frame supports the lowest layer, so that a weak interface above it stays closed.
+Usage: frame_layers.py IMPLAM FOLDER
 
 The interface below the first ply has a strength in opening that its share of the reaction exceeds if the frame holds
 the first layer, so that the plies below it hang on that interface. Held at the lower face it is compressed: it does not

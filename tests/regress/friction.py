@@ -1,4 +1,4 @@
-"""Friction between faces against closed forms, on ranks and across restarts.
+"""Closed forms of friction between surfaces, ranks and restarts.
 Usage: friction.py block|notched|ranks|restart IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks last)
 
 block    a layer pulled along another: coefficient times force between them, to 1e-5; what slipping takes is work less

@@ -1,4 +1,4 @@
-"""A front of whole cells under a slow central blow against the force in closed form.
+"""Closed form of the delamination threshold force: a front of whole cells under a slow central impact.
 Usage: front_threshold.py IMPLAM FOLDER"""
 
 import itertools

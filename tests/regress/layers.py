@@ -1,9 +1,9 @@
-"""Layers that follow the damage of a cohesive interface, against those that are there from the start.
+"""Adaptive layers of a cohesive interface against layers from the start.
 Usage: layers.py same|plies|again IMPLAM FOLDER
 
-same     a cross-ply with one interface: force, area and energies as with a zone larger than they come to reach
-plies    cracked plies and von Karman's strains: no energy is made or lost where layers appear
-again    a step in which damage comes to the border of the layers is taken again with more of them"""
+same     a cross-ply with one interface: force, area and energies as with a larger fixed zone
+plies    cracked plies and von Karman's strains: energy is conserved where layers appear
+again    a step in which damage reaches the border of the layers is repeated with more layers"""
 
 import math
 import sys

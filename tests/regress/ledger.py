@@ -1,4 +1,4 @@
-"""The energy ledger of load steps: every kind of load on every kind of plate.
+"""Energy balance of load steps: every kind of load on every kind of plate.
 Usage: ledger.py IMPLAM FOLDER
 
 Every load, with each of what stores or takes energy: plies that fail at once or soften, interfaces, a rig with a frame

@@ -2,14 +2,14 @@
 Usage: lines.py quarter|plane|turned|time|edges|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
-quarter  a strip and the quarter or half that stands for it: deflection and forces to 1e-9
+quarter  a strip against its quarter or half: deflection and forces to 1e-9
 plane    a force along a strip stretches it with linear strains as with von Karman's: F L/(E A) to 1e-6
 turned   a strip on two lines under two forces, and half of it with point symmetry: to 1e-9
 time     prescribed lines are held exactly, with the force of equilibrium: fixed as in load steps, ramps and smooth
          starts the same with half the steps, the ledger closed; also beside a pressure, with two integrators
 edges    a line that runs to edges which hold the plate: its work is half its force times its way, in load steps, in
          time and by central differences; held nodes are none of its own
-ranks    a notched strip that is taken by what it dissipates, on 1 and 2 ranks: to 1e-6
+ranks    a notched strip in steps of dissipation, on 1 and 2 ranks: to 1e-6
 restart  the same from a checkpoint while damage grows: bitwise"""
 
 import re

@@ -1,4 +1,4 @@
-"""Whether passing the model's limits is reported once, with its time, and ends a strict run.
+"""Passing a limit of the model is reported once, with its time, and ends a strict run.
 Usage: model_limits.py IMPLAM FOLDER"""
 
 import json

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Runs that are killed or stopped at any moment, again and again, must end as the run that was left alone.
+"""Runs killed or stopped at random times and resumed must end as the uninterrupted run.
 Usage: moments.py TRIAL IMPLAM FOLDER COUNT LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
 
 kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one while a checkpoint is being written:
-         histories and damage are those of the run left alone, bitwise on one rank and to 1e-9 on two; no file is left
+         histories and damage are those of the uninterrupted run, bitwise on one rank and to 1e-9 on two; no file
+         is left
 signals  TERM, INT and USR1, once and twice, to the program, to one rank, to both and to mpirun, COUNT times each: a
          checkpoint, or nothing written yet, and the code of the manual; what goes on from there ends likewise
-early    before main has begun, and while METIS has TERM's handler in its hands: the same"""
+early    before main has begun, and while METIS has replaced the handler of TERM: the same"""
 
 import os
 import random

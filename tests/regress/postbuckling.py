@@ -1,4 +1,4 @@
-"""The path of a panel beyond buckling against CalculiX: stress and its slope, with the same shape without stress.
+"""CalculiX: postbuckling of a panel, stress and its slope, with the same shape without stress.
 Usage: postbuckling.py IMPLAM FOLDER     (ends with 77 where ccx is not installed)
 
 CalculiX has finite strains: at a uniform strain e its stress differs by 1.5 e and its tangent by 3 e from von Karman's.

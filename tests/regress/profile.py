@@ -1,4 +1,4 @@
-"""--profile: the parts add up to the run, are counted as often as the run does them, and nothing is reported unasked.
+"""Profile of a run: its parts add up to the run, with the calls of the run, and only with --profile.
 profile.py IMPLAM DECK"""
 
 import json

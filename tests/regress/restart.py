@@ -1,14 +1,14 @@
-"""Runs that are interrupted and go on must give the history of the run that was not.
+"""Restarts give the uninterrupted history.
 Usage: restart.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
 integrators  every pair of integrators, linear and von Karman, one with adaptive steps: bitwise on one rank
-contact      delaminated faces in contact by both laws: bitwise
+contact      delaminated surfaces in contact by both laws: bitwise
 ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
 ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
 limit        the wall-clock limit ends runs in time with a checkpoint and that exit code: bitwise
-kill         SIGKILL at any moment leaves a checkpoint that can be used: bitwise"""
+kill         SIGKILL at any time leaves a usable checkpoint: bitwise"""
 
 import filecmp
 import os

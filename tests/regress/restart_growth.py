@@ -1,16 +1,16 @@
-"""Runs whose delaminations grow and plies fail, split anywhere, must give the history of the run that was not.
+"""Restarts of runs with growing delaminations and failing plies give the uninterrupted history.
 Usage: restart_growth.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
-every    from the checkpoint after each step of a run whose operator follows releases and contact: bitwise
+every    from the checkpoint after each step of a run with released ties and contact: bitwise
 splits   just before and just after a step with the most growth, by every rule of growth and of energy release: bitwise
-moments  SIGTERM and SIGKILL while a step with several releases is being computed: bitwise, the same cells apart
+moments  SIGTERM and SIGKILL while a step with several releases is being computed: bitwise, the same cells delaminated
 ranks    from 2 ranks to 1, from 1 to 2: to 1e-9
 rejected from checkpoints next to rejected steps, while delaminations grow: bitwise
 cohesive from the checkpoint after each step of a run whose interface is cohesive: bitwise
 layers   from the checkpoint after each step of a run with adaptive layers: bitwise
 softening from the checkpoint after each step of a run whose plies soften: bitwise
-nose     the same under a nose that presses where it touches: bitwise
-explicit wherever a run by central differences looks at its limits, with a low pass of its force: bitwise"""
+nose     the same with `contact_area='sphere'`: bitwise
+explicit at the checks of a run by central differences, with a low-pass filter of the force: bitwise"""
 
 import signal
 import sys

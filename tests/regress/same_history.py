@@ -1,15 +1,20 @@
-"""Runs a deck in two ways that must give the same history.
+"""Equal histories of a deck run in two ways.
 Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTING...]
        same_history.py PART IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
-ranks: on 1, 2, 3 and 4 ranks, LAUNCHER taking the number of ranks as its last word; and restarted from a checkpoint
-within the run on another number of ranks. PART: a part of the plate, quarter,
-half_x, half_y or point, against the full plate with twice the elements along the directions halved. mirror: against
-the plate with x and y exchanged. tolerances: with residuals of 1e-9 against .8e-9 and 2e-9, so that steps take other
-numbers of iterations and operators are renewed at other times. Where an interface delaminates or plies fail, it must
-grow, and the same cells and plies be the ones at the end."""
+ranks    on 1 to 4 ranks, and from a checkpoint on another number of ranks
+quarter  a quarter of the plate against the full one
+half_x   a half along x against the full plate
+half_y   a half along y against the full plate
+point    the half of point symmetry against the full plate
+mirror   against the plate with x and y exchanged
+tolerances  residuals of 1e-9 against .8e-9 and 2e-9, with other numbers of iterations and other renewals of operators
+
+LAUNCHER takes the number of ranks as its last word. The full plate has twice the elements along the directions halved.
+Where an interface delaminates or plies fail, it must grow, and the same cells and plies be the ones at the end.
+"""
 
 import re
 import shutil

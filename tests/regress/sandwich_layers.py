@@ -1,4 +1,4 @@
-"""A sandwich with interfaces between its skins and its core, or in the core, is as stiff as without them.
+"""Equal stiffness of a sandwich with and without interfaces at or in its core.
 Usage: sandwich_layers.py IMPLAM FOLDER
 
 Shear stresses of the core are nearly uniform while its skins hold: 5/6 of its stiffness makes the panel 10 % softer.

@@ -1,11 +1,11 @@
 """Slow indentation by an impactor's travel.
 Usage: slow.py elastic|grows|restart IMPLAM FOLDER
 
-elastic  an intact plate without softening: force and travel as of Hertz's law and the plate's deflection under as much
-         force as pressure on the patch, to 1e-6; halves of the steps change nothing
+elastic  an intact plate: force and travel of Hertz's law and the deflection under equal pressure on the patch, to
+         1e-6; halves of the steps change nothing
 grows    a clamped plate that delaminates: the force is that of the closed form, 1756 N, within 3 %, while the area
          grows fourfold; the ledger closes to 1e-6
-restart  the same from a checkpoint while it grows: bitwise"""
+restart  from a checkpoint while it grows: bitwise"""
 
 import sys
 from pathlib import Path

@@ -1,7 +1,16 @@
-"""Specimens whose crack grows: the load at each length of the crack against beam theory and published tables.
+"""Beam theory and published tables of fracture specimens, at each crack length.
 Usage: specimens.py KIND IMPLAM FOLDER [LEVER | NUMBER | RATIO | TOUGHNESS]
 (KIND: buckled, dcb, dcb_ubm, enf, mmb, moment_opening, moment_shear or moment_unequal; LEVER: that of mmb in mm;
 NUMBER: of elements of moment_unequal; RATIO: of the moments of dcb_ubm; TOUGHNESS: of buckled, N/m)
+
+dcb      double cantilever beam: load
+enf      end-notched flexure: load
+mmb      mixed-mode bending, lever in mm: load within 2 %
+dcb_ubm  double cantilever under uneven moments, their ratio: toughness and share of shear
+moment_opening  equal and opposite moments: moment at growth
+moment_shear    equal moments: moment at growth
+moment_unequal  arms of unequal thickness: share of shear by energy and by moments
+buckled  a layer over a delamination, toughness in N/m: strain at buckling and at growth
 
 The length is that of the area dissipated over the width: an elastic crack of that length has dissipated as much. It is
 judged once the process zone has formed, some millimetres from the starter; before, the load is below that of an

@@ -1,4 +1,4 @@
-"""A plate struck aside. Usage: struck_aside.py IMPLAM FOLDER
+"""Navier's series of a plate struck beside its centre. Usage: struck_aside.py IMPLAM FOLDER
 
 Navier's series for a simply supported plate under a force on a square anywhere, quasi-static as in frame.py; and the
 plate struck at the mirrored place, which must respond alike."""

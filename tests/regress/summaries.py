@@ -1,12 +1,12 @@
 """The summary of a run, compared with its history, closed forms and other runs.
 Usage: summaries.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
-figures  NAME_summary.json against the history, its rounded figures in the log, several interfaces and plies
-contact  duration of contact and rebound of a ball on a rigid base against Hertz
-restart  a run taken up again says what the undisturbed one says, to the last bit; warnings and onsets too
-ranks    two ranks say what one says, to 1e-9
-endings  runs that were stopped or failed say so, with what they reached
-errors   a plate that deflects far, with an accuracy: a coarser run reports the errors, and a finer one confirms them
+figures  NAME_summary.json against history and log, with several interfaces and plies
+contact  duration of contact and rebound of a sphere on a rigid base against Hertz
+restart  a resumed run has the summary of the uninterrupted one: bitwise, with warnings and onsets
+ranks    on 1 and 2 ranks: to 1e-9
+endings  runs that were stopped or failed report it, with the values reached
+errors   large deflection with an accuracy: a coarser run estimates the errors, a finer one confirms them
 static   the release rate under a static load grows with its square and is that of the compliance"""
 
 import json

@@ -1,5 +1,5 @@
-"""--verify: the finer run is that of a deck refined by hand, the changes are those of the summaries, and what an
-earlier command has done isn't done again. Usage: verification.py IMPLAM FOLDER"""
+"""The option --verify: the finer run is that of a deck refined by hand, changes are those of the summaries, and
+existing results are reused. Usage: verification.py IMPLAM FOLDER"""
 
 import json
 import sys

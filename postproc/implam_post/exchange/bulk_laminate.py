@@ -24,7 +24,7 @@ _FIRST_PLY = 9
 
 def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, shear_23: float | None = None
                   ) -> list[Ply]:
-    """Return the plies of the property that all elements have; several may be there if they say the same.
+    """Return the plies of the property that all elements have; several are accepted if they are equal.
 
     `shear_23` stands in for G2Z where that is blank.
     """

@@ -12,7 +12,7 @@ MODES = {FIBRE: "fibres", CRACKING: "cracked", CRUSHING: "crushed"}
 
 @dataclass(frozen=True)
 class Degradation:
-    """Divisor of a constant at each mode that touches it, and its floor as a fraction of the undamaged one."""
+    """Divisor of a constant at each mode that affects it, and its floor as a fraction of the undamaged one."""
 
     divisor: float = 100.0
     floor: float = 1e-3

@@ -1,4 +1,4 @@
-"""The panel that goes out to other programs: its cells, the plies that hold together in each, its supports."""
+"""The panel for other programs: its cells, the layers of plies in each, its supports."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

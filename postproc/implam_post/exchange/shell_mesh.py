@@ -44,7 +44,7 @@ class ShellMesh:
 
 
 def shell_mesh(panel: Panel, with_middles: bool) -> ShellMesh:
-    """Number the grids line by line and build the elements; `with_middles` keeps the grid amid each cell."""
+    """Number the grids line by line and build the elements; `with_middles` keeps the middle grid of each cell."""
     numbers, coordinates = _numbered(panel, with_middles)
     elements = [_element(cell, stack, numbers) for cell, stacks in sorted(panel.stacks.items()) for stack in stacks]
     elements.sort(key=lambda element: element.stack.first > 1)

@@ -75,7 +75,7 @@ def _part_above(values: np.ndarray, level: float) -> np.ndarray:
 
 
 def _cut(points: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
-    """Return what of the elements lies above a level: quarters of entire ones, parts of the triangles of others."""
+    """Return the parts of the elements above a level: quarters of entire ones, parts of the triangles of others."""
     entire = np.all(shares >= level, axis=1)
     quarters = points[entire][:, _QUADS].reshape(-1, 4, 2)
     triangles, values = points[~entire][:, _TRIANGLES].reshape(-1, 3, 2), shares[~entire][:, _TRIANGLES].reshape(-1, 3)

@@ -28,7 +28,7 @@ class KeyPath:
 
 @dataclass(frozen=True)
 class _Span:
-    """Where a key stands: its name, and its values from the first to the last."""
+    """Position of a key: its name, and its values from the first to the last."""
 
     key: Token
     first: Token
@@ -37,7 +37,7 @@ class _Span:
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a group stands: its first letter, its closing slash, and its keys by lower-case name."""
+    """Position of a group: its first letter, its closing slash, and its keys by lower-case name."""
 
     name: str
     start: int
@@ -138,7 +138,7 @@ def _reads_as_values(text: str) -> bool:
 
 
 def _places(text: str, name: str) -> list[_Place]:
-    """Return where the groups of a deck and their keys stand."""
+    """Return the positions of the groups of a deck and of their keys."""
     read_namelist(text, name)  # raises what is wrong with the deck
     tokens, found, position = read_tokens(text, name), [], 0
     while position < len(tokens):

@@ -36,7 +36,7 @@ class CommandParser(argparse.ArgumentParser):
     """Parser of a command line that ends with the solver's exit code for wrong usage."""
 
     def error(self, message: str) -> Never:
-        """Say what is wrong and end."""
+        """Print what is wrong and end."""
         self.print_usage(sys.stderr)
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
 

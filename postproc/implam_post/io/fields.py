@@ -251,7 +251,7 @@ class _MemberError(ValueError):
 
 
 def _reason(error: Exception) -> str:
-    """Return what is wrong; libraries describe it by their own internals, which say nothing to a user."""
+    """Return what is wrong; libraries describe it by their internals, which do not help a user."""
     if isinstance(error, _MemberError):
         return str(error)
     if lacking := re.search(r"object '([^']*)' doesn't exist", str(error)):

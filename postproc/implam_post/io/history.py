@@ -92,7 +92,7 @@ def read_history(path: Path | str) -> History:
 
 
 def _summary_beside(path: Path) -> dict[str, Any]:
-    """Return the summary beside a history; empty without one, as of a run that goes on."""
+    """Return the summary beside a history; empty without one, as of a run that has not ended."""
     summary = path.with_name(path.name.removesuffix(_ENDING) + "_summary.json")
     if not path.name.endswith(_ENDING) or not summary.exists():
         return {}

@@ -119,7 +119,7 @@ def energy_error(history: History) -> float:
 
 
 def energy_rise(history: History) -> float:
-    """Return the most that the energy kept, less the pressure's work, rises over any window, over that at the start."""
+    """Return the largest rise of energy less the work of pressure over any window, over the energy at the start."""
     kept = sum(history[column] for column in KEPT_ENERGIES) - history["work_external"]
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.max(kept - np.minimum.accumulate(kept)) / np.abs(kept[0]))

@@ -12,7 +12,7 @@ from implam_post.plot.style import FORMATS, PictureStyle, add_options, style_of
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Draw and say what was drawn."""
+    """Draw, and print the names of the pictures."""
     import matplotlib
 
     style = style_of(options, options.results)

@@ -58,7 +58,7 @@ def _picture(fields: Fields, history: History | None, style: PictureStyle, momen
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Draw the movie and say where it is."""
+    """Draw the movie, and print its path."""
     style = style_of(options, [options.fields])
     if not _RATES[0] <= options.rate <= _RATES[1]:
         raise ImplamError(f"--rate takes {_RATES[0]:g} to {_RATES[1]:g}.")

@@ -1,4 +1,4 @@
-"""How pictures look: units of the axes, kind of file, dots per inch, size of letters, and styles of several runs."""
+"""Style of pictures: units of the axes, kind of file, dots per inch, size of letters, and styles of several runs."""
 
 import argparse
 from collections.abc import Iterable
@@ -56,7 +56,7 @@ class PictureStyle:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say how pictures look."""
+    """Add the options of the appearance of pictures."""
     parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: that of the deck in "
                         "NAME.h5); axes are in mm, ms, kN and J then")
     parser.add_argument("--dpi", type=int, help="dots per inch (default: 150; pictures of --save and movies 80)")

@@ -44,7 +44,7 @@ def deck_path(expectations: Expectations, decks: Path | None) -> Path:
 
 
 def _accept(expectations: Expectations, outcomes: Sequence[Outcome]) -> bool:
-    """Write what was found in the runs of one file, and say so; return False if it can't be accepted."""
+    """Write the results of the runs of one file, and print its name; return False if they can't be accepted."""
     if all(outcome.passed for outcome in outcomes):
         return True
     path = expectations.path
@@ -90,7 +90,7 @@ def _run(options: argparse.Namespace, folder: Path) -> bool:
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Run in the folder that is given, or in one of its own that goes unless something failed."""
+    """Run in the given folder, or in a temporary one that is removed unless something failed."""
     folder = options.output or Path(tempfile.mkdtemp(prefix="implam_regress_"))
     passed = False
     try:

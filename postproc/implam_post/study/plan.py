@@ -1,4 +1,4 @@
-"""The plan of a study: problems, methods to compute them by, what is taken as true of each problem, and repeats."""
+"""The plan of a study: problems, methods to compute them by, the reference of each problem, and repeats."""
 
 import tomllib
 from collections import Counter
@@ -38,7 +38,7 @@ The file of a study:
     [derived]                                 # in this order, from names, keys of the case's deck, and numbers
     "time.step" = "coarse/part"
 
-    [reference]                               # the method that is taken as true of problems without another reference
+    [reference]                               # the method that is the reference of problems without another one
     "mesh.elements" = [32, 32]
     part = 32
 
@@ -191,7 +191,7 @@ class _Maker:
         return given[place] if isinstance(given, list) else given
 
     def _reference(self, name: str, place: int, row: dict[str, object]) -> Case | Path | str:
-        """Return what is taken as true of a problem."""
+        """Return the reference of a problem."""
         given = self._at("reference", place)
         if given == SEMI_ANALYTIC:
             return SEMI_ANALYTIC

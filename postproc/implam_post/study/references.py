@@ -1,4 +1,4 @@
-"""What is taken as true of the problems of a study: a run, a history beside its file, or a semi-analytic solution."""
+"""References of the problems of a study: a run, a history beside its file, or a semi-analytic solution."""
 
 import hashlib
 import json
@@ -24,10 +24,10 @@ _COLUMNS = ("time", "force", "impactor_velocity", "deflection")
 
 
 class References:
-    """Finds the reference of a trial, and keeps it: semi-analytic solutions also on the disk."""
+    """Finds the reference of a trial and stores it: semi-analytic solutions also on the disk."""
 
     def __init__(self, sweep: Sweep) -> None:
-        """Solutions are kept beside the runs."""
+        """Solutions are stored in the folder of the runs."""
         self._sweep, self._folder = sweep, sweep.plan.output / "references"
         self._known: dict[str, History] = {}
 

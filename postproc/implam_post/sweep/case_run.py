@@ -1,4 +1,4 @@
-"""One case of a sweep: runs its deck, or goes on from its checkpoint, and records how the run ended.
+"""One case of a sweep: runs its deck, or resumes it from its checkpoint, and records how the run ended.
 
 A process of its own watches over each run (`python -m implam_post.sweep.case_run FOLDER --program "implam"`), so that a
 killed sweep or job loses nothing. It imports little, as it starts once a case.
@@ -37,7 +37,7 @@ _RECORD, _LOCK, OUTPUT = "run.json", "lock", "output.txt"
 # Runs that ended so would end so again.
 FINAL = (EXIT_DONE, EXIT_CONVERGENCE)
 _STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)
-_PAUSE = 0.05  # seconds between looks at the run
+_PAUSE = 0.05  # seconds between checks of the run
 _STOPPING = f"stopped, to go on from a checkpoint if there is one ({EXIT_STOPPED})"
 
 
@@ -104,7 +104,7 @@ def case_command(folder: Path, program: Sequence[str]) -> list[str]:
 
 
 class _Stop:
-    """Say whether the run is to stop: by a signal, or because the sweep that started it is gone."""
+    """Return whether the run is to stop: by a signal, or because the sweep that started it has ended."""
 
     def __init__(self, lifeline: int | None) -> None:
         """Catch the signals; `lifeline` is a pipe that closes when the sweep ends."""
@@ -131,7 +131,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
     try:
         record = read_record(folder)
         if record is None and (folder / _RECORD).exists():
-            drop_checkpoint(folder)  # of a run whose history is gone: it has to begin at the start
+            drop_checkpoint(folder)  # of a run whose history is missing: it has to begin at the start
         record = record or Record(EXIT_STOPPED)
         while not record.final and not stop:
             checkpoint = checkpoint_in(folder)

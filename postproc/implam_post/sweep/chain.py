@@ -89,7 +89,7 @@ def lower_bounds(table: Table) -> np.ndarray:
 
 
 def remark_of_bounds(table: Table) -> str:
-    """Return what is to be said of runs that end before the plate fails; empty if there are none."""
+    """Return the note on runs that end before the plate fails; empty if there are none."""
     count = int(np.count_nonzero(lower_bounds(table)))
     return "" if count == 0 else (
         f"warning: in {counted(count, 'run')} of {len(table.columns['has_failed'])} the plate has not failed: the "

@@ -16,13 +16,13 @@ from implam_post.sweep.case_run import OUTPUT, case_command, read_record
 from implam_post.sweep.plan import Case, Plan
 
 NOT_RUN, STOPPED = "not run", "stopped"
-_PAUSE = 0.05  # seconds between looks at the runs
+_PAUSE = 0.05  # seconds between checks of the runs
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2)
 
 
 @dataclass
 class _Job:
-    """A run that goes on; closing its lifeline stops it."""
+    """A run in progress; closing its lifeline stops it."""
 
     case: Case
     process: subprocess.Popen

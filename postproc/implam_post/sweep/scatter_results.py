@@ -37,7 +37,7 @@ _ROWS = 1000  # of the band of the force history
 @dataclass
 class EndedRun:
     """A run with a result: case, summary and history, figures, processor seconds, and the area of a C-scan at the
-    end, as polygons of the full plate; None without an interface. Fields are not kept."""
+    end, as polygons of the full plate; None without an interface. Fields are not stored."""
 
     case: Case
     results: Run

@@ -77,7 +77,7 @@ def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], styl
     for name in names:
         if name in found and found[name].number:
             one = found[name]
-            shown = _sayer(style, dimensions.get(name, ""), one.mean, one.high)
+            shown = _formatter(style, dimensions.get(name, ""), one.mean, one.high)
             deviation = f"{shown(one.deviation, 3)}{_percent(one.deviation, one.mean)}"
             yield (words_of(name), shown(one.mean), shown(one.error, 2), deviation, shown(one.low), shown(one.high),
                    str(one.number))
@@ -89,7 +89,7 @@ def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, st
     for name in names:
         if name in found and found[name].number:
             one = found[name]
-            shown = _sayer(style, dimensions.get(name, ""), one.first, one.mean)
+            shown = _formatter(style, dimensions.get(name, ""), one.first, one.mean)
             verdict = "differs" if one.differs else "equal" if one.number > 1 else "not known from one pair"
             yield (words_of(name), shown(one.first), f"{shown(one.mean, 3)}{_percent(one.mean, one.first)}",
                    shown(one.least, 2), verdict, str(one.number))
@@ -110,7 +110,7 @@ def words_of(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _sayer(style: PictureStyle, dimension: str, *values: float) -> Callable[..., str]:
+def _formatter(style: PictureStyle, dimension: str, *values: float) -> Callable[..., str]:
     """Return a function that writes values in the unit that suits the largest of them."""
     axis = style.axis("", dimension, values)
     unit = axis.label.strip(" []") if style.system and dimension else ""
