@@ -149,9 +149,9 @@ contains
     shorter = minval(deck%plate%length)
     associate (s => deck%settings, patch => deck%mesh%patch)
       if (patch <= 0) return
-      if (any(patch/2 + abs(deck%mesh%struck) > deck%plate%length/2) .and. patch <= shorter) then
+      if (any(abs(deck%mesh%struck) > 0 .and. meets_border(deck, [patch, patch])) .and. patch <= shorter) then
         if (are_clear(s, problems, impactor_group, key_at)) call report(s, problems, impactor_group, key_at, 'the '// &
-          'loaded patch reaches over the border of the plate; strike further inside.')
+          'loaded patch reaches the border of the plate; strike further inside.')
       else if (patch > shorter) then
         call report(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
                   to_text(shorter)//'.')
@@ -178,7 +178,7 @@ contains
 
     associate (s => deck%settings, mesh => deck%mesh)
       if (minval(mesh%core) <= 0 .or. mesh%cell <= 0) return
-      if (any(mesh%core/2 + abs(mesh%struck) >= deck%plate%length/2)) then
+      if (any(meets_border(deck, mesh%core))) then
         call report(s, problems, mesh_group, key_core, &
                   'reaches the border of the plate; give it smaller or leave it out.')
       else if (any(mesh%core/mesh%cell > max_elements)) then
@@ -199,6 +199,18 @@ contains
       end if
     end associate
   end subroutine check_core
+
+  !> Whether a rectangle about the struck point meets or crosses the border, with no room for elements on that side.
+  pure function meets_border(deck, extents) result(meets)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Extents of the rectangle along x and y
+    real(wp), intent(in) :: extents(2)
+    !> Along x and y
+    logical :: meets(2)
+
+    meets = extents/2 + abs(deck%mesh%struck) >= deck%plate%length/2*(1 - rounded_off)
+  end function meets_border
 
   !> Zones against the plate, and starters against the loaded patch.
   subroutine check_zones(deck, problems)

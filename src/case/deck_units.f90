@@ -8,7 +8,7 @@ module deck_units
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
-  use delamination_deck, only: key_toughness, key_toughness_shear
+  use delamination_deck, only: key_strength_shear, key_toughness, key_toughness_shear
   use interface_places, only: delamination_group
   use delamination_parameters, only: toughnesses
   use hertz_contact, only: sun_stiffness
@@ -129,6 +129,9 @@ contains
         else
           call add(of_toughness, toughness(2), delamination_group, key_toughness_shear, d%group)
         end if
+        ! That in opening may be as small as large cells need.
+        if (deck%settings%is_given(delamination_group, key_strength_shear, d%group)) &
+          call add(of_strength, d%strength_shear, delamination_group, key_strength_shear, d%group)
       end associate
     end do
     if (.not. deck%has_impactor) return

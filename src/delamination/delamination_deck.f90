@@ -22,7 +22,7 @@ module delamination_deck
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_law = 'law', &
     key_toughness = 'G_c', key_toughness_opening = 'G_Ic', key_toughness_shear = 'G_IIc', key_smoothing = 'smoothing', &
     key_strip = 'starter_strip', key_starter_at = 'starter_at', &
-    key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks'
+    key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks', key_strength_shear = 'strength_shear'
   character(len=*), parameter :: group = delamination_group
   !> Keys that have no effect on a cohesive interface, and on one with a front.
   character(len=*), parameter :: fronts_only = 'energy_release growth tie penalty unloading smoothing contact_exponent'
@@ -180,7 +180,7 @@ contains
     if (delamination%law /= law_cohesive) return
     delamination%stiffness = settings%real_of(group, 'stiffness', place)
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
-    call fill_strength(settings, place, 'strength_shear', weaker(2), delamination%strength_shear)
+    call fill_strength(settings, place, key_strength_shear, weaker(2), delamination%strength_shear)
   end subroutine fill_law
 
   !> True if a cohesive law is the default: no key of a front is given, and strengths are known.
@@ -194,7 +194,7 @@ contains
 
     suits = .not. needs_front(settings, place) .and. &
             (of_plies(1) > 0 .or. settings%is_given(group, 'strength_opening', place)) .and. &
-            (of_plies(2) > 0 .or. settings%is_given(group, 'strength_shear', place))
+            (of_plies(2) > 0 .or. settings%is_given(group, key_strength_shear, place))
   end function suits_cohesive
 
   !> True if the deck gives a key that only a front has.
@@ -323,7 +323,7 @@ contains
     ! Without a position there are no adjacent plies with strengths.
     if (delamination%below_ply < 1) return
     if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
-    if (.not. delamination%strength_shear > 0) call require('strength_shear', 'or S12 of the materials.')
+    if (.not. delamination%strength_shear > 0) call require(key_strength_shear, 'or S12 of the materials.')
 
   contains
 

@@ -6,7 +6,7 @@ module load_cases
   use line_loads, only: line_load_t
   use load_step_parameters, only: load_stepping_t
   use pressure_loads, only: pressure_t
-  use smooth_starts, only: smooth_step
+  use smooth_starts, only: smooth_ramp, smooth_step
   use support_parameters, only: support_t
   implicit none
   private
@@ -130,8 +130,8 @@ contains
     end if
   end function pressure_factor
 
-  !> Loads relative to those at the end, the largest of pressure and lines; 1 in time with an impactor, residual
-  !> stresses or an initial state.
+  !> Loads relative to those at the end, the largest of a travel, pressure and lines; 1 in time with a free impactor,
+  !> residual stresses or an initial state.
   elemental real(wp) function load_level(self, time)
     !> The load case
     class(load_case_t), intent(in) :: self
@@ -142,9 +142,11 @@ contains
 
     load_level = 1
     if (self%is_static()) load_level = time
-    if (self%is_static() .or. self%has_impactor .or. self%has_thermal .or. self%initial%is_inherited) return
+    if (self%is_static() .or. self%has_thermal .or. self%initial%is_inherited) return
+    if (self%has_impactor .and. .not. self%impactor%travel > 0) return
     level = -1
-    if (self%has_pressure) level = self%pressure%amplitude(time)
+    if (self%has_impactor) level = smooth_ramp(time/self%ramp_time, self%impactor%rise/self%ramp_time, 0)
+    if (self%has_pressure) level = max(level, self%pressure%amplitude(time))
     if (allocated(self%lines)) then
       do i = 1, size(self%lines)
         if (abs(self%lines(i)%value) > 0) &

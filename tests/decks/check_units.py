@@ -26,6 +26,8 @@ ROWS = (
     ('velocity in mm/s', 'sun_chen', (('velocity', 1e3),), 'velocity', 'mm/s'),
     ('mass in g', 'sun_chen', (('mass', 1e3),), 'mass', 'g'),
     ('toughness in N/mm', 'peanut', (('G_Ic', 1e-3), ('G_IIc', 1e-3)), 'G_IIc', 'N/mm'),
+    ('strengths of an interface in MPa', 'experiments/crossply_0_90',
+     (('strength_opening', 1e-6), ('strength_shear', 1e-6)), 'strength_shear', 'MPa'),
     ('k in N/mm^1.5', 'sun_chen', (('k', 10**-4.5),), 'k', 'N/mm^1.5'),
     ('strengths in MPa', 'peanut_cracked', (('XT', 1e-6), ('XC', 1e-6), ('YT', 1e-6), ('YC', 1e-6), ('S12', 1e-6),
                                             ('Sm23', 1e-6)), 'XT', 'MPa'),

@@ -22,6 +22,16 @@ TURNED = """&case name='turned' /
 &line at=0.05 component='theta_x' rotation=0.02 rise=2e-4 /
 &time end=1e-3 step=1e-5 integrator='generalized_alpha' rho_inf=0.8 /
 """
+# Slow motion from rest: the energy of the first steps is far below that at the end.
+SLOW = """&case name='slow' strict=.true. /
+&plate length=0.04, 0.03 edges='clamped' symmetry='quarter' /
+&mesh elements=4, 4 patch=4e-3 /
+&material name='ply' density=1600 E1=130e9 E2=7.7e9 G12=4.8e9 G23=3.8e9 nu12=0.3 /
+&laminate materials='ply' stacking='[0/90]s' ply_thickness=0.4e-3 /
+&impactor travel=1e-4 radius=8e-3 /
+&indentation law='hertz' /
+&time integrator='central_difference' end=1e-3 mass_scaling=10 /
+"""
 
 
 def warnings_of(implam, folder, history, time):
@@ -50,6 +60,11 @@ def main(implam, folder):
     (turned / "turned.nml").write_text(TURNED, encoding="utf-8")
     printed = run([implam, turned / "turned.nml", "--output", turned])
     require("of the energy" not in printed, "A line that moves smoothly warns of the energy of its first steps.")
+    slow = folder / "slow"
+    slow.mkdir(parents=True, exist_ok=True)
+    (slow / "slow.nml").write_text(SLOW, encoding="utf-8")
+    printed = run([implam, slow / "slow.nml", "--output", slow])
+    require("of the energy" not in printed, "A travel that begins smoothly warns of the energy of its first steps.")
 
 
 if __name__ == "__main__":
