@@ -88,6 +88,8 @@ class CardsTest(ImportTest):
                 102, 1, 0.2e-3, 90.0)
         plies = plies_of(self.deck(Bulk(laminate=[card])))
         self.assertEqual([(ply.thickness, ply.angle) for ply in plies], [(0.1e-3, 30), (0.2e-3, 90)])
+        twice = tuple(101 if field == 102 else field for field in card)
+        self.refused(Bulk(laminate=[twice]), "PCOMPG: global ply 101 occurs twice")
 
     def test_isotropic_material_by_two_moduli(self) -> None:
         """NU follows from E and G."""
