@@ -63,9 +63,10 @@ def _beside(path: Path) -> Path:
 
 @dataclass
 class _Curves:
-    """Histories by path, summaries of compressions, a measured curve, and the strength of the undamaged plate."""
+    """Paths and histories, summaries of compressions, a measured curve, and the strength of the undamaged plate."""
 
-    histories: dict[Path, History]
+    paths: Sequence[Path]
+    histories: list[History]
     summaries: list[Mapping[str, object]]
     measured: History | None
     undamaged: float | None
@@ -82,18 +83,19 @@ def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
     measured = read_history(options.measured) if options.measured else None
     if measured is not None and not set(measured.columns) & set(RESPONSES):
         raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
-    histories = {path: read_history(path) for path in paths}
+    histories = [read_history(path) for path in paths]
     beside = [path.with_name(path.name.removesuffix(HISTORY) + SUMMARY) for path in paths]
     summaries = [read_summary(path) if is_compressed(history) and path.exists() else {}
-                 for history, path in zip(histories.values(), beside, strict=True)]
-    return _Curves(histories, summaries, measured, strength_of(options.undamaged) if options.undamaged else None)
+                 for history, path in zip(histories, beside, strict=True)]
+    undamaged = strength_of(options.undamaged) if options.undamaged else None
+    return _Curves(paths, histories, summaries, measured, undamaged)
 
 
 def _plot_histories(curves: _Curves, options: argparse.Namespace, style: PictureStyle) -> int:
     """Draw the responses over each other and the energies of each history."""
     from implam_post.plot.pictures import plot_compression, plot_energies, plot_response
 
-    paths, histories = [*curves.histories], [*curves.histories.values()]
+    paths, histories = curves.paths, curves.histories
     folders = [options.output or path.parent for path in paths]
     response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
     print(plot_response(histories, response, style, curves.measured))

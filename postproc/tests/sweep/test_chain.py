@@ -95,15 +95,15 @@ class ChainTest(unittest.TestCase):
         second = following(self.sweep)
         for place in (0, 1):
             self._end(second, place, {"residual_strength": 3e8, "failure_code": "LDM", "has_failed": True})
-        broken = [self.sweep.folder(self.sweep.plan.cases[1]) / "hit_summary.json",
-                  second.folder(second.plan.cases[0]) / "pressed_summary.json"]
-        for path in broken:
+        damaged = [self.sweep.folder(self.sweep.plan.cases[1]) / "hit_summary.json",
+                   second.folder(second.plan.cases[0]) / "pressed_summary.json"]
+        for path in damaged:
             path.write_text("{}", encoding="utf-8")
         table = make_table(self.sweep, {})
-        self.assertTrue(any(str(broken[0]) in note for note in table.notes))
+        self.assertTrue(any(str(damaged[0]) in note for note in table.notes))
         add_figures(table, self.sweep, second)
-        self.assertEqual(sum(str(broken[0]) in note for note in table.notes), 1)
-        self.assertEqual(sum(str(broken[1]) in note for note in table.notes), 1)
+        self.assertEqual(sum(str(damaged[0]) in note for note in table.notes), 1)
+        self.assertEqual(sum(str(damaged[1]) in note for note in table.notes), 1)
         self.assertEqual(table.columns["dent_depth"][0], 1e-4)
         self.assertEqual(table.columns["residual_strength"][1], 3e8)
 
