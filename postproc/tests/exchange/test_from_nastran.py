@@ -102,6 +102,17 @@ class CardsTest(ImportTest):
         self.assertEqual(self.deck(Bulk(cells=(8, 5))).numbers("mesh", "elements"), [4, 3])
         self.assertEqual(self.deck(Bulk(cells=(8, 5), eight=True)).numbers("mesh", "elements"), [8, 5])
 
+    def test_fields_too_many(self) -> None:
+        """Values behind the ninth field of a line with commas are refused, which would be lost; marks are not."""
+        text = Bulk(write=free).text()
+        line = next(line for line in text.splitlines() if line.startswith("MAT8"))
+        whole = ",".join([*line.split(","), *9 * [""]][:9])
+        for behind in (",1.-6,2.-5", ",,2.-5", ",+A,2"):
+            code, printed = self.run_command(text.replace(line, whole + behind))
+            self.assertEqual((code, printed.count("\n")), (2, 1), printed)
+            self.assertIn("MAT8: ", printed)
+            self.assertIn("behind the last field", printed)
+
     def test_planes(self) -> None:
         """The panel may lie in any coordinate plane; x is the first basic axis in it."""
         angles = [45, -45, 0, 0, -45, 45]
