@@ -75,9 +75,9 @@ contains
     integer :: exponent
     logical :: known
 
-    ! Many columns of a history hold nothing.
+    ! Many columns of a history hold nothing, with either sign.
     digits = '0'
-    if (value >= 0 .and. value <= 0 .and. sign(1.0_wp, value) > 0) return
+    if (value >= 0 .and. value <= 0) return
     call find_shortest(abs(value), number, exponent, known)
     if (known) then
       digits = long_to_text(number)
@@ -127,7 +127,8 @@ contains
     places = 3
     if (present(significant)) places = significant - 1
     write (form, '(a,i0,a)') '(es40.', places, 'e3)'
-    write (buffer, form) value
+    ! Zero has a sign, which would be written.
+    write (buffer, form) merge(0.0_wp, value, value >= 0 .and. value <= 0)
     digits = plain_decimal(trim(adjustl(buffer)))
   end function rounded_text
 

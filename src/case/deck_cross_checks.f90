@@ -10,7 +10,7 @@ module deck_cross_checks
   use interface_places, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
   use failure_criteria, only: needed_strengths
-  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_gravity, key_integrator, key_mass, &
+  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_at, key_gravity, key_integrator, key_mass, &
                            key_travel, impactor_key_rise => key_rise, keys_of_motion
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
@@ -132,7 +132,8 @@ contains
     integer :: line
 
     if (size(deck%supports) > 0) then
-      call check_static_rigs(deck%settings, deck%supports, problems)
+      call check_static_rigs(deck%settings, deck%plate%symmetry, &
+                             any(deck%lines%prescribed .and. deck%lines%component >= 3), deck%supports, problems)
     else if (size(deck%lines) == 0) then
       call check_edges(deck%settings, deck%plate, problems)
     else if (.not. problems%concern(line_group)) then
@@ -180,6 +181,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
+    integer :: i
 
     associate (s => deck%settings)
       if (.not. deck%has_impactor) then
@@ -195,6 +197,10 @@ contains
         call remark(s, problems, mesh_group, key_patch, 'reaches beyond the nose that presses on it: its corners '// &
                     'are '//short_text(deck%mesh%patch/sqrt(2.0_wp))//' from the struck point, and the radius is '// &
                     short_text(deck%impactor%radius)//'; make the patch smaller.')
+      if (any([(deck%supports(i)%carries(deck%impactor%at), i=1, size(deck%supports))]) .and. &
+          are_clear(s, problems, impactor_group, key_at) .and. .not. problems%concern(support_group)) &
+        call remark(s, problems, impactor_group, key_at, 'the struck point lies on the frame of &support, where '// &
+                    'the plate does not deflect: the force is that of the contact alone.')
       if (.not. (s%is_given(indentation_group, key_k) .or. s%is_given(impactor_group, key_radius)) .and. &
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call report(s, problems, impactor_group, key_radius, &

@@ -14,6 +14,7 @@ module deck_reader
   use deck_library, only: take_library
   use deck_process_zones, only: check_process_zones, set_flaws
   use deck_extents, only: check_sizes, check_extents
+  use deck_force_filters, only: check_force_filter
   use deck_explicit_checks, only: check_central_differences
   use deck_first_zones, only: check_left_out_zones, set_first_zones
   use deck_idle_keys, only: check_idle_keys
@@ -132,6 +133,7 @@ contains
     call check_interfaces(deck, problems)
     call check_correction(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)
+    call check_force_filter(deck, problems)
     if (deck%has_ply_damage) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     call set_flaws(deck, problems)

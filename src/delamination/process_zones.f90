@@ -130,7 +130,7 @@ contains
               ' (strength_opening <= '//text_at_most(resolved_opening_strength(zone))//').'
   end function process_zone_warning
 
-  !> A length in cells, to a tenth.
+  !> A length in cells, to a tenth, or to three digits where that were none.
   pure function in_cells(length, cell) result(number)
     !> The length and the side of a cell
     real(wp), intent(in) :: length, cell
@@ -141,5 +141,6 @@ contains
     write (buffer, '(f24.1)') length/cell
     number = trim(adjustl(buffer))
     if (number(1:1) == '.') number = '0'//number
+    if (number == '0.0') number = short_text(length/cell)
   end function in_cells
 end module process_zones

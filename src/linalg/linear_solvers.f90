@@ -39,8 +39,8 @@ module linear_solvers
     type(petsc_factor_t), private :: factors(2)
     !> Index of the one in use
     integer, private :: current = definite
-    !> True after a factorization
-    logical, private :: factored = .false.
+    !> Why there is no factor; blank after a factorization
+    character(len=120) :: fault = 'The matrix has not been factored.'
     !> True: the caller declares the matrix positive definite
     logical, private :: declared_definite = .false.
     !> Motion of least stiffness, by which mechanisms of the structure are found
@@ -131,7 +131,8 @@ contains
     end if
     if (.not. allocated(error) .and. outcome /= factor_succeeded) &
       call fail(error, exit_convergence, failure_message(self%factors(self%current)%title(), outcome))
-    self%factored = .not. allocated(error)
+    self%fault = ''
+    if (allocated(error)) self%fault = error%message
   end subroutine factorize
 
   !> Factorizes with the package in use, and tests for mechanisms of the structure.
@@ -160,7 +161,7 @@ contains
     integer :: reason, ierr(4)
 
     solution = 0
-    if (.not. self%factored) call fail(error, exit_internal, 'Linear equations are solved before they are factored.')
+    if (self%fault /= '') call fail(error, exit_internal, 'Linear equations are solved without a factor.')
     if (allocated(error)) return
     associate (solver => self%factors(self%current)%solver)
       call self%matrix%solve(solver, right_hand_side, solution, ierr(:3))
@@ -205,6 +206,6 @@ contains
     end do
     call self%matrix%release()
     if (allocated(self%mode)) deallocate (self%mode)
-    self%factored = .false.
+    self%fault = 'The matrix has been released.'
   end subroutine release
 end module linear_solvers

@@ -7,7 +7,7 @@ module rigs
   use kinds, only: wp
   use cell_grids, only: cell_grid_t
   use mesh_parameters, only: plate_t, symmetry_point
-  use support_parameters, only: support_t, bearing_edge, bearing_face, window_none, window_rectangle, window_circle
+  use support_parameters, only: support_t, bearing_edge, window_rectangle, window_circle
   implicit none
   private
   public :: crossing_t, window_lines, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
@@ -39,7 +39,7 @@ contains
     end do
   end function window_lines
 
-  !> Nodes supported by a frame: those over its face, or only those on the edge of a rectangular window.
+  !> Nodes supported by a frame.
   pure function nodes_on_frame(grid, support) result(on_frame)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
@@ -47,24 +47,9 @@ contains
     type(support_t), intent(in) :: support
     !> True where the frame supports the plate, (nodes)
     logical, allocatable :: on_frame(:)
-    real(wp) :: beyond(2), rounding
     integer :: node
-    logical :: on_end, on_side
 
-    allocate (on_frame(grid%nodes()), source=.false.)
-    if (support%shape == window_none .or. has_crossings(support)) return
-    rounding = 1.0e-9_wp*maxval([support%window, support%radius])
-    do node = 1, size(on_frame)
-      if (support%shape == window_circle) then
-        on_frame(node) = support%beyond(grid%node_coordinates(:, node)) >= -rounding
-        cycle
-      end if
-      beyond = abs(grid%node_coordinates(:, node)) - support%window/2
-      on_end = support%bearing == bearing_face .or. all(beyond <= rounding)
-      on_side = support%sides == bearing_face .or. beyond(2) <= rounding
-      on_frame(node) = beyond(1) >= -rounding .and. on_end .or. &
-                    beyond(2) >= -rounding .and. beyond(1) <= rounding .and. on_side
-    end do
+    on_frame = [(support%carries(grid%node_coordinates(:, node)), node=1, grid%nodes())]
   end function nodes_on_frame
 
   !> True if a rig fixes w where the edge of its window crosses the sides of cells.

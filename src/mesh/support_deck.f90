@@ -6,7 +6,7 @@ module support_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, edge_free
+  use mesh_parameters, only: plate_t, edge_free, is_mirrored, symmetry_point
   use plate_deck, only: plate_group, key_length
   use support_parameters, only: support_t, max_supports, window_none, window_rectangle, window_circle, bearing_edge, &
                                 bearing_face
@@ -216,27 +216,55 @@ contains
   end subroutine check_clamps
 
   !> Checks that rigs support the plate without inertia.
-  subroutine check_static_rigs(settings, supports, problems)
+  subroutine check_static_rigs(settings, symmetry, lines_hold, supports, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
+    !> Symmetry of the plate
+    integer, intent(in) :: symmetry
+    !> True: lines prescribe a deflection or a slope
+    logical, intent(in) :: lines_hold
     !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    integer :: place, clamps
+    real(wp), allocatable :: points(:)
+    integer :: place
 
     if (problems%concern(group)) return
-    clamps = 0
+    allocate (points(0))
     do place = 1, size(supports)
       if (allocated(supports(place)%clamps) .and. .not. supports(place)%clamp_force > 0) &
-        clamps = clamps + size(supports(place)%clamps, 2)
+        points = [points, supports(place)%clamps]
     end do
-    if (clamps == 1) then
+    if (size(points) == 2) then
       call report(settings, problems, group, key_clamps, 'one clamp lets the plate turn in a static analysis; '// &
                 'allowed: none, or two and more.')
-    else if (clamps < 3 .and. all(supports%shape == window_none)) then
+    else if (any(supports%shape /= window_none)) then
+      return
+    else if (size(points) < 6) then
       call report(settings, problems, group, '', 'nothing holds the plate in a static analysis; give a window, or '// &
                 'three clamps.')
+    else if (.not. lines_hold .and. turns_about(reshape(points, [2, size(points)/2]), symmetry)) then
+      call report(settings, problems, group, key_clamps, 'all clamps lie on one line, about which the plate turns '// &
+                'in a static analysis; give one beside it, or a window.')
     end if
   end subroutine check_static_rigs
+
+  !> True if points lie on one line, and symmetry lets the plate turn about it.
+  pure logical function turns_about(points, symmetry)
+    !> Coordinates from the plate's centre, (2, points)
+    real(wp), intent(in) :: points(:, :)
+    !> Symmetry of the plate
+    integer, intent(in) :: symmetry
+    ! Above round-off, 1e-16, and below the last digit of a deck.
+    real(wp), parameter :: rounding = 1.0e-9_wp
+    real(wp) :: arms(2, size(points, 2)), along(2)
+
+    arms = points - spread(points(:, 1), 2, size(points, 2))
+    along = arms(:, maxloc(norm2(arms, 1), dim=1))
+    turns_about = all(abs(along(1)*arms(2, :) - along(2)*arms(1, :)) <= rounding*sum(along**2))
+    ! The motion is odd across the line: a mirror image, or one turned by 180 degrees, must not be.
+    turns_about = turns_about .and. symmetry /= symmetry_point .and. &
+                  all(.not. is_mirrored(symmetry) .or. abs([along(2), along(1)]) <= rounding*norm2(along))
+  end function turns_about
 end module support_deck

@@ -33,6 +33,8 @@ module support_parameters
   contains
     !> Distance of a point from the window's edge.
     procedure :: beyond
+    !> True where the frame supports the plate.
+    procedure :: carries
   end type support_t
 
 contains
@@ -50,4 +52,28 @@ contains
       distance = maxval(abs(point) - self%window/2)
     end if
   end function beyond
+
+  !> True where the frame supports the plate: over its face, or only on the edge of a rectangular window. The edge of a
+  !> circle crosses the sides of cells, and supports no node.
+  pure logical function carries(self, point)
+    !> The rig
+    class(support_t), intent(in) :: self
+    !> Coordinates from the plate's centre
+    real(wp), intent(in) :: point(2)
+    real(wp) :: beyond(2), rounding
+    logical :: on_end, on_side
+
+    carries = .false.
+    if (self%shape == window_none) return
+    rounding = 1.0e-9_wp*maxval([self%window, self%radius])
+    if (self%shape == window_circle) then
+      carries = self%bearing == bearing_face .and. self%beyond(point) >= -rounding
+      return
+    end if
+    beyond = abs(point) - self%window/2
+    on_end = self%bearing == bearing_face .or. all(beyond <= rounding)
+    on_side = self%sides == bearing_face .or. beyond(2) <= rounding
+    carries = beyond(1) >= -rounding .and. on_end .or. &
+              beyond(2) >= -rounding .and. beyond(1) <= rounding .and. on_side
+  end function carries
 end module support_parameters

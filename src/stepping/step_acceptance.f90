@@ -96,8 +96,8 @@ contains
     call self%controller%reject(step/self%step_scale(model))
     if (step <= self%smallest_step*self%step_scale(model)*(1 + 1.0e-9_wp)) &
       call fail(error, exit_convergence, 'No equilibrium from '//model%setup%progress_name()//' '// &
-                rounded_text(self%now%time)//' on with the smallest step, '//rounded_text(step)//trim(merge('.'// &
-                repeat(' ', 37), '; a part of the plate can move freely.', self%operator%ready)))
+                rounded_text(self%now%time)//' on with the smallest step, '// &
+                trim(rounded_text(step)//'. '//self%operator%solver%fault))
     self%operator%ready = .false.
     if (model%setup%static%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
   end subroutine reject_step

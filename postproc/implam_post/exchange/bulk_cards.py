@@ -128,6 +128,9 @@ class _Splitter:
 
     def _note(self, card: BulkCard, line: str) -> None:
         """Note which continuation the line names."""
+        if lost := _beyond_last_field(line):
+            raise card.error(f"{lost} stands behind the last field of a line with commas and would be lost: go on in a "
+                             "line of its own.")
         self._left_open = _named_continuation(line)
         if self._left_open:
             self._continued[self._left_open] = card
@@ -162,6 +165,17 @@ def _named_continuation(line: str) -> str:
         text = line.expandtabs()[_MARK]
     text = text.strip()
     return text.lstrip("+*").strip().upper() if text[:1] in ("+", "*") else ""
+
+
+def _beyond_last_field(line: str) -> str:
+    """Return a value behind the fields of a line with commas; empty if there is none.
+
+    The field behind the last one names a continuation, which is no real number.
+    """
+    fields = [text.strip() for text in line.split(",")]
+    place = _MARK_FIELD["*" in fields[0]]
+    behind = [text for text in fields[place:place + 1] if re.match(r"[-+]?\d*\.", text)]
+    return next(filter(None, behind + fields[place + 1:]), "")
 
 
 def _first_field(line: str) -> str:

@@ -64,6 +64,8 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     if len(card.fields) < _FIRST_PLY + 1:
         raise bulk.error(card, "it has no plies: they follow in continuations, from the second field on.")
     laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
+    if card.name == "PCOMPG":
+        _refuse_repeated(bulk, card, [*laminate.global_ply_ids])
     symmetric = (laminate.lam or "") == "SYM" and card.name == "PCOMP"
     if laminate.lam and not symmetric:
         raise bulk.error(card, f"LAM = {laminate.lam} isn't taken: a laminate's plies are written out, or half of them "
@@ -81,6 +83,13 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
         remarks.add(card, "Z0 isn't taken: the panel lies about its grids with its middle, where it is supported")
     return plies
+
+
+def _refuse_repeated(bulk: BulkData, card: BulkCard, global_plies: list[int]) -> None:
+    """Refuse a PCOMPG that has a global ply twice, which Nastran does not take."""
+    for number in global_plies:
+        if global_plies.count(number) > 1:
+            raise bulk.error(card, f"global ply {number} occurs twice: each GPLYIDi of a PCOMPG is given once.")
 
 
 def _only_ply(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> Ply:

@@ -3,12 +3,19 @@
 What draws is imported once the command line has been read, as it takes most of the time that a command needs to start.
 """
 
+from __future__ import annotations
+
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, finite, run
 from implam_post.plot.style import FORMATS, PictureStyle, add_options, style_of
+
+if TYPE_CHECKING:
+    from implam_post.io.history import History
 
 
 def _command(options: argparse.Namespace) -> int:
@@ -27,44 +34,73 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
     from implam_post.plot.pictures import plot_fields, plot_overview
 
     results = [path for path in options.results if path.suffix == ".h5"]
-    histories = [path for path in options.results if path.suffix != ".h5"]
+    paths = [path for path in options.results if path.suffix != ".h5"]
     for path in options.results:
         if path.suffix not in (".h5", ".csv") or path.name.endswith("_restart.h5"):
             raise FileError(f"{path} is neither the fields NAME.h5 nor the history NAME_history.csv of a run.")
-    if options.save and (len(results), len(histories)) != (1, 0):
+    if options.save and (len(results), len(paths)) != (1, 0):
         raise ImplamError("--save goes with one NAME.h5.")
+    if options.save:
+        history = options.history or _beside(results[0])
+        print(plot_overview(read_fields(results[0]), read_history(history), options.save, style))
+        return EXIT_DONE
     for path in results:
-        fields, history = read_fields(path), options.history or path.with_name(f"{path.stem}_history.csv")
-        if options.save:
-            print(plot_overview(fields, read_history(history), options.save, style))
-            return EXIT_DONE
+        history = options.history or _beside(path)
+        if history not in paths and (options.history or history.exists()):
+            paths.append(history)
+    # All is read before anything is drawn, so that a faulty file leaves no half of the pictures behind.
+    curves = _read_curves(paths, options)
+    for path, fields in [(path, read_fields(path)) for path in results]:
         drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, style)
         print(*drawn or [f"{path} holds neither interfaces nor failures of plies."], sep="\n")
-        if history not in histories and (options.history or history.exists()):
-            histories.append(history)
-    return _plot_histories(histories, options, style) if histories else EXIT_DONE
+    return _plot_histories(curves, options, style) if paths else EXIT_DONE
 
 
-def _plot_histories(paths: Sequence[Path], options: argparse.Namespace, style: PictureStyle) -> int:
-    """Draw the responses over each other and the energies of each history."""
+def _beside(path: Path) -> Path:
+    """Return the history beside the fields NAME.h5."""
+    return path.with_name(f"{path.stem}_history.csv")
+
+
+@dataclass
+class _Curves:
+    """Paths and histories, summaries of compressions, a measured curve, and the strength of the undamaged plate."""
+
+    paths: Sequence[Path]
+    histories: list[History]
+    summaries: list[Mapping[str, object]]
+    measured: History | None
+    undamaged: float | None
+
+
+def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
+    """Read what curves are drawn of."""
     from implam_post.io.compression import strength_of
     from implam_post.io.history import read_history
     from implam_post.io.run import HISTORY, SUMMARY, read_summary
     from implam_post.plot.compression import is_compressed
-    from implam_post.plot.pictures import RESPONSES, plot_compression, plot_energies, plot_response
+    from implam_post.plot.pictures import RESPONSES
 
-    histories = [read_history(path) for path in paths]
-    folders = [options.output or path.parent for path in paths]
     measured = read_history(options.measured) if options.measured else None
     if measured is not None and not set(measured.columns) & set(RESPONSES):
         raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
-    response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
-    print(plot_response(histories, response, style, measured))
+    histories = [read_history(path) for path in paths]
     beside = [path.with_name(path.name.removesuffix(HISTORY) + SUMMARY) for path in paths]
+    summaries = [read_summary(path) if is_compressed(history) and path.exists() else {}
+                 for history, path in zip(histories, beside, strict=True)]
+    undamaged = strength_of(options.undamaged) if options.undamaged else None
+    return _Curves(paths, histories, summaries, measured, undamaged)
+
+
+def _plot_histories(curves: _Curves, options: argparse.Namespace, style: PictureStyle) -> int:
+    """Draw the responses over each other and the energies of each history."""
+    from implam_post.plot.pictures import plot_compression, plot_energies, plot_response
+
+    paths, histories = curves.paths, curves.histories
+    folders = [options.output or path.parent for path in paths]
+    response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
+    print(plot_response(histories, response, style, curves.measured))
     compressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{style.kind}", style,
-                                  [read_summary(path) if is_compressed(history) and path.exists() else {}
-                                   for history, path in zip(histories, beside, strict=True)],
-                                  strength_of(options.undamaged) if options.undamaged else None)
+                                  curves.summaries, curves.undamaged)
     if compressed is not None:
         print(compressed)
     for history, path, folder in zip(histories, paths, folders, strict=True):

@@ -114,8 +114,8 @@ def _row(sweep: Sweep, study: Study, trial: Trial, references: References) -> Ro
     if row.end:
         return row
     folder = sweep.folder(first)
-    row.costs = _costs(sweep, trial.runs, folder)
     try:
+        row.costs = _costs(sweep, trial.runs, folder)
         history = read_history(history_in(folder) or folder / "history.csv")
         row.figures = _figures(history)
         row.figures |= {name: COLUMN_QUANTITIES[way](history[name]) for name, way in study.figures.items()}
@@ -210,10 +210,10 @@ def text_table(rows: list[Row], study: Study) -> str:
         if row.end:
             lines.append([*words, row.end.split(":")[0], *[""] * (len(head) - len(words) - 1)])
             continue
-        costs = [row.costs[name] for name in ("steps", "solves", "factorizations")]
+        costs = [row.costs.get(name, math.nan) for name in ("steps", "solves", "factorizations")]
         lines.append([*words, *(_percent(row.errors.get(name, math.nan), name) for name in errors),
-                      *(f"{row.figures[name]:.4g}" for name in study.figures), f"{row.time:.2f}",
-                      *([f"{row.costs['cpu_time_median']:.2f}"] if study.repeats > 1 else []),
+                      *(f"{row.figures.get(name, math.nan):.4g}" for name in study.figures), f"{row.time:.2f}",
+                      *([f"{row.costs.get('cpu_time_median', math.nan):.2f}"] if study.repeats > 1 else []),
                       *("" if math.isnan(cost) else f"{cost:.0f}" for cost in costs), "*" if row.on_front else ""])
     return _lined_up([head, *lines])
 

@@ -16,7 +16,7 @@ from implam_post.io.run import open_run
 from implam_post.sweep.case_run import read_record
 from implam_post.sweep.plan import Case
 from implam_post.sweep.runs import Sweep
-from implam_post.sweep.table import Table
+from implam_post.sweep.table import Table, no_figures
 
 # Groups that both decks have alike, as the damage depends on them: the second run has those of the first.
 SHARED = ("material", "laminate", "ply_damage", "delamination", "thermal")
@@ -65,12 +65,16 @@ def _second(case: Case, folder: Path, then: Path, text: str) -> Case:
 
 
 def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
-    """Add the columns of both runs to the table of the first; cells without a value are NaN or empty."""
+    """Add the columns of both runs to the table of the first; cells without a value are NaN or empty.
+
+    Summaries that cannot be read are named in the notes.
+    """
     by_number = {case.number: case for case in second.plan.cases}
     rows = []
     for case in first.plan.cases:
         continuation = by_number.get(case.number)
-        rows.append((_summary(first, case), {} if continuation is None else _summary(second, continuation)))
+        rows.append((_summary(first, case, table.notes),
+                     {} if continuation is None else _summary(second, continuation, table.notes)))
     for name, (which, dimension, _) in FIGURES.items():
         missing: object = math.nan if dimension else ""
         table.columns[name] = [_cell(row[which].get(name), missing) for row in rows]
@@ -96,11 +100,14 @@ def remark_of_bounds(table: Table) -> str:
         "strength is a lower bound, and so are means; give the &line of the second deck a larger displacement.")
 
 
-def _summary(sweep: Sweep, case: Case) -> Mapping[str, object]:
-    """Return the summary of a run that has a result; empty if there is none."""
+def _summary(sweep: Sweep, case: Case, notes: list[str]) -> Mapping[str, object]:
+    """Return the summary of a run that has a result; empty if there is none, with a note if it cannot be read."""
     if sweep.failure(case):
         return {}
     try:
         return open_run(sweep.folder(case)).summary
-    except ImplamError:
+    except ImplamError as error:
+        note = no_figures(error)
+        if note not in notes:
+            notes.append(note)
         return {}

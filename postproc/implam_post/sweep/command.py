@@ -180,6 +180,7 @@ def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
     from implam_post.sweep.chain_plots import plot_strength
     from implam_post.sweep.table import write_csv, write_hdf5
     table, output = tables.write(), sweep.plan.output
+    printed = len(table.notes)
     add_figures(table, sweep, second)
     write_csv(table, output / "table.csv")
     write_hdf5(table, output / "table.h5")
@@ -187,6 +188,8 @@ def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
     print(output / "table.csv", output / "table.h5", *[] if drawn is None else [drawn], sep="\n")
     if remark := remark_of_bounds(table):
         print(remark, file=sys.stderr)
+    for note in table.notes[printed:]:
+        print(f"note: {note}")
     return print_outcomes(second)
 
 

@@ -16,6 +16,7 @@ from implam_post.io.files import replaced, write_table
 from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in, version_in
 from implam_post.io.quantities import QUANTITIES
+from implam_post.io.run import SUMMARY, read_summary
 from implam_post.sweep.case_run import Record, read_record
 from implam_post.sweep.runs import Sweep
 
@@ -126,6 +127,8 @@ def _row(folder: Path, record: Record | None) -> dict[str, object]:
     try:
         path = history_in(folder)
         history = read_history(folder / "history.csv" if path is None else path)
+        for summary in folder.glob(f"*{SUMMARY}"):
+            read_summary(summary)  # whether it is whole: a history takes what it needs of it, and does without
         row |= {name: float(figure.measure(history)) for name, figure in FIGURES.items()}
     except ImplamError as error:
         row["fault"] = str(error)
@@ -136,7 +139,12 @@ def _notes(rows: Iterable[dict[str, object]]) -> list[str]:
     """Return the notes below the table."""
     versions = sorted({str(row["version"]) for row in rows if row["version"]})
     notes = [f"the runs are of several versions of Implam: {', '.join(versions)}."] if len(versions) > 1 else []
-    return notes + [f"no figures: {row['fault']}" for row in rows if row["fault"]]
+    return notes + [no_figures(row["fault"]) for row in rows if row["fault"]]
+
+
+def no_figures(fault: object) -> str:
+    """Return the note of a run whose results cannot be read."""
+    return f"no figures: {fault}"
 
 
 def _system(text: str) -> str:

@@ -88,6 +88,8 @@ class CardsTest(ImportTest):
                 102, 1, 0.2e-3, 90.0)
         plies = plies_of(self.deck(Bulk(laminate=[card])))
         self.assertEqual([(ply.thickness, ply.angle) for ply in plies], [(0.1e-3, 30), (0.2e-3, 90)])
+        twice = tuple(101 if field == 102 else field for field in card)
+        self.refused(Bulk(laminate=[twice]), "PCOMPG: global ply 101 occurs twice")
 
     def test_isotropic_material_by_two_moduli(self) -> None:
         """NU follows from E and G."""
@@ -99,6 +101,17 @@ class CardsTest(ImportTest):
         """Elements of nine nodes for two CQUAD4 a side, or one CQUAD8."""
         self.assertEqual(self.deck(Bulk(cells=(8, 5))).numbers("mesh", "elements"), [4, 3])
         self.assertEqual(self.deck(Bulk(cells=(8, 5), eight=True)).numbers("mesh", "elements"), [8, 5])
+
+    def test_fields_too_many(self) -> None:
+        """Values behind the ninth field of a line with commas are refused, which would be lost; marks are not."""
+        text = Bulk(write=free).text()
+        line = next(line for line in text.splitlines() if line.startswith("MAT8"))
+        whole = ",".join([*line.split(","), *9 * [""]][:9])
+        for behind in (",1.-6,2.-5", ",,2.-5", ",+A,2"):
+            code, printed = self.run_command(text.replace(line, whole + behind))
+            self.assertEqual((code, printed.count("\n")), (2, 1), printed)
+            self.assertIn("MAT8: ", printed)
+            self.assertIn("behind the last field", printed)
 
     def test_planes(self) -> None:
         """The panel may lie in any coordinate plane; x is the first basic axis in it."""

@@ -194,6 +194,16 @@ class PicturesTest(unittest.TestCase):
         self.assertEqual(self.plot(run, "--measured", measured)[0], 4)
         self.assertEqual(self.plot(run, "--dpi", "1")[0], 1)
 
+    def test_nothing_is_drawn_of_faulty_input(self) -> None:
+        """All files are read before the first picture is written."""
+        good, bad = self.write(history("a"), "a_history.csv"), self.folder / "b_history.csv"
+        bad.write_text("time,force\n0,0\nx,1\n")
+        files = sorted(self.folder.iterdir())
+        for words in ((good, bad), (self.path, bad), (self.path, "--measured", self.folder / "none.csv"),
+                      (good, "--undamaged", self.folder / "none_summary.json")):
+            self.assertEqual(self.plot(*words)[0], 4)
+            self.assertEqual(sorted(self.folder.iterdir()), files)
+
     def test_titles_are_whole(self) -> None:
         """Where axes keep equal scales, titles lie within the picture whatever the shape of the damage."""
         for length, width in ((57, 32), (38, 14), (20, 20), (15, 45)):

@@ -12,7 +12,7 @@ from implam_post.sweep.chain import add_figures, following, remark_of_bounds
 from implam_post.sweep.chain_plots import groups, plot_strength
 from implam_post.sweep.plan import read_plan
 from implam_post.sweep.runs import Sweep
-from implam_post.sweep.table import Table
+from implam_post.sweep.table import Table, make_table
 from tests.io.test_summary_shape import SUMMARY
 
 _IMPACT = """! strikes
@@ -87,6 +87,25 @@ class ChainTest(unittest.TestCase):
         self.assertEqual(table.columns["has_failed"], ["false", "", "", ""])
         self.assertIn("in 1 run of 4 the plate has not failed", remark_of_bounds(table))
         self.assertTrue(np.all(np.isnan(table.columns["residual_strength"][1:])))
+
+    def test_damaged_summary(self) -> None:
+        """It is named, whichever run it is of, and the other cases keep their figures."""
+        self._end(self.sweep, 0, {"dent_depth": 1e-4})
+        self._end(self.sweep, 1, {"dent_depth": 2e-4})
+        second = following(self.sweep)
+        for place in (0, 1):
+            self._end(second, place, {"residual_strength": 3e8, "failure_code": "LDM", "has_failed": True})
+        damaged = [self.sweep.folder(self.sweep.plan.cases[1]) / "hit_summary.json",
+                   second.folder(second.plan.cases[0]) / "pressed_summary.json"]
+        for path in damaged:
+            path.write_text("{}", encoding="utf-8")
+        table = make_table(self.sweep, {})
+        self.assertTrue(any(str(damaged[0]) in note for note in table.notes))
+        add_figures(table, self.sweep, second)
+        self.assertEqual(sum(str(damaged[0]) in note for note in table.notes), 1)
+        self.assertEqual(sum(str(damaged[1]) in note for note in table.notes), 1)
+        self.assertEqual(table.columns["dent_depth"][0], 1e-4)
+        self.assertEqual(table.columns["residual_strength"][1], 3e8)
 
     def test_groups_are_copied(self) -> None:
         """All groups of a name are replaced, and comments go with neither."""

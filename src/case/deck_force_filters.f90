@@ -1,0 +1,32 @@
+!> Warns of a low pass of the contact force that the history cannot show.
+module deck_force_filters
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use kinds, only: wp
+  use output_deck, only: output_group, key_force_filter
+  use short_numbers, only: short_text, text_at_most
+  implicit none
+  private
+  public :: check_force_filter
+
+contains
+
+  !> Compares the corner with the Nyquist frequency of the rows. Rows of steps without an interval are taken to be as
+  !> far apart as the first ones.
+  subroutine check_force_filter(deck, problems)
+    !> The deck, filled and checked, its step known
+    type(deck_t), intent(in) :: deck
+    !> Receives the warning
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: apart
+
+    if (problems%errors() > 0 .or. .not. (deck%has_time .and. deck%has_impactor)) return
+    apart = deck%output%history_every
+    if (.not. apart > 0) apart = deck%stepping%time%step*deck%output%steps_between_rows
+    if (2*apart*deck%output%force_filter <= 1) return
+    call remark(deck%settings, problems, output_group, key_force_filter, 'is above the Nyquist frequency of the '// &
+                'rows, which are '//short_text(apart)//' apart; give at most '//text_at_most(0.5_wp/apart)// &
+                ', or rows at shorter intervals.')
+  end subroutine check_force_filter
+end module deck_force_filters
