@@ -8,7 +8,7 @@ check_pages.py [ROOT] [--write] [--sentences]
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
-- doc/testing.md has five questions for each page of theory, manual and tutorial, numbered 1 to 5.
+- doc/testing.md has five questions for each page under doc/ but the news, numbered 1 to 5.
 - Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those referred to exist.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
@@ -55,6 +55,11 @@ def pages(root):
     for folder in ("doc", "tests"):
         found += sorted((root / folder).rglob("*.md"))
     return [page for page in found if page.exists()]
+
+
+def pages_of(doc):
+    """The pages under doc/, news apart."""
+    return [page for page in sorted(doc.rglob("*.md")) if "news" not in page.relative_to(doc).parts]
 
 
 def slug(heading):
@@ -214,7 +219,7 @@ def listed_rows(page, heading, label):
 
 def index_lists(doc):
     """The lists of the index: pages, groups with their keys, columns and fields, terms."""
-    listed = [page for page in sorted(doc.rglob("*.md")) if "news" not in page.parts and page.name != "index.md"]
+    listed = [page for page in pages_of(doc) if page.name != "index.md"]
     parts = ["## Pages", ""]
     for page in sorted(listed, key=lambda page: (page.parent, page.name)):
         parts.append(f"- [{title(page)}]({page.relative_to(doc).as_posix()})")
@@ -322,11 +327,10 @@ def check_questions(root):
     asked = {}
     for link, numbers in QUESTIONS.findall(testing.read_text(encoding="utf-8")):
         asked[link] = re.findall(r"^(\d+)\.", numbers, re.MULTILINE)
-    for folder in ("theory", "manual", "tutorial"):
-        for page in sorted((root / "doc" / folder).glob("*.md")):
-            name = f"{folder}/{page.name}"
-            if asked.get(name) != list("12345"):
-                yield f"doc/testing.md:1: {name} has no five questions in the reading test"
+    for page in pages_of(root / "doc"):
+        name = page.relative_to(root / "doc").as_posix()
+        if asked.get(name) != list("12345"):
+            yield f"doc/testing.md:1: {name} has no five questions in the reading test"
 
 
 def main(arguments):
