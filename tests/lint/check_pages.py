@@ -4,6 +4,7 @@ check_pages.py [ROOT] [--write] [--sentences]
 
 - Relative links lead to files, and to headings, that exist.
 - Files named in quotes exist: with their path from the root or from src/, or by a bare name somewhere in the project.
+- A name quoted with its file, as in `wp` in `base/kinds.f90` or `wp` (`base/kinds.f90`), stands in that file.
 - A block of code after <!-- from PATH --> stands in that file, line by line; "..." stands for lines left out.
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
@@ -32,6 +33,8 @@ ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
 # A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
 PATHS = re.compile(r"^(?:src|tests|input|doc|cmake|postproc|\.ci)/[\w./*-]*$")
 SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|py)$")
+# A name and the file that it is in.
+MEMBER = re.compile(r"`(\w+)`\s+(?:in\s+|of\s+|\()`((?:\w+/)+[\w-]+\.(?:f90|pf|py))`")
 # Names that stand for others: <name>, GROUP_deck.f90.
 PLACEHOLDER = re.compile(r"<|[A-Z]{2}")
 # Files that a patch of an example makes.
@@ -135,6 +138,17 @@ def check_names(page, names):
             for word in quoted.split():
                 if names.missing(word.rstrip(",;:")):
                     yield f"{page}:{number}: there is no file {word}"
+
+
+def check_members(page, root):
+    """Breaches of quoted names that the file quoted with them lacks."""
+    lines = prose(page)
+    text = "\n".join(line for line, _ in lines)
+    for found in MEMBER.finditer(text):
+        name, file = found.groups()
+        path = next((path for path in (root / file, root / "src" / file) if path.exists()), None)
+        if path and not re.search(rf"\b{name}\b", path.read_text(encoding="utf-8")):
+            yield f"{page}:{lines[text.count(chr(10), 0, found.start())][1]}: {file} has no {name}"
 
 
 def check_quotes(page, root):
@@ -350,7 +364,7 @@ def main(arguments):
     names = Names(root)
     for page in pages(root):
         breaches += [*check_links(page), *check_names(page, names), *check_quotes(page, root), *check_diary(page, root)]
-        breaches += check_sentences(page, root)
+        breaches += [*check_members(page, root), *check_sentences(page, root)]
     print("\n".join(breaches) if breaches else f"{len(pages(root))} pages keep the rules")
     return 1 if breaches else 0
 

@@ -97,6 +97,13 @@ class PagesTest(unittest.TestCase):
             self.assert_breach(f"# Page\nIn `{name}`.\n", f"page.md:2: there is no file {name}")
         self.assert_breach("# Page\nRun `tests/none.py IMPLAM`.\n", "there is no file tests/none.py")
 
+    def test_members(self):
+        """A name quoted with its file must stand there, also where the quote runs over two lines."""
+        for place in ("in `base/kinds.f90`", "of\n`src/base/kinds.f90`", "(`base/kinds.f90`)"):
+            self.assert_breach(f"# Page\nIt is `lost`\n{place}.\n", "kinds.f90 has no lost")
+            code, said = self.said(page=f"# Page\nIt is `wp` {place}.\n")
+            self.assertEqual(code, 0, said)
+
     def test_quotes(self):
         """Quoted code must stand in its file, in order."""
         quote = "# Page\n<!-- from src/base/kinds.f90 -->\n```fortran\n{}\n```\n"
