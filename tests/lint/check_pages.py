@@ -4,11 +4,12 @@ check_pages.py [ROOT] [--write] [--sentences]
 
 - Relative links lead to files, and to headings, that exist.
 - Files named in quotes exist: with their path from the root or from src/, or by a bare name somewhere in the project.
+- A name quoted with its file, as in `wp` in `base/kinds.f90` or `wp` (`base/kinds.f90`), stands in that file.
 - A block of code after <!-- from PATH --> stands in that file, line by line; "..." stands for lines left out.
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
-- doc/testing.md has five questions for each page of theory, manual and tutorial, numbered 1 to 5.
+- doc/testing.md has five questions for each page under doc/ but the news, numbered 1 to 5.
 - Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those referred to exist.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
@@ -32,6 +33,8 @@ ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
 # A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
 PATHS = re.compile(r"^(?:src|tests|input|doc|cmake|postproc|\.ci)/[\w./*-]*$")
 SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|py)$")
+# A name and the file that it is in.
+MEMBER = re.compile(r"`(\w+)`\s+(?:in\s+|of\s+|\()`((?:\w+/)+[\w-]+\.(?:f90|pf|py))`")
 # Names that stand for others: <name>, GROUP_deck.f90.
 PLACEHOLDER = re.compile(r"<|[A-Z]{2}")
 # Files that a patch of an example makes.
@@ -55,6 +58,11 @@ def pages(root):
     for folder in ("doc", "tests"):
         found += sorted((root / folder).rglob("*.md"))
     return [page for page in found if page.exists()]
+
+
+def pages_of(doc):
+    """The pages under doc/, news apart."""
+    return [page for page in sorted(doc.rglob("*.md")) if "news" not in page.relative_to(doc).parts]
 
 
 def slug(heading):
@@ -130,6 +138,17 @@ def check_names(page, names):
             for word in quoted.split():
                 if names.missing(word.rstrip(",;:")):
                     yield f"{page}:{number}: there is no file {word}"
+
+
+def check_members(page, root):
+    """Breaches of quoted names that the file quoted with them lacks."""
+    lines = prose(page)
+    text = "\n".join(line for line, _ in lines)
+    for found in MEMBER.finditer(text):
+        name, file = found.groups()
+        path = next((path for path in (root / file, root / "src" / file) if path.exists()), None)
+        if path and not re.search(rf"\b{name}\b", path.read_text(encoding="utf-8")):
+            yield f"{page}:{lines[text.count(chr(10), 0, found.start())][1]}: {file} has no {name}"
 
 
 def check_quotes(page, root):
@@ -214,7 +233,7 @@ def listed_rows(page, heading, label):
 
 def index_lists(doc):
     """The lists of the index: pages, groups with their keys, columns and fields, terms."""
-    listed = [page for page in sorted(doc.rglob("*.md")) if "news" not in page.parts and page.name != "index.md"]
+    listed = [page for page in pages_of(doc) if page.name != "index.md"]
     parts = ["## Pages", ""]
     for page in sorted(listed, key=lambda page: (page.parent, page.name)):
         parts.append(f"- [{title(page)}]({page.relative_to(doc).as_posix()})")
@@ -322,11 +341,10 @@ def check_questions(root):
     asked = {}
     for link, numbers in QUESTIONS.findall(testing.read_text(encoding="utf-8")):
         asked[link] = re.findall(r"^(\d+)\.", numbers, re.MULTILINE)
-    for folder in ("theory", "manual", "tutorial"):
-        for page in sorted((root / "doc" / folder).glob("*.md")):
-            name = f"{folder}/{page.name}"
-            if asked.get(name) != list("12345"):
-                yield f"doc/testing.md:1: {name} has no five questions in the reading test"
+    for page in pages_of(root / "doc"):
+        name = page.relative_to(root / "doc").as_posix()
+        if asked.get(name) != list("12345"):
+            yield f"doc/testing.md:1: {name} has no five questions in the reading test"
 
 
 def main(arguments):
@@ -346,7 +364,7 @@ def main(arguments):
     names = Names(root)
     for page in pages(root):
         breaches += [*check_links(page), *check_names(page, names), *check_quotes(page, root), *check_diary(page, root)]
-        breaches += check_sentences(page, root)
+        breaches += [*check_members(page, root), *check_sentences(page, root)]
     print("\n".join(breaches) if breaches else f"{len(pages(root))} pages keep the rules")
     return 1 if breaches else 0
 

@@ -97,6 +97,13 @@ class PagesTest(unittest.TestCase):
             self.assert_breach(f"# Page\nIn `{name}`.\n", f"page.md:2: there is no file {name}")
         self.assert_breach("# Page\nRun `tests/none.py IMPLAM`.\n", "there is no file tests/none.py")
 
+    def test_members(self):
+        """A name quoted with its file must stand there, also where the quote runs over two lines."""
+        for place in ("in `base/kinds.f90`", "of\n`src/base/kinds.f90`", "(`base/kinds.f90`)"):
+            self.assert_breach(f"# Page\nIt is `lost`\n{place}.\n", "kinds.f90 has no lost")
+            code, said = self.said(page=f"# Page\nIt is `wp` {place}.\n")
+            self.assertEqual(code, 0, said)
+
     def test_quotes(self):
         """Quoted code must stand in its file, in order."""
         quote = "# Page\n<!-- from src/base/kinds.f90 -->\n```fortran\n{}\n```\n"
@@ -120,14 +127,16 @@ class PagesTest(unittest.TestCase):
         self.assertIn("lost the comments", self.said(index="# Index\n")[1])
 
     def test_questions(self):
-        """Each page has five questions, numbered from 1."""
+        """Each page under doc/ has five questions, numbered from 1."""
         five = "".join(f"{number}. Why?\n" for number in range(1, 6))
-        asked = "# Testing\n\n**[&case: the case](manual/case.md)**\n\n" + five
-        asked += "\n**[History](manual/history.md)**\n\n" + five
+        names = [name.removeprefix("doc/") for name in FILES if name.startswith("doc/")] + ["testing.md"]
+        asked = "# Testing\n" + "".join(f"\n**[Title]({name})**\n\n{five}" for name in names)
         # The index without testing.md is another breach, in each case.
         self.assertNotIn("five questions", self.said(testing=asked)[1])
-        for missing in (asked.replace("3. Why?\n", "", 1), asked.split("\n**[History]")[0] + "\n"):
-            self.assertIn("has no five questions", self.said(testing=missing)[1])
+        for name in names:
+            lacking = asked.replace(f"\n**[Title]({name})**\n\n{five}", "")
+            self.assertIn(f"{name} has no five questions", self.said(testing=lacking)[1])
+        self.assertIn("has no five questions", self.said(testing=asked.replace("3. Why?\n", "", 1))[1])
 
     def test_longest(self):
         """A sentence of more than forty words is a breach; displayed equations are no part of it."""
