@@ -5,6 +5,14 @@ complain() {
   exit 1
 }
 
+# system_folder SOURCE RELEASE FOLDER: where the system goes, outside the source; FOLDER is empty where none is given.
+system_folder() {
+  local source=$1 release=$2 root
+  root=$(realpath --canonicalize-missing "${3:-/var/tmp/implam-$release}")
+  [[ $root/ != "$source"/* ]] || complain "The folder $root lies within the repository."
+  echo "$root"
+}
+
 # set_up RELEASE ROOT: packages come from where this machine has its own, by the same proxy and with the same certificates.
 set_up() {
   local release=$1 root=$2 mirror proxy=

@@ -11,9 +11,8 @@ source "$source_dir/packaging/bare_debian.sh"
 release=${1:-}
 [[ $release == bookworm || $release == trixie ]] || complain "Usage: packaging/other_debian.sh bookworm|trixie [FOLDER [WORD...]]"
 shift
-root=$(realpath --canonicalize-missing "${1:-/var/tmp/implam-$release}")
+root=$(system_folder "$source_dir" "$release" "${1:-}")
 (($# == 0)) || shift
-[[ $root/ != "$source_dir"/* ]] || complain "The folder $root lies within the repository."
 
 # The last commit, in the clone of the time before if there is one, so that only what has changed is compiled.
 update_clone() {

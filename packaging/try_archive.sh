@@ -14,9 +14,8 @@ release=${2:-}
 [[ -f $archive && ( $release == bookworm || $release == trixie ) ]] ||
   complain "Usage: packaging/try_archive.sh ARCHIVE bookworm|trixie [FOLDER [WORD...]]"
 shift 2
-root=$(realpath --canonicalize-missing "${1:-/var/tmp/implam-$release}")
+root=$(system_folder "$source_dir" "$release" "${1:-}")
 (($# == 0)) || shift
-[[ $root/ != "$source_dir"/* ]] || complain "The folder $root lies within the repository."
 (($#)) || set -- -L 'unit|bad-input'
 
 set_up "$release" "$root"

@@ -108,7 +108,7 @@ contains
       end if
       ! Every rank knows all cells of a front; the first one adds them.
       if (.not. model%communicator%is_root()) return
-      associate (region => now%interfaces%faces%regions(zone))
+      associate (region => now%interfaces%contact%regions(zone))
         do row = region%rows(1), region%rows(2)
           do column = region%columns(1), region%columns(2)
             if (region%is_delaminated(column, row)) call add_cell(collected, model, along, [column, row])

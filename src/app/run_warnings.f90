@@ -13,6 +13,7 @@ module run_warnings
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes, fibre_failure
+  use roundings, only: rounding
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
                          warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
                          warning_slopes, &
@@ -26,8 +27,6 @@ module run_warnings
   private
   public :: give_warnings, give_last_warnings, warnings_given
 
-  !> Relative round-off of an area: below it are sums of 1e6 elements with a precision of 2e-16.
-  real(wp), parameter :: rounded_off = 1.0e-9_wp
   !> Fraction of the run after which slow motion is checked: the default rise of a travel, after which the velocity is
   !> constant.
   real(wp), parameter :: slow_start = 0.25_wp
@@ -242,7 +241,7 @@ contains
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
-    is_perforated = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounded_off))
+    is_perforated = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounding))
   end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.

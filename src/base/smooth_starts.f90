@@ -27,7 +27,8 @@ contains
     end select
   end function smooth_step
 
-  !> Ramp from 0 to 1 whose velocity rises as 3 s^2 - 2 s^3 and then stays, or a derivative.
+  !> Ramp from 0 to 1 whose velocity rises as 3 s^2 - 2 s^3 and then stays, or a derivative. Without a rise the velocity
+  !> is constant from the beginning.
   elemental real(wp) function smooth_ramp(part, rise, order) result(value)
     !> Part of the run that is over, and part in which the velocity rises
     real(wp), intent(in) :: part, rise
@@ -37,14 +38,16 @@ contains
 
     ! The rise covers half the distance of the full velocity.
     velocity = 1/(1 - rise/2)
-    s = min(max(part/rise, 0.0_wp), 1.0_wp)
+    s = 1
+    if (part < rise) s = max(part, 0.0_wp)/rise
     select case (order)
     case (0)
       value = velocity*(rise*s**3*(1 - s/2) + max(part - rise, 0.0_wp))
     case (1)
       value = velocity*s**2*(3 - 2*s)
     case default
-      value = velocity*6*s*(1 - s)/rise
+      value = 0
+      if (s < 1) value = velocity*6*s*(1 - s)/rise
     end select
   end function smooth_ramp
 end module smooth_starts

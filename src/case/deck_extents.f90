@@ -21,6 +21,7 @@ module deck_extents
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
   use mesh_parameters, only: is_halved, is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
+  use roundings, only: rounding
   use short_numbers, only: short_text
   use text, only: line_t, to_text
   implicit none
@@ -43,8 +44,6 @@ module deck_extents
   !> Distance from its place at which a line counts as moved, relative to the plate's length: .1 mm in 100 mm, which no
   !> rig keeps. It decides on a remark.
   real(wp), parameter :: moved_line = 1.0e-3_wp
-  !> Relative round-off of a length at its limit: far above 1e-16 of one operation, below the last digit of any deck.
-  real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
@@ -81,7 +80,7 @@ contains
       associate (line => deck%lines(place))
         direction = merge(2, 1, line%direction == along_x)
         half = deck%plate%length(direction)/2
-        if (abs(line%at) > half*(1 + rounded_off)) then
+        if (abs(line%at) > half*(1 + rounding)) then
           call report(deck%settings, problems, line_group, line_key_at, &
                       'the line is not on the plate; allowed: '// &
                     to_text(-half)//' to '//to_text(half)//'.', place)
@@ -128,7 +127,7 @@ contains
     if (thickness > shorter) then
       call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
                   short_text(thickness)//' thick, more than the plate is wide; this is no plate.')
-    else if (longer > max_slenderness*thickness*(1 + rounded_off)) then
+    else if (longer > max_slenderness*thickness*(1 + rounding)) then
       call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
                   short_text(thickness)//' thick, less than '//to_text(1/max_slenderness)// &
                   ' of the plate''s length, where rounding spoils it.')
@@ -209,7 +208,7 @@ contains
     !> Along x and y
     logical :: meets(2)
 
-    meets = extents/2 + abs(deck%mesh%struck) >= deck%plate%length/2*(1 - rounded_off)
+    meets = extents/2 + abs(deck%mesh%struck) >= deck%plate%length/2*(1 - rounding)
   end function meets_border
 
   !> Zones against the plate, and starters against the loaded patch.

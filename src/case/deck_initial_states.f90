@@ -15,6 +15,7 @@ module deck_initial_states
   use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
   use plate_deck, only: key_symmetry
   use ply_damage_parameters, only: damage_names, numbers_of
+  use roundings, only: rounding
   use static_deck, only: static_group
   use stepping_parameters, only: is_explicit
   use support_deck, only: support_group, key_unilateral
@@ -199,7 +200,7 @@ contains
         if (k > 0) then
           objection = both('&delamination '//trim(law_names(k))//' below ply '//to_text(mine(i)%below_ply), &
                            to_text(here(k)), to_text(there(k)))
-        else if (.not. mine(i)%is_adaptive .and. any(mine(i)%zone < its(i)%zone*(1 - 1.0e-9_wp))) then
+        else if (.not. mine(i)%is_adaptive .and. any(mine(i)%zone < its(i)%zone*(1 - rounding))) then
           objection = both('&delamination '//key_zone//' below ply '//to_text(mine(i)%below_ply), &
                            short_list(mine(i)%zone), short_list(its(i)%zone))//'; allowed: as large or larger'
         end if
@@ -223,7 +224,7 @@ contains
     halved_before = is_halved(old%plate%symmetry)
     if (halved_before(direction) .and. .not. halved(direction)) there = [-there(size(there):2:-1), there]
     same = size(here) == size(there)
-    if (same) same = all(abs(here - there) <= 1.0e-9_wp*deck%plate%length(direction))
+    if (same) same = all(abs(here - there) <= rounding*deck%plate%length(direction))
   end function has_same_lines
 
   !> Name of a part of the plate.
@@ -255,7 +256,7 @@ contains
     !> The numbers
     real(wp), intent(in) :: here, there
 
-    differ = abs(here - there) > 1.0e-9_wp*max(abs(here), abs(there))
+    differ = abs(here - there) > rounding*max(abs(here), abs(there))
   end function differ
 
   !> Numbers as text.

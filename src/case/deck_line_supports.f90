@@ -9,13 +9,11 @@ module deck_line_supports
   use line_loads, only: line_load_t, along_x, along_y
   use mesh_parameters, only: is_mirrored, symmetry_point, edge_clamped, edge_elastic, edge_free
   use model_building, only: unrestrained
+  use roundings, only: rounding
   use support_parameters, only: support_t, bearing_face, window_none, window_circle
   implicit none
   private
   public :: check_line_supports, check_in_plane_balance, check_moved_lines
-
-  !> Difference of lengths, relative to them, that is none: above round-off, 1e-16, and below the last digit of a deck.
-  real(wp), parameter :: rounding = 1.0e-9_wp
 
 contains
 

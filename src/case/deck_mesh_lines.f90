@@ -7,6 +7,7 @@ module deck_mesh_lines
   use kinds, only: wp
   use mesh_deck, only: key_lines, mesh_group
   use rigs, only: window_lines
+  use roundings, only: rounding
   use support_deck, only: key_window, support_group
   implicit none
   private
@@ -49,7 +50,7 @@ contains
       associate (edges => cell_edges(deck%plate, deck%mesh, direction))
         do line = 1, size(lines)
           misses = misses .or. lines(line) > edges(1) .and. &
-                   minval(abs(edges - lines(line))) > 1.0e-9_wp*deck%plate%length(direction)
+                   minval(abs(edges - lines(line))) > rounding*deck%plate%length(direction)
         end do
       end associate
     end function misses

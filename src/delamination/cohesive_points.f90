@@ -5,7 +5,7 @@
 module cohesive_points
   use benzeggagh_kenane, only: toughness_gain
   use cohesive_laws, only: cohesive_law_t, stiffness_of
-  use face_friction, only: sliding_t
+  use surface_friction, only: sliding_t
   use kinds, only: wp
   implicit none
   private

@@ -4,6 +4,7 @@ module delaminated_regions
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: nine_node_grid_t, cells_around
+  use roundings, only: rounding
   implicit none
   private
   public :: delaminated_region_t, create_region, cells_within, extent_of_cells
@@ -92,10 +93,10 @@ contains
     pure logical function touches(edges)
       !> Edges of the cell, the centre at 0
       real(wp), intent(in) :: edges(2)
-      real(wp) :: rounding
+      real(wp) :: distance
 
-      rounding = 1.0e-9_wp*diameter
-      touches = edges(1) < rounding .and. edges(2) > -rounding
+      distance = rounding*diameter
+      touches = edges(1) < distance .and. edges(2) > -distance
     end function touches
   end subroutine round_off
 
@@ -126,14 +127,14 @@ contains
     !> First and last cell
     integer :: range(2)
     logical :: taken(size(edges) - 1)
-    real(wp) :: rounding
+    real(wp) :: distance
     integer :: cells, cell
 
     cells = size(edges) - 1
-    rounding = 1.0e-9_wp*(edges(cells + 1) - edges(1))
+    distance = rounding*(edges(cells + 1) - edges(1))
     ! A centre on the border is outside, independent of round-off in any units.
-    taken = abs(edges(:cells) + edges(2:)) < extent - rounding .or. &
-            (edges(:cells) < rounding .and. edges(2:) > -rounding)
+    taken = abs(edges(:cells) + edges(2:)) < extent - distance .or. &
+            (edges(:cells) < distance .and. edges(2:) > -distance)
     range = [findloc(taken, .true., dim=1), cells]
     do cell = range(1), cells
       if (taken(cell)) range(2) = cell
@@ -151,7 +152,7 @@ contains
     range = cells_within(edges, extent)
     taken = edges(range(2) + 1) - edges(range(1))
     ! A model that begins at the plate's centre and is struck there is half of the line.
-    if (edges(1) > -1.0e-9_wp*edges(size(edges))) taken = 2*taken
+    if (edges(1) > -rounding*edges(size(edges))) taken = 2*taken
   end function extent_of_cells
 
   !> True for a cell of the zone.

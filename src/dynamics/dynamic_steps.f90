@@ -124,7 +124,7 @@ contains
       new%motion%displacement = self%guess
     else if (.not. self%keeps_displacement) then
       new%motion%displacement = self%step*old%motion%velocity
-      call new%interfaces%faces%constrain_correction(model, new%motion%displacement)
+      call new%interfaces%contact%constrain_correction(model, new%motion%displacement)
       new%motion%displacement = old%motion%displacement + new%motion%displacement
       call new%interfaces%keep_contact_closed(model, new%motion%displacement)
       if (has_moved_lines(model)) &
@@ -261,7 +261,7 @@ contains
       self%factor_is_due = .not. converged
       if (has_impactor) call self%coupling%solve(at, tangent%is_factored(), error)
       if (allocated(error)) error%code = exit_convergence
-      call at%new%interfaces%faces%constrain_correction(at%model, at%correction)
+      call at%new%interfaces%contact%constrain_correction(at%model, at%correction)
     end associate
   end subroutine find_correction
 

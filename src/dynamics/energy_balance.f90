@@ -27,7 +27,7 @@ module energy_balance
     !> Energy that cohesive points store beyond the work on them
     real(wp) :: cohesive = 0
     !> Work of the forces between surfaces
-    real(wp) :: faces = 0
+    real(wp) :: contact = 0
     !> Work of the lines, and change of displacement times change of force of lines with a given force
     real(wp) :: lines = 0, lines_change = 0
   end type products_t
@@ -56,7 +56,7 @@ contains
     amplitudes = model%setup%pressure%amplitude([old%time, new%time])
     new%ledger%kinetic = products%kinetic/2
     new%ledger%strain = products%strain
-    new%ledger%contact = old%ledger%contact - products%faces
+    new%ledger%contact = old%ledger%contact - products%contact
     new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure + products%lines
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
@@ -161,7 +161,7 @@ contains
     sums = sums*model%mesh%multiplicity
     products = products_t(kinetic=sums(1), mean_internal=sums(2)/2, internal_change=sums(3), inertia_change=sums(4), &
                           jerk_new=sums(5), jerk_old=sums(6), jerk_change=sums(7), strain=sums(8), pressure=sums(9), &
-                          faces=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
+                          contact=sums(10), lines=sums(11), lines_change=sums(12), cohesive=sums(13))
   end subroutine find_products
 
   !> Work of the lines, and change of displacement times change of force of lines with a given force, of this rank's

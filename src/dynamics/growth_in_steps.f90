@@ -45,24 +45,25 @@ contains
     call model%profile%enter('fronts')
     ties = now%interfaces%ties
     do
-      free = trial%interfaces%faces%free
+      free = trial%interfaces%contact%free
       fracture = trial%ledger%delamination
       call grow_fronts(model, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, grown)
       ! The integrators cannot distinguish the energy dissipated by fracture from their own losses.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) exit
-      call ties%release(model, free, trial%interfaces%faces%free, &
+      call ties%release(model, free, trial%interfaces%contact%free, &
                        trial%motion%internal(1:3, :) + trial%motion%inertia(1:3, :))
       problem%guess = trial%motion%displacement
       start = now
-      start%interfaces%faces = trial%interfaces%faces
+      start%interfaces%contact = trial%interfaces%contact
       start%interfaces%ties = ties
       fracture = trial%ledger%delamination - now%ledger%delamination
       start%ledger%delamination = start%ledger%delamination + fracture
       start%ledger%algorithmic = start%ledger%algorithmic - fracture
       call solve_step(problem, model, equilibrium, operator, start, trial, converged, error)
       if (.not. converged .or. allocated(error)) exit
-      opened = trial%interfaces%ties%first_opening(model, free, trial%interfaces%faces%free, trial%motion%displacement)
+      opened = trial%interfaces%ties%first_opening(model, free, trial%interfaces%contact%free, &
+                                                   trial%motion%displacement)
       trial%interfaces%ties%set_free = trial%interfaces%ties%set_free + opened
       ties%set_free = ties%set_free + opened
     end do

@@ -110,7 +110,7 @@ contains
       if (allocated(error)) return
       operator%solves = operator%solves + 1
       if (model%setup%has_crack_bands()) call extrapolate(model, residual, aitken, correction)
-      call state%interfaces%faces%constrain_correction(model, correction)
+      call state%interfaces%contact%constrain_correction(model, correction)
       state%motion%displacement = state%motion%displacement + correction
     end do
     call state%plies%book(model, damage)

@@ -51,7 +51,7 @@ contains
     end do
     change = change - field
     where (model%fixed(:, model%distribution%points)) change = 0
-    call interfaces%faces%constrain_correction(model, change)
+    call interfaces%contact%constrain_correction(model, change)
     call model%halo%update(change)
     field = field + change
   end subroutine prescribe_lines

@@ -128,8 +128,8 @@ contains
         if (.not. allocated(cohesive%cohesive)) cycle
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0) then
-          associate (faces => cohesive%faces_of(model, model%zone(i), cohesive%strength(i)))
-            call stored%add(method%stacks%area(i)*faces%stored(u(1:3, i), cohesive%points(i)))
+          associate (surfaces => cohesive%surfaces_of(model, model%zone(i), cohesive%strength(i)))
+            call stored%add(method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i)))
           end associate
         else
           call stored%add(sum(method%stacks%stiffness([1, 1, 2], i)*u(1:3, i)**2)/2)

@@ -5,7 +5,7 @@
 !> The force along the motion of the jumps is then corrected, so that its work is what the law stores and dissipates: a
 !> discrete gradient, as in O. Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467.
 module damaged_stacks
-  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: grown_damage, opened, separation_of
   use interface_stacks, only: interface_stacks_t
@@ -34,7 +34,7 @@ contains
     real(wp), intent(in) :: u(:, :)
     !> Jumps without tractions, (3, n)
     real(wp), intent(in) :: trial(:, :)
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     integer :: j
 
     associate (q => p + work%n)
@@ -46,16 +46,16 @@ contains
       work%points = cohesive%points(p + 1:q)
     end associate
     do j = 1, work%n
-      faces = cohesive%faces_of(model, model%zone(p + j), 1.0_wp)
-      work%closing(j) = faces%closing
-      work%friction(j)%coefficient = faces%friction
+      surfaces = cohesive%surfaces_of(model, model%zone(p + j), 1.0_wp)
+      work%closing(j) = surfaces%closing
+      work%friction(j)%coefficient = surfaces%friction
       associate (sticking => stacks%history%sticking(:, p + j))
         work%friction(j)%past = past_jumps(work%start(1:2, j) - work%points(j)%sliding%slip, sticking(1:2), &
                                            sticking(3:4))
       end associate
       associate (change => stacks%history%change(:, p + j), earlier => stacks%history%earlier(:, p + j))
         work%given(:, j) = past_jumps(work%start(:, j), change, earlier)
-        if (faces%closing) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))
+        if (surfaces%closing) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))
       end associate
       work%given(:, j) = (1 - work%points(j)%damage)*work%stiffness([1, 1, 2], j)*work%given(:, j)
       work%secant(:, j) = newest*(1 - work%points(j)%damage)*work%stiffness(:, j)
@@ -73,7 +73,7 @@ contains
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> First point of the stack
     integer, intent(in) :: p
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     real(wp) :: jumps(3, work%n), energy, damage
     logical :: grows
     integer :: j
@@ -89,12 +89,12 @@ contains
                   + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
         ! N Y = G_c at the onset; the toughness of a mixture of modes is at least that of the weaker pure mode.
         if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
-        faces = cohesive%faces_of(model, model%zone(p + j), strength)
+        surfaces = cohesive%surfaces_of(model, model%zone(p + j), strength)
       end associate
-      damage = grown_damage(faces%law, separation_of(faces%law, jumps(:, j)), work%points(j))
+      damage = grown_damage(surfaces%law, separation_of(surfaces%law, jumps(:, j)), work%points(j))
       if (.not. damage > work%points(j)%damage) cycle
       grows = .true.
-      energy = faces%work(work%start(:, j), jumps(:, j), work%points(j), damage)
+      energy = surfaces%work(work%start(:, j), jumps(:, j), work%points(j), damage)
       call correct_force(work, j, jumps(:, j), stacks%history%change(:, p + j), &
                          (stacks%area(p + j)*energy + stacks%history%work(p + j))/2)
     end do

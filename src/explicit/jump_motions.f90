@@ -4,10 +4,10 @@
 !> jumps J (doc/theory/energy.md). What contact neither stores nor returns is lost in contact; what the other forces
 !> neither store nor dissipate is numerical dissipation.
 module jump_motions
-  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
-  use face_friction, only: friction_energy, sliding_t
+  use surface_friction, only: friction_energy, sliding_t
   use interface_stacks, only: interface_stacks_t
   use jump_histories, only: friction_history_t
   use kinds, only: wp
@@ -36,7 +36,7 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     real(wp) :: change(3), k(3), jump(3), traction(3)
     integer :: j, p
 
@@ -51,12 +51,12 @@ contains
       u(1:3, p) = jump
       call stacks%history%record(p, forces(:, j), change)
       if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
-      faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
+      surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
       associate (point => cohesive%points(p))
         point%sliding%slip = jump(1:2)
-        call faces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
+        call surfaces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
         stacks%history%lost(2, p) = stacks%history%lost(2, p) + sum(k*jump**2)/2 &
-                                    - stacks%area(p)*(faces%stored(jump, point) + point%dissipated)
+                                    - stacks%area(p)*(surfaces%stored(jump, point) + point%dissipated)
         if (point%damage > 0) stacks%damaged(i) = .true.
       end associate
     end do
@@ -87,35 +87,37 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: old
     real(wp) :: change(3), before(3), traction(3), work, in_contact, growth
     integer :: j, p
 
     do j = 1, size(forces, 2)
       p = stacks%first(i) + j
-      faces = cohesive%faces_of(model, model%zone(p), cohesive%strength(p))
+      surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
       change = steps%now*v(1:3, p)
       before = u(1:3, p)
       u(1:3, p) = before + change
       work = work_of(stacks, p, steps, forces(:, j), change)
       in_contact = 0
-      if (faces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
+      if (surfaces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
       old = cohesive%points(p)
       old%sliding%limit = friction(j)%limit/stacks%area(p)
       associate (new => cohesive%points(p), area => stacks%area(p))
-        call faces%traction(u(1:3, p), old, traction, new)
-        if (faces%friction > 0) then
-          call slip_faces(friction(j), u(1:2, p), old%sliding, new%sliding, stacks%history%sticking(:, p), change(1:2))
-          call add_heat(faces%law%stiffness_shear, before(1:2), u(1:2, p), &
+        call surfaces%traction(u(1:3, p), old, traction, new)
+        if (surfaces%friction > 0) then
+          call slip_surfaces(friction(j), u(1:2, p), old%sliding, new%sliding, stacks%history%sticking(:, p), &
+                             change(1:2))
+          call add_heat(surfaces%law%stiffness_shear, before(1:2), u(1:2, p), &
             sum(friction(j)%force*(change(1:2) + stacks%history%change(1:2, p)))/(2*area), old%sliding, new%sliding, &
             stacks%history%friction(p))
         end if
         growth = new%dissipated - old%dissipated
-        in_contact = in_contact + area*faces%closing_loss(before(3), u(3, p), new%damage - old%damage)
+        in_contact = in_contact + area*surfaces%closing_loss(before(3), u(3, p), new%damage - old%damage)
         stacks%history%lost(:, p) = stacks%history%lost(:, p) + [in_contact, work - in_contact - area* &
-          (faces%stored(u(1:3, p), new) - faces%stored(before, old) + growth + new%sliding%heat - old%sliding%heat)]
-        stacks%history%work(p) = area*faces%work(before, u(1:3, p), old, new%damage)
+          (surfaces%stored(u(1:3, p), new) - surfaces%stored(before, old) + growth + &
+           new%sliding%heat - old%sliding%heat)]
+        stacks%history%work(p) = area*surfaces%work(before, u(1:3, p), old, new%damage)
       end associate
       call stacks%history%record(p, forces(:, j), change)
     end do
@@ -155,7 +157,7 @@ contains
   end function lost_in_contact
 
   !> Slip of surfaces, and the change of their elastic jumps.
-  pure subroutine slip_faces(friction, jumps, old, new, sticking, change)
+  pure subroutine slip_surfaces(friction, jumps, old, new, sticking, change)
     !> Friction in the step
     type(friction_t), intent(in) :: friction
     !> Tangential jumps at the end
@@ -178,7 +180,7 @@ contains
     sticking = [change, sticking(1:2)]
     ! Forces of surfaces that slip do not depend on what they were before.
     if (friction%slips .or. .not. friction%limit > 0) sticking = 0
-  end subroutine slip_faces
+  end subroutine slip_surfaces
 
   !> Heat of slipping surfaces: the work of friction beyond what sticking stores in halves of this step and the one
   !> before, while forces depend on a slip. Where this is negative, that much less heat follows.

@@ -1,6 +1,6 @@
 !> Energy error of cohesive points in a step by the implicit steps' quadrature of the work of tractions.
 module cohesive_energies
-  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
@@ -21,7 +21,7 @@ contains
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns before and after it, (5, points)
     real(wp), intent(in) :: before(:, :), after(:, :)
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: start, point
     real(wp) :: traction(3, 2)
     integer :: i
@@ -30,12 +30,12 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i), old%strength(i))
+      surfaces = self%surfaces_of(model, model%zone(i), old%strength(i))
       start = old%points(i)
-      call faces%traction(before(1:3, i), start, traction(:, 1), point)
+      call surfaces%traction(before(1:3, i), start, traction(:, 1), point)
       start%sliding%limit = self%points(i)%sliding%limit
-      call faces%traction(after(1:3, i), start, traction(:, 2), point)
-      energy = energy + model%contact_area(i)*(faces%stored(after(1:3, i), self%points(i)) - faces%stored( &
+      call surfaces%traction(after(1:3, i), start, traction(:, 2), point)
+      energy = energy + model%contact_area(i)*(surfaces%stored(after(1:3, i), self%points(i)) - surfaces%stored( &
         before(1:3, i), old%points(i)) - dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
     end do
   end function stored_beyond_work

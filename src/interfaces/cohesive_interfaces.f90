@@ -8,7 +8,7 @@ module cohesive_interfaces
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive, contact_none
   use cohesive_laws, only: cohesive_law_t, stiffness_of, weakened
-  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_points, only: cohesive_point_t, dissipated_fraction, mode_mixity
   use cohesive_tangents, only: dissipation_slopes
   use exact_sums, only: exact_sum_t
@@ -50,7 +50,7 @@ module cohesive_interfaces
     !> True for zones in which damage has reached the border.
     procedure :: border_reached
     !> Surfaces of an interface, and law of a point.
-    procedure :: faces_of
+    procedure :: surfaces_of
     procedure :: law_at
     !> Saves or loads.
     procedure :: visit
@@ -97,7 +97,7 @@ contains
     real(wp), intent(inout) :: force(:, :)
     !> Strain energy of this rank; that stored by the points is added
     real(wp), intent(inout) :: energy
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: start
     real(wp) :: traction(3)
     integer :: i
@@ -105,14 +105,14 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i), self%strength(i))
+      surfaces = self%surfaces_of(model, model%zone(i), self%strength(i))
       associate (jumps => displacement(1:3, i), area => model%contact_area(i))
         start = old%points(i)
         start%sliding%limit = self%points(i)%sliding%limit
-        call faces%traction(jumps, start, traction, self%points(i))
-        self%stiffness(:, i) = area*faces%diagonal(jumps, start)
-        energy = energy + area*faces%stored(jumps, self%points(i))
-        if (allocated(self%tangents)) call store_tangent(self, i, area*faces%slopes(jumps, start))
+        call surfaces%traction(jumps, start, traction, self%points(i))
+        self%stiffness(:, i) = area*surfaces%diagonal(jumps, start)
+        energy = energy + area*surfaces%stored(jumps, self%points(i))
+        if (allocated(self%tangents)) call store_tangent(self, i, area*surfaces%slopes(jumps, start))
         force(1:3, i) = force(1:3, i) + area*traction
       end associate
     end do
@@ -129,7 +129,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Force per jump, (3, 3, owned points); zero where there is no cohesive law
     real(wp), allocatable :: tangents(:, :, :)
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: start
     integer :: i
 
@@ -137,10 +137,10 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      faces = self%faces_of(model, model%zone(i), self%strength(i))
+      surfaces = self%surfaces_of(model, model%zone(i), self%strength(i))
       start = old%points(i)
       start%sliding%limit = self%points(i)%sliding%limit
-      tangents(:, :, i) = model%contact_area(i)*faces%slopes(displacement(1:3, i), start)
+      tangents(:, :, i) = model%contact_area(i)*surfaces%slopes(displacement(1:3, i), start)
     end do
   end function tangents_at
 
@@ -346,7 +346,7 @@ contains
   end function law_at
 
   !> Surfaces of an interface.
-  pure type(cohesive_faces_t) function faces_of(self, model, zone, strength) result(faces)
+  pure type(cohesive_surfaces_t) function surfaces_of(self, model, zone, strength) result(surfaces)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
@@ -355,10 +355,10 @@ contains
     !> Strength factor of flaws
     real(wp), intent(in) :: strength
 
-    faces%law = weakened(model%cohesive_laws(zone), strength)
-    faces%closing = prevents_penetration(model, zone)
-    faces%friction = model%setup%delaminations(zone)%friction
-  end function faces_of
+    surfaces%law = weakened(model%cohesive_laws(zone), strength)
+    surfaces%closing = prevents_penetration(model, zone)
+    surfaces%friction = model%setup%delaminations(zone)%friction
+  end function surfaces_of
 
   !> Saves or loads.
   subroutine visit(self, archive, model)

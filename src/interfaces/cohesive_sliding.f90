@@ -2,7 +2,7 @@
 module cohesive_sliding
   use kinds, only: wp
   use archives, only: archive_t
-  use cohesive_faces, only: cohesive_faces_t
+  use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use models, only: model_t
   use rank_totals, only: total_of
@@ -28,7 +28,7 @@ contains
     integer, intent(inout) :: updates
     !> False on return if it has not converged
     logical, intent(inout) :: converged
-    type(cohesive_faces_t) :: faces
+    type(cohesive_surfaces_t) :: surfaces
     real(wp) :: limit, largest(2)
     integer :: i
 
@@ -36,8 +36,8 @@ contains
     largest = 0
     do i = 1, model%distribution%owned
       if (.not. interfaces%cohesive(i)) cycle
-      faces = interfaces%faces_of(model, model%zone(i), interfaces%strength(i))
-      limit = faces%friction_limit(displacement(1:3, i), interfaces%points(i))
+      surfaces = interfaces%surfaces_of(model, model%zone(i), interfaces%strength(i))
+      limit = surfaces%friction_limit(displacement(1:3, i), interfaces%points(i))
       associate (before => interfaces%points(i)%sliding%limit)
         largest = max(largest, [limit, abs(limit - before)])
         before = limit

@@ -8,7 +8,7 @@ module contact_and_ties
   use delamination_parameters, only: contact_augmented_lagrangian
   use interface_ties, only: interface_ties_t, create_interface_ties, tie_stiffness, connection_exact, &
                             connection_penalty, connection_contact
-  use face_contact, only: contact_pressure, contact_residual, updated_decay, updated_multiplier
+  use surface_contact, only: contact_pressure, contact_residual, updated_decay, updated_multiplier
   use models, only: model_t
   implicit none
   private

@@ -29,12 +29,12 @@ module front_energy_release
 contains
 
   !> Energy release rates along the front of a zone.
-  function release_along_front(model, stiffness, faces, motion, zone, method) result(front)
+  function release_along_front(model, stiffness, contact, motion, zone, method) result(front)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
-    type(contact_and_ties_t), intent(in) :: faces
+    type(contact_and_ties_t), intent(in) :: contact
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
@@ -45,21 +45,21 @@ contains
     type(front_energy_release_t) :: front
     integer :: s
 
-    front%segments = find_front(faces%regions(zone), model%mesh)
+    front%segments = find_front(contact%regions(zone), model%mesh)
     front%line = create_smooth_front(front%segments, model%mesh)
     if (method == release_two_state) then
       front%modes = two_state_rates(model, stiffness, motion, zone, front%segments)
     else
-      front%modes = vcct_rates(model, faces, motion, zone, front%segments, front%line)
+      front%modes = vcct_rates(model, contact, motion, zone, front%segments, front%line)
     end if
     front%ratio = [(release_ratio(model%setup%delaminations(zone), front%modes(:, s)), s=1, size(front%segments))]
   end function release_along_front
 
   !> Rates by virtual crack closure, from forces and jumps averaged along the front.
-  function vcct_rates(model, faces, motion, zone, segments, line) result(modes)
+  function vcct_rates(model, contact, motion, zone, segments, line) result(modes)
     type(model_t), intent(in) :: model
     !> Delaminated cells
-    type(contact_and_ties_t), intent(in) :: faces
+    type(contact_and_ties_t), intent(in) :: contact
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
@@ -74,7 +74,7 @@ contains
     logical :: odd(closure_figures + 2)
     integer :: s
 
-    figures(:closure_figures, :) = moments_of(model, faces, motion, zone, segments, line)
+    figures(:closure_figures, :) = moments_of(model, contact, motion, zone, segments, line)
     figures(closure_figures + 1, :) = line%length
     figures(closure_figures + 2, :) = line%length*line%ahead
     odd = .false.
@@ -90,10 +90,10 @@ contains
   end function vcct_rates
 
   !> Contributions of the nodes next to each segment to its crack closure integral. Collective.
-  function moments_of(model, faces, motion, zone, segments, line) result(figures)
+  function moments_of(model, contact, motion, zone, segments, line) result(figures)
     type(model_t), intent(in) :: model
     !> Delaminated cells
-    type(contact_and_ties_t), intent(in) :: faces
+    type(contact_and_ties_t), intent(in) :: contact
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
@@ -118,7 +118,7 @@ contains
       weight = product(merge(0.5_wp, 1.0_wp, model%mesh%lines_of(nodes%node(k)) == 0 .and. model%mesh%mirrored))
       associate (s => nodes%segment(k))
         figures(:, s) = figures(:, s) + nodes%share(k)*closure_moments(line%normal(:, s), nodes%distance(k), &
-          line%ahead(s), line%behind(s), .not. faces%free(i), weight, tie_force(model, motion, i), &
+          line%ahead(s), line%behind(s), .not. contact%free(i), weight, tie_force(model, motion, i), &
           motion%displacement(1:3, i))
       end associate
     end do

@@ -38,7 +38,7 @@ contains
     state%growth_ratio = 0
     do zone = 1, size(model%mesh%zones)
       if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      front = release_along_front(model, stiffness, state%faces, motion, zone, &
+      front = release_along_front(model, stiffness, state%contact, motion, zone, &
                                   model%setup%delaminations(zone)%energy_release)
       if (size(front%segments) == 0) cycle
       state%release_ratio = max(state%release_ratio, maxval(front%ratio))
@@ -62,7 +62,7 @@ contains
     state%release_ratio = 0
     do zone = 1, size(model%mesh%zones)
       if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      front = release_along_front(model, stiffness, state%faces, motion, zone, &
+      front = release_along_front(model, stiffness, state%contact, motion, zone, &
                                   model%setup%delaminations(zone)%energy_release)
       if (size(front%segments) > 0) state%release_ratio = max(state%release_ratio, maxval(front%ratio))
     end do
@@ -90,7 +90,7 @@ contains
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
     ! A delamination that fills its zone has no front but the border; surfaces that are glued cannot delaminate.
     if (foremost == 0) return
-    if (state%faces%glued .and. model%setup%delaminations(zone)%unloading == unloading_glued) return
+    if (state%contact%glued .and. model%setup%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
     state%growth_ratio = max(state%growth_ratio, largest)
     if (.not. largest > 1) return
@@ -100,13 +100,13 @@ contains
     if (model%setup%delaminations(zone)%growth == growth_equilibrium) &
       enters = enters .and. closest_to_front(front, enters, front_reach(model, zone))
     do s = 1, size(front%segments)
-      associate (segment => front%segments(s), region => state%faces%regions(zone))
+      associate (segment => front%segments(s), region => state%contact%regions(zone))
         if (.not. enters(s)) cycle
         if (region%is_delaminated(segment%outside(1), segment%outside(2))) cycle
         call region%release(segment%outside)
         energy = cell_energy(s)*model%mesh%multiplicity
         fracture = fracture + energy
-        state%faces%fracture(zone) = state%faces%fracture(zone) + energy
+        state%contact%fracture(zone) = state%contact%fracture(zone) + energy
         grown = .true.
         if (model%setup%delaminations(zone)%growth == growth_one_per_step) return
       end associate
@@ -161,11 +161,11 @@ contains
     logical, allocatable :: before(:)
     integer :: i
 
-    before = state%faces%free
-    call state%faces%free_jumps(model)
+    before = state%contact%free
+    call state%contact%free_jumps(model)
     do i = 1, model%distribution%owned
-      if (before(i) .or. .not. state%faces%free(i)) cycle
-      state%faces%multiplier(i) = max(0.0_wp, (motion%internal(3, i) + motion%inertia(3, i)) &
+      if (before(i) .or. .not. state%contact%free(i)) cycle
+      state%contact%multiplier(i) = max(0.0_wp, (motion%internal(3, i) + motion%inertia(3, i)) &
                                            /model%contact_area(i))
     end do
   end subroutine open_faces

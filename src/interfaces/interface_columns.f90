@@ -62,7 +62,7 @@ contains
     !> One value per column, of the full plate
     real(wp) :: values(size(area_rows))
 
-    values = [sum(interfaces%faces%area(model)) + sum(interfaces%cohesive%area(model))]
+    values = [sum(interfaces%contact%area(model)) + sum(interfaces%cohesive%area(model))]
   end function area_values
 
   !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of surfaces.
@@ -77,8 +77,8 @@ contains
     real(wp) :: values(size(release_rows))
 
     values = [interfaces%release_ratio, sum(interfaces%ties%set_free), &
-              interfaces%faces%penetration(model, displacement), &
-              interfaces%faces%complementarity(model, displacement)]
+              interfaces%contact%penetration(model, displacement), &
+              interfaces%contact%complementarity(model, displacement)]
   end function release_values
 
   !> Zones whose border is reached, and projected area. Collective.

@@ -62,7 +62,7 @@ contains
 
     if (output%requests(field_onset)) call write_onset(model, stiffness, interfaces, motion, fields, error)
     if (.not. model%map%layered) return
-    associate (faces => interfaces%faces)
+    associate (contact => interfaces%contact)
       if (output%requests(field_gap)) call fields%write_point_field('jump', jumps(model, motion%displacement), error)
       if (output%requests(field_contact_pressure)) &
         call fields%write_point_field('contact_pressure', pressures(model, interfaces, motion%displacement), error)
@@ -77,7 +77,7 @@ contains
         call write_figures(model, interfaces, fields, error)
       end if
       if (output%requests(field_energy_release)) &
-        call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, faces, motion), error)
+        call fields%write_cell_field('energy_release_above', release_ahead(model, stiffness, contact, motion), error)
     end associate
   end subroutine write_interface_fields
 
@@ -163,7 +163,7 @@ contains
           if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
           if (model%setup%delaminations(zone)%law == law_cohesive) then
             delaminated(1, i) = dot_product(weights, dissipated_fractions(1, model%distribution%connectivity(:, i)))
-          else if (interfaces%faces%regions(zone)%is_delaminated(place(1), place(2))) then
+          else if (interfaces%contact%regions(zone)%is_delaminated(place(1), place(2))) then
             delaminated(1, i) = 1
           end if
         end do
@@ -207,18 +207,18 @@ contains
     !> Pressure, (1, points)
     real(wp), allocatable :: pressures(:, :)
 
-    pressures = reshape(interfaces%faces%pressure + interfaces%cohesive%pressure(model, displacement), &
+    pressures = reshape(interfaces%contact%pressure + interfaces%cohesive%pressure(model, displacement), &
                         [1, size(model%zone)])
   end function pressures
 
   !> Ratio of energy release rate to its critical value in the intact cells ahead of the fronts, zero elsewhere. At the
   !> border of a zone it is given for the last delaminated cell.
-  function release_ahead(model, stiffness, faces, motion) result(ratio)
+  function release_ahead(model, stiffness, contact, motion) result(ratio)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
-    type(contact_and_ties_t), intent(in) :: faces
+    type(contact_and_ties_t), intent(in) :: contact
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> G/G_c of the interface above, (1, elements)
@@ -229,7 +229,7 @@ contains
     allocate (ratio(1, model%elements%elements), source=0.0_wp)
     do zone = 1, size(model%mesh%zones)
       if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      front = release_along_front(model, stiffness, faces, motion, zone, &
+      front = release_along_front(model, stiffness, contact, motion, zone, &
                                   model%setup%delaminations(zone)%energy_release)
       do s = 1, size(front%segments)
         place = merge(front%segments(s)%inside, front%segments(s)%outside, front%segments(s)%at_border)

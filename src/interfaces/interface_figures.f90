@@ -43,8 +43,8 @@ contains
 
     if (size(figures) == 0) return
     figures%stage = stages_of(model, interfaces)
-    figures%area = interfaces%faces%area(model) + interfaces%cohesive%area(model)
-    figures%energy = interfaces%faces%fracture + interfaces%cohesive%energy(model)
+    figures%area = interfaces%contact%area(model) + interfaces%cohesive%area(model)
+    figures%energy = interfaces%contact%fracture + interfaces%cohesive%energy(model)
     bounds = bounds_of(model, interfaces)
     do zone = 1, size(figures)
       if (any(bounds(:, zone) <= empty_bound)) cycle
@@ -67,11 +67,11 @@ contains
     real(wp) :: furthest(size(stages))
     integer :: i
 
-    furthest = merge(stage_grown, stage_intact, interfaces%faces%fracture > 0)
+    furthest = merge(stage_grown, stage_intact, interfaces%contact%fracture > 0)
     if (allocated(interfaces%cohesive%cohesive)) then
       do i = 1, model%distribution%owned
         ! Starters are delaminated before the run.
-        if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%faces%free(i)) cycle
+        if (.not. interfaces%cohesive%cohesive(i) .or. interfaces%contact%free(i)) cycle
         furthest(model%zone(i)) = max(furthest(model%zone(i)), real(stage_of(interfaces%cohesive%points(i)), wp))
       end do
       call model%communicator%maximum(furthest)
@@ -130,7 +130,7 @@ contains
     integer :: i, j
 
     bounds = empty_bound
-    associate (region => interfaces%faces%regions(zone), x => model%mesh%x_edges, y => model%mesh%y_edges)
+    associate (region => interfaces%contact%regions(zone), x => model%mesh%x_edges, y => model%mesh%y_edges)
       do j = region%rows(1), region%rows(2)
         do i = region%columns(1), region%columns(2)
           if (region%is_delaminated(i, j)) bounds = max(bounds, [-x(i), x(i + 1), -y(j), y(j + 1)])

@@ -8,12 +8,10 @@ module interface_flaws
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use models, only: model_t
+  use roundings, only: rounding
   implicit none
   private
   public :: reachable_cells, weaken_beside, visit_flaws
-
-  !> So that cells as far away as the reach count on every machine: above 1e-16, and below any part of a cell.
-  real(wp), parameter :: rounding_factor = 1 + 1.0e-9_wp
 
 contains
 
@@ -76,7 +74,7 @@ contains
           if (interfaces%strength(local) <= part .or. interfaces%points(local)%damage > 0) cycle
           associate (place => mesh%node_coordinates(:, node))
             if (norm2([distance(place(1), x), distance(place(2), &
-                                                       y)]) <= rounding_factor*reach) interfaces%strength(local) = part
+                                                       y)]) <= (1 + rounding)*reach) interfaces%strength(local) = part
           end associate
         end do
       end do
@@ -94,8 +92,8 @@ contains
     !> First and last
     integer :: lines(2)
 
-    lines(1) = 2*max(0, count(edges <= ends(1) - rounding_factor*reach) - 1)
-    lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + rounding_factor*reach))
+    lines(1) = 2*max(0, count(edges <= ends(1) - (1 + rounding)*reach) - 1)
+    lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + (1 + rounding)*reach))
   end function lines_within
 
   !> Cells of the mesh within the distance of a zone in which a crack affects its interface.
@@ -112,7 +110,7 @@ contains
     real(wp) :: distance
     integer :: row, first
 
-    distance = rounding_factor*reach
+    distance = (1 + rounding)*reach
     associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
       near = x(2:) + distance >= x(columns(1)) .and. x(:size(near)) - distance <= x(columns(2) + 1)
       ! With point symmetry only cells near the cut have an image in reach.

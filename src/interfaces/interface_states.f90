@@ -21,7 +21,7 @@ module interface_states
   !> State of all interfaces.
   type :: interface_state_t
     !> Ties and contacts of the surfaces
-    type(contact_and_ties_t) :: faces
+    type(contact_and_ties_t) :: contact
     !> Points with cohesive laws
     type(cohesive_interfaces_t) :: cohesive
     !> Released ties with forces that are ramped down, and the energy released
@@ -64,10 +64,10 @@ contains
     type(interface_state_t) :: self
 
     allocate (self%border_reached(size(model%mesh%zones)), source=.false.)
-    self%faces = new_contact_and_ties(model)
+    self%contact = new_contact_and_ties(model)
     self%ties = new_tie_release(model)
     self%rig = new_rig_contact(model)
-    if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%faces%free)
+    if (model%map%layered) self%cohesive = new_cohesive_interfaces(model, self%contact%free)
   end function new_interface_state
 
   !> Adds the forces of ties and contact to a residual and sets that of tied jumps to zero.
@@ -81,7 +81,7 @@ contains
     real(wp), intent(inout) :: residual(:, :)
 
     call self%ties%add_to_residual(model, residual)
-    call self%faces%add_to_residual(model, displacement, residual)
+    call self%contact%add_to_residual(model, displacement, residual)
     call self%rig%add_to_residual(model, displacement, residual)
   end subroutine add_to_residual
 
@@ -102,7 +102,7 @@ contains
     integer :: rig_updates
 
     rig_updates = updates
-    call self%faces%update_contact(model, displacement, tolerance, updates, converged)
+    call self%contact%update_contact(model, displacement, tolerance, updates, converged)
     call self%rig%update_contact(model, displacement, tolerance, rig_updates, rig_converged)
     converged = converged .and. rig_converged
     updates = max(updates, rig_updates)
@@ -117,7 +117,7 @@ contains
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
 
-    call self%faces%keep_contact_closed(model, guess)
+    call self%contact%keep_contact_closed(model, guess)
     call self%rig%keep_contact_closed(model, guess)
   end subroutine keep_contact_closed
 
@@ -130,7 +130,7 @@ contains
     real(wp), intent(in) :: displacement(:, :), change(:, :)
 
     work = self%rig%work(model, change)
-    if (model%map%layered) work = work + self%faces%work(model, displacement, change)
+    if (model%map%layered) work = work + self%contact%work(model, displacement, change)
   end function contact_work
 
   !> Frictional heat since an earlier state, of the full plate, the same on every rank.
@@ -222,7 +222,7 @@ contains
         in_delaminated_cell = mesh%zones(zone)%below_ply == mesh%element_plies(1, element) - 1
         if (.not. in_delaminated_cell) return
         place = mesh%place_of(mesh%element_cell(element))
-        in_delaminated_cell = self%faces%regions(zone)%is_delaminated(place(1), place(2))
+        in_delaminated_cell = self%contact%regions(zone)%is_delaminated(place(1), place(2))
       end associate
     end function in_delaminated_cell
   end function delaminated_areas
@@ -238,7 +238,7 @@ contains
     unreleased = 0
     do zone = 1, size(self%border_reached)
       if (model%setup%delaminations(zone)%growth /= growth_equilibrium) cycle
-      unreleased = unreleased + max(0.0_wp, self%faces%fracture(zone) - self%ties%set_free(zone))
+      unreleased = unreleased + max(0.0_wp, self%contact%fracture(zone) - self%ties%set_free(zone))
     end do
   end function unreleased
 
@@ -255,7 +255,7 @@ contains
     real(wp), intent(out) :: added(:, :)
     integer :: i
 
-    call self%faces%added_stiffness(model, diagonal, added)
+    call self%contact%added_stiffness(model, diagonal, added)
     if (allocated(self%cohesive%cohesive)) then
       do i = 1, model%distribution%owned
         if (self%cohesive%cohesive(i)) added(:, i) = stiffness_factor*self%cohesive%stiffness(:, i)
@@ -278,7 +278,7 @@ contains
     reached = merge(1, 0, self%border_reached)
     call archive%item('border_reached', reached)
     self%border_reached = reached == 1
-    call self%faces%visit(archive, model)
+    call self%contact%visit(archive, model)
     call self%ties%visit(archive, model)
     call self%cohesive%visit(archive, model)
     call visit_friction(self%cohesive, archive, model)

@@ -4,7 +4,7 @@ module mapped_interfaces
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: stiffness_of
   use cohesive_points, only: damage_at_fraction
-  use face_friction, only: friction_traction, sliding_t
+  use surface_friction, only: friction_traction, sliding_t
   use kinds, only: wp
   use models, only: model_t
   implicit none

@@ -8,12 +8,10 @@ module required_zones
   use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, thicknesses_ahead, widened_extent
   use models, only: model_t
   use onset_index, only: onset_of_joined_cells
+  use roundings, only: rounding
   implicit none
   private
   public :: required_extents
-
-  !> Part by which rounding may carry a length beyond another: above 1e-16, and below any part of a cell.
-  real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
@@ -42,8 +40,8 @@ contains
                    with_margin(model, around_damage(model, interfaces), cells_ahead, &
                                thicknesses_ahead*model%thickness))
       needed = spread(maxval(merge(needed, 0.0_wp, is_adaptive), 2), 2, size(needed, 2))
-      if (.not. any(is_adaptive .and. needed > extents*(1 + rounded_off))) return
-      where (is_adaptive .and. needed > extents*(1 + rounded_off)) &
+      if (.not. any(is_adaptive .and. needed > extents*(1 + rounding))) return
+      where (is_adaptive .and. needed > extents*(1 + rounding)) &
         extents = with_margin(model, needed, cells_at_once, 0.0_wp)
     end associate
   end function required_extents
@@ -84,7 +82,7 @@ contains
     do
       before = extents
       near = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1), 1), &
-              widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2), 1)]*(1 + rounded_off)
+              widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2), 1)]*(1 + rounding)
       do cell = 1, size(onset)
         if (onset(cell) < onset_of_layers) cycle
         associate (reach => extents_to(model, cell))

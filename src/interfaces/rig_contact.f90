@@ -1,13 +1,13 @@
 !> Contact with rigs: pressure where it rests on a frame that it may lift off, springs of clamps, and reactions.
 !>
-!> A frame is rigid and constrains w at its nodes by an inequality. The law is that of surfaces (`face_contact`)
+!> A frame is rigid and constrains w at its nodes by an inequality. The law is that of surfaces (`surface_contact`)
 !> with the gap -w and one multiplier per node, updated until it converges.
 module rig_contact
   use kinds, only: wp
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
   use rank_totals, only: totals_of
-  use face_contact, only: contact_pressure, contact_residual, updated_multiplier
+  use surface_contact, only: contact_pressure, contact_residual, updated_multiplier
   use models, only: model_t
   use support_parameters, only: max_supports
   implicit none

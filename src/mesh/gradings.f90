@@ -2,6 +2,7 @@
 !> outside grow geometrically. A core of equal elements around the patch gives a front that moves in it equal steps.
 module gradings
   use kinds, only: wp
+  use roundings, only: rounding
   implicit none
   private
   public :: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
@@ -78,7 +79,7 @@ contains
 
     lengths = [half_patch, max(0.0_wp, half_core - half_patch)]
     counts = nint(lengths/cell + tie)
-    where (lengths > 1.0e-9_wp*half_core) counts = max(1, counts)
+    where (lengths > rounding*half_core) counts = max(1, counts)
   end function core_elements
 
   !> Element edges from border to border, symmetric about the struck point in the middle.
@@ -158,15 +159,15 @@ contains
     !> Coordinates to meet; those beyond the edges are left out
     real(wp), intent(in) :: lines(:)
     logical :: fixed(0:ubound(edges, 1))
-    real(wp) :: rounding
+    real(wp) :: distance
     integer :: i, line, nearest, low, high
 
-    rounding = 1.0e-9_wp*(edges(ubound(edges, 1)) - edges(0))
-    fixed = [(any(abs(edges(line) - kept) <= rounding), line=0, ubound(edges, 1))]
+    distance = rounding*(edges(ubound(edges, 1)) - edges(0))
+    fixed = [(any(abs(edges(line) - kept) <= distance), line=0, ubound(edges, 1))]
     fixed([0, ubound(edges, 1)]) = .true.
     do i = 1, size(lines)
       if (lines(i) <= edges(0) .or. lines(i) >= edges(ubound(edges, 1)) .or. all(fixed)) cycle
-      if (any(fixed .and. abs(edges - lines(i)) <= rounding)) cycle
+      if (any(fixed .and. abs(edges - lines(i)) <= distance)) cycle
       nearest = minloc(abs(edges - lines(i)), dim=1, mask=.not. fixed) - 1
       low = findloc(fixed(:nearest), .true., dim=1, back=.true.) - 1
       high = nearest + findloc(fixed(nearest:), .true., dim=1) - 1
@@ -208,7 +209,7 @@ contains
     inside = offset
     if (patch <= 0) return
     most = elements
-    if (patch < length*(1 - 1.0e-9_wp)) most = elements - stride
+    if (patch < length*(1 - rounding)) most = elements - stride
     inside = offset + stride*nint((patch*elements/length - offset)/stride + tie)
     inside = max(merge(offset, stride, offset > 0), min(inside, most))
   end function patch_elements

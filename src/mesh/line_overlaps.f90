@@ -2,6 +2,7 @@
 !> their nodes. Lines of a halved model continue on the other side of the cut by their images.
 module line_overlaps
   use kinds, only: wp
+  use roundings, only: rounding
   implicit none
   private
   public :: line_overlap_t, node_bounds, overlaps_of, unfolded
@@ -18,8 +19,6 @@ module line_overlaps
 
   !> Part of a cell's side that belongs to the nodes at its ends, each: the integral of their quadratic.
   real(wp), parameter :: end_part = 1.0_wp/6.0_wp
-  !> Part of an interval by which rounding may move a bound: far above 1e-16, below any part of a cell.
-  real(wp), parameter :: rounded_off = 1.0e-9_wp
 
 contains
 
@@ -73,7 +72,7 @@ contains
     images = merge(size(others) - 1, 0, halved)
     do i = 1, size(overlaps)
       associate (common => min(bounds(i + 1), whole(2:)) - max(bounds(i), whole(:size(whole) - 1)))
-        numbers = pack([(k, k=1, size(common))], common > rounded_off*(bounds(i + 1) - bounds(i)))
+        numbers = pack([(k, k=1, size(common))], common > rounding*(bounds(i + 1) - bounds(i)))
         overlaps(i)%length = common(numbers)
       end associate
       overlaps(i)%turned = numbers <= images

@@ -3,6 +3,7 @@ module mesh_parameters
   use kinds, only: wp
   use mathematical_constants, only: pi
   use plate_options, only: shear_assumed, mass_consistent
+  use roundings, only: rounding
   implicit none
   private
   public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, has_symmetric_imperfection, initial_deflection, add_lines
@@ -12,9 +13,6 @@ module mesh_parameters
   !> Modelled parts of the plate: all; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 with point symmetry.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
-
-  !> Distance of two lines, over that from the centre, that is none: above 1e-16, below the last digit of a deck.
-  real(wp), parameter :: same_line = 1.0e-9_wp
 
   !> The plate; lengths are of the full plate, also under symmetry.
   type :: plate_t
@@ -69,7 +67,7 @@ contains
 
     if (.not. allocated(lines)) allocate (lines(0))
     do i = 1, size(further)
-      if (any(abs(lines - further(i)) <= same_line*abs(further(i)))) cycle
+      if (any(abs(lines - further(i)) <= rounding*abs(further(i)))) cycle
       place = count(abs(lines) < abs(further(i)) .or. &
                     .not. abs(lines) > abs(further(i)) .and. lines < further(i))
       lines = [lines(:place), further(i), lines(place + 1:)]

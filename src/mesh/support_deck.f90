@@ -8,6 +8,7 @@ module support_deck
   use kinds, only: wp
   use mesh_parameters, only: plate_t, edge_free, is_mirrored, symmetry_point
   use plate_deck, only: plate_group, key_length
+  use roundings, only: rounding
   use support_parameters, only: support_t, max_supports, window_none, window_rectangle, window_circle, bearing_edge, &
                                 bearing_face
   use text, only: to_text
@@ -256,8 +257,6 @@ contains
     real(wp), intent(in) :: points(:, :)
     !> Symmetry of the plate
     integer, intent(in) :: symmetry
-    ! Above round-off, 1e-16, and below the last digit of a deck.
-    real(wp), parameter :: rounding = 1.0e-9_wp
     real(wp) :: arms(2, size(points, 2)), along(2)
 
     arms = points - spread(points(:, 1), 2, size(points, 2))

@@ -1,6 +1,7 @@
 !> Parameters of rigs under the plate in the deck: frames with a window, and clamps at points.
 module support_parameters
   use kinds, only: wp
+  use roundings, only: rounding
   implicit none
   private
   public :: support_t, max_supports
@@ -60,20 +61,20 @@ contains
     class(support_t), intent(in) :: self
     !> Coordinates from the plate's centre
     real(wp), intent(in) :: point(2)
-    real(wp) :: beyond(2), rounding
+    real(wp) :: beyond(2), distance
     logical :: on_end, on_side
 
     carries = .false.
     if (self%shape == window_none) return
-    rounding = 1.0e-9_wp*maxval([self%window, self%radius])
+    distance = rounding*maxval([self%window, self%radius])
     if (self%shape == window_circle) then
-      carries = self%bearing == bearing_face .and. self%beyond(point) >= -rounding
+      carries = self%bearing == bearing_face .and. self%beyond(point) >= -distance
       return
     end if
     beyond = abs(point) - self%window/2
-    on_end = self%bearing == bearing_face .or. all(beyond <= rounding)
-    on_side = self%sides == bearing_face .or. beyond(2) <= rounding
-    carries = beyond(1) >= -rounding .and. on_end .or. &
-              beyond(2) >= -rounding .and. beyond(1) <= rounding .and. on_side
+    on_end = self%bearing == bearing_face .or. all(beyond <= distance)
+    on_side = self%sides == bearing_face .or. beyond(2) <= distance
+    carries = beyond(1) >= -distance .and. on_end .or. &
+              beyond(2) >= -distance .and. beyond(1) <= distance .and. on_side
   end function carries
 end module support_parameters

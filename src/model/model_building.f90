@@ -14,7 +14,7 @@ module model_building
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
   use delaminated_regions, only: cells_within
-  use face_contact, only: create_contact_law
+  use surface_contact, only: create_contact_law
   use cohesive_laws, only: create_cohesive_law
   use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
   use distributions, only: distribute

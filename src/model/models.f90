@@ -7,7 +7,7 @@ module models
   use cohesive_laws, only: cohesive_law_t
   use contact_areas, only: contact_area_t
   use contact_patches, only: contact_patch_t
-  use face_contact, only: contact_law_t
+  use surface_contact, only: contact_law_t
   use inertia_forces, only: add_inertia_force
   use internal_forces, only: add_internal_force
   use plate_loads, only: loaded_plate_t

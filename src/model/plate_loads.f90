@@ -1,7 +1,7 @@
 !> Loads and supports of the plate at its points: pressure, lines, rigs, constant in a run.
 module plate_loads
   use discretizations, only: discretization_t
-  use face_contact, only: contact_law_t
+  use surface_contact, only: contact_law_t
   use kinds, only: wp
   use placed_lines, only: placed_line_t
   use rig_models, only: rig_model_t

@@ -130,7 +130,7 @@ contains
       if (.not. allocated(error)) &
         call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
       if (.not. allocated(error)) call self%complete_correction(at, error)
-      if (.not. allocated(error)) call new%interfaces%faces%constrain_correction(model, at%correction)
+      if (.not. allocated(error)) call new%interfaces%contact%constrain_correction(model, at%correction)
     end associate
   end subroutine find_correction
 
@@ -193,7 +193,7 @@ contains
     class(static_step_t), intent(in) :: self
     !> The iteration; its state is completed
     type(newton_iteration_t), intent(inout) :: at
-    real(wp) :: sums(6), faces, fracture, heat, damage, excess
+    real(wp) :: sums(6), contact, fracture, heat, damage, excess
     real(wp), allocatable :: change(:, :), loads(:, :), loads_before(:, :)
 
     associate (model => at%model, old => at%old, new => at%new)
@@ -206,9 +206,9 @@ contains
       sums(3) = model%product(change, loads + loads_before)/2
       sums(4:5) = 0
       if (model%has_point_stiffness) then
-        faces = old%interfaces%contact_work(model, old%motion%displacement, change)
-        sums(4) = (faces + new%interfaces%contact_work(model, new%motion%displacement, change))/2
-        sums(5) = faces/2
+        contact = old%interfaces%contact_work(model, old%motion%displacement, change)
+        sums(4) = (contact + new%interfaces%contact_work(model, new%motion%displacement, change))/2
+        sums(5) = contact/2
       end if
       sums(6) = model%product(change, loads - loads_before)/2
       ! After failures of plies or a change of the contact area the previous state is not in equilibrium; the energy

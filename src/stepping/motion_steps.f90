@@ -117,7 +117,7 @@ contains
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
-      trial%interfaces%faces%glued = trial%interfaces%faces%glued .or. model%setup%has_impactor &
+      trial%interfaces%contact%glued = trial%interfaces%contact%glued .or. model%setup%has_impactor &
         .and. trial%impactor%velocity <= 0 .and. trial%force < stepper%now%force
     end associate
   end subroutine complete_trial

@@ -256,7 +256,7 @@ contains
     corrected = .not. allocated(error)
     if (corrected .and. problem%uses_line_search) then
       allocate (stiffness(3, size(at%correction, 2)))
-      call at%new%interfaces%faces%added_stiffness(at%model, at%operator%diagonal, stiffness)
+      call at%new%interfaces%contact%added_stiffness(at%model, at%operator%diagonal, stiffness)
       call at%new%interfaces%rig%add_stiffness(at%model, 0.0_wp, stiffness)
       call search%begin(at%model, at%new%motion%displacement, at%correction, at%residual, at%smooth, stiffness, &
                         at%negative_curvature)

@@ -24,9 +24,9 @@ DECKS = {"chatter": ("verify/chatter.nml", SHORT), "front": ("small/delamination
          "layers": ("small/layers.nml", []), "dent": ("small/dent.nml", []), "cai": ("small/cai_impact.nml", [])}
 # Constant: source, value as it is written there, other values, decks.
 CONSTANTS = {
-    "moving_stiffness": ("delamination/face_contact", "2.0e6_wp", ("2.0e5_wp", "2.0e7_wp"), "chatter front"),
-    "steepest": ("delamination/face_contact", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "penalty"),
-    "open_fraction": ("delamination/face_contact", "1.0e-9_wp", ("1.0e-8_wp", "1.0e-10_wp"), "chatter penalty"),
+    "moving_stiffness": ("delamination/surface_contact", "2.0e6_wp", ("2.0e5_wp", "2.0e7_wp"), "chatter front"),
+    "steepest": ("delamination/surface_contact", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "penalty"),
+    "open_fraction": ("delamination/surface_contact", "1.0e-9_wp", ("1.0e-8_wp", "1.0e-10_wp"), "chatter penalty"),
     "distance_tolerance": ("delamination/front_smoothing", "1.0e-6_wp", ("1.0e-5_wp", "1.0e-7_wp"), "chatter front"),
     "held_stiffness": ("interfaces/contact_and_ties", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "chatter front"),
     "together": ("interfaces/front_growth", "0.95_wp", ("0.9_wp", "0.99_wp"), "chatter front"),

@@ -86,11 +86,11 @@ contains
   end function layered
 
   !> Delaminates all cells of a range of columns and rows whose middle is within a radius of the origin.
-  subroutine release_cells(model, faces, columns, rows, radius)
+  subroutine release_cells(model, contact, columns, rows, radius)
     !> The model
     type(model_t), intent(in) :: model
     !> Delaminated cells
-    type(contact_and_ties_t), intent(inout) :: faces
+    type(contact_and_ties_t), intent(inout) :: contact
     !> Columns and rows, first and last
     integer, intent(in) :: columns(2), rows(2)
     !> The radius
@@ -101,9 +101,9 @@ contains
     do j = rows(1), rows(2)
       do i = columns(1), columns(2)
         nodes = model%mesh%cell_nodes(model%mesh%cell_at(i, j))
-        if (norm2(model%mesh%node_coordinates(:, nodes(5))) < radius) call faces%regions(1)%release([i, j])
+        if (norm2(model%mesh%node_coordinates(:, nodes(5))) < radius) call contact%regions(1)%release([i, j])
       end do
     end do
-    call faces%free_jumps(model)
+    call contact%free_jumps(model)
   end subroutine release_cells
 end module layered_plates

@@ -76,7 +76,7 @@ contains
     integer, intent(in) :: columns(2), rows(2)
     real(wp), intent(in) :: radius
 
-    call release_cells(self%model, self%state%interfaces%faces, columns, rows, radius)
+    call release_cells(self%model, self%state%interfaces%contact, columns, rows, radius)
   end subroutine release
 
   !> Adds a force along a line of nodes across the strip.
@@ -153,7 +153,7 @@ contains
     logical :: converged
 
     rest = new_state(self%model)
-    rest%interfaces%faces = self%state%interfaces%faces
+    rest%interfaces%contact = self%state%interfaces%contact
     rest%plies%stiffness = self%stiffness
     ! Steps take plies over where the deck has them fail, and here none does.
     self%state%plies%stiffness = self%stiffness
@@ -175,7 +175,7 @@ contains
     integer, intent(in) :: method
     type(front_energy_release_t) :: front
 
-    front = release_along_front(self%model, self%stiffness, self%state%interfaces%faces, self%state%motion, 1, method)
+    front = release_along_front(self%model, self%stiffness, self%state%interfaces%contact, self%state%motion, 1, method)
   end function rates
 
   !> Mean rate over the length of the smooth line of a front.

@@ -2,19 +2,19 @@
 !> in closing, and friction on the damaged part of the area under pressure. Without contact the damaged part, with the
 !> damage at the start of the step, has no stiffness in closing, so that tractions have a potential within a step; the
 !> undamaged part acts in both directions, and growing damage releases the energy stored in closing.
-module cohesive_faces
+module cohesive_surfaces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, fraction_growth, grown_damage, &
                              separation_t, stored_energy, undamaged_energy
   use cohesive_tangents, only: operator_stiffness, traction_slopes
-  use face_friction, only: friction_energy, friction_slopes, friction_traction
+  use surface_friction, only: friction_energy, friction_slopes, friction_traction
   use kinds, only: wp
   implicit none
   private
-  public :: cohesive_faces_t
+  public :: cohesive_surfaces_t
 
   !> Law, contact and friction of the surfaces at a point.
-  type :: cohesive_faces_t
+  type :: cohesive_surfaces_t
     !> The cohesive law
     type(cohesive_law_t) :: law
     !> True: contact prevents penetration of damaged surfaces
@@ -36,14 +36,14 @@ module cohesive_faces
     procedure :: diagonal
     !> Friction limit.
     procedure :: friction_limit
-  end type cohesive_faces_t
+  end type cohesive_surfaces_t
 
 contains
 
   !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine traction(self, jumps, old, force, new)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
@@ -64,7 +64,7 @@ contains
   !> Energy per area stored by the jumps.
   pure real(wp) function stored(self, jumps, point)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point with these jumps
@@ -80,7 +80,7 @@ contains
   !> weakened the point, damage at fixed jumps takes no work.
   pure real(wp) function work(self, from, to, old, damage)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening at the start and at the end
     real(wp), intent(in) :: from(3), to(3)
     !> The point at the start
@@ -107,7 +107,7 @@ contains
   !> Energy per area that growing damage takes from closed surfaces without contact, by the trapezoidal rule.
   pure real(wp) function closing_loss(self, from, to, growth)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Opening at the start and at the end
     real(wp), intent(in) :: from, to
     !> Growth of damage
@@ -120,7 +120,7 @@ contains
   !> Derivative of the traction.
   pure function slopes(self, jumps, old)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
@@ -136,7 +136,7 @@ contains
   !> Diagonal for a factored operator, constant within a class of points.
   pure function diagonal(self, jumps, old)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
@@ -156,7 +156,7 @@ contains
   !> Alfano, E. Sacco 2006).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point with these jumps
@@ -169,7 +169,7 @@ contains
   !> Derivatives of the friction traction.
   pure function sticking(self, jumps, old) result(slopes)
     !> The surfaces
-    type(cohesive_faces_t), intent(in) :: self
+    type(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
@@ -183,7 +183,7 @@ contains
   !> Stiffness of closing surfaces: that of the undamaged interface with contact, that of its undamaged part without.
   pure real(wp) function closing_stiffness(self, point) result(stiffness)
     !> The surfaces
-    type(cohesive_faces_t), intent(in) :: self
+    type(cohesive_surfaces_t), intent(in) :: self
     !> The point with its jumps
     type(cohesive_point_t), intent(in) :: point
 
@@ -194,10 +194,10 @@ contains
   !> True if the surfaces are under contact pressure.
   pure logical function is_in_contact(self, jumps)
     !> The surfaces
-    class(cohesive_faces_t), intent(in) :: self
+    class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
 
     is_in_contact = self%closing .and. jumps(3) < 0
   end function is_in_contact
-end module cohesive_faces
+end module cohesive_surfaces

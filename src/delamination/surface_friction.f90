@@ -4,7 +4,7 @@
 !> Engineering 68 (2006) 542-582: the traction is K (s - slip), and jumps s beyond the limit become slip. The limit is
 !> constant in a step, so that the traction has a potential, its derivative is symmetric, and the frictional heat is not
 !> negative, however the pressure changes.
-module face_friction
+module surface_friction
   use kinds, only: wp
   implicit none
   private
@@ -78,4 +78,4 @@ contains
 
     energy = stiffness*sum((jumps - point%slip)**2)/2
   end function friction_energy
-end module face_friction
+end module surface_friction

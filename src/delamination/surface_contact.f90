@@ -8,7 +8,7 @@
 !> Eq. 12 as printed has a kink at gap 0, about which Newton's method oscillates for exponents above 1. Here the slope
 !> of the pressure at gap 0 is the same on both sides, as the paper states ("first-order continuous"): the pressure is
 !> then convex, and Newton's method converges monotonically.
-module face_contact
+module surface_contact
   use delamination_parameters, only: contact_augmented_lagrangian, contact_continuous_penalty, contact_none
   use kinds, only: wp
   implicit none
@@ -181,4 +181,4 @@ contains
     updated = pressure
     if (updated < open_fraction*law%stiffness*gap) updated = 0
   end function updated_multiplier
-end module face_contact
+end module surface_contact
