@@ -125,7 +125,7 @@ contains
       if (now%interfaces%border_reached(zone)) call add(warning_border, zone)
       if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, zone)
     end do
-    if (now%indentation%alpha > thickness) call add(warning_indentation, 0)
+    if (now%indentation%alpha > deepest_indentation(deck)) call add(warning_indentation, 0)
     if (step_errs) call add(warning_steps, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call add(warning_slopes, 0)
@@ -194,6 +194,16 @@ contains
     call record%note_warning(kind, zone, time)
     call append(warnings, warning_text(kind, zone, moment(deck, time), deck))
   end subroutine add_warning
+
+  !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor, which
+  !> is immersed by half there.
+  pure real(wp) function deepest_indentation(deck) result(limit)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    limit = deck%expected%scales%thickness
+    if (deck%impactor%radius > 0) limit = min(limit, deck%impactor%radius)
+  end function deepest_indentation
 
   !> True: only prescribed motions in time load the plate, as in a quasi-static test.
   pure logical function is_slow_motion(deck)

@@ -68,7 +68,7 @@ contains
       text = 'Kinetic energy of motions with scaled inertia exceeds '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
-      text = 'The indentation exceeds the thickness of the laminate since '//at// &
+      text = 'The indentation exceeds the thickness of the laminate or the radius of the impactor since '//at// &
              ': no contact law is valid there; take less energy or a larger radius.'
     case (warning_slopes)
       text = 'The slope of the plate exceeds '//to_text(steepest)//' since '//at// &

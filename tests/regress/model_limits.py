@@ -28,6 +28,9 @@ MODELS = {
     "slope of the plate exceeds": "&impactor mass=2  velocity=14  radius=10e-3 /\n&time end=1e-3  step=10e-6 /\n",
     "indentation exceeds the thickness": "&impactor mass=0.05  velocity=10 /\n&indentation law='hertz'  k=2e6 /\n"
                              "&time end=1e-3  step=10e-6 /\n",
+    # .69 mm at most, less than the thickness.
+    "or the radius of the impactor": "&impactor mass=0.005  velocity=2  radius=1e-4 /\n"
+                                     "&indentation law='hertz'  k=2e6 /\n&time end=0.5e-3  step=5e-6 /\n",
     "integrators have taken more than 1 %": "&impactor mass=0.005  velocity=10  radius=10e-3 /\n"
                                  "&time end=2e-3  step=50e-6  rho_inf=0 /\n",
     # Plies that fail in long load steps.
