@@ -48,6 +48,7 @@ contains
     type(time_stepper_t), intent(in) :: stepper
     !> The log
     type(log_t), intent(inout) :: log
+    character(len=:), allocatable :: shares
     integer :: unknowns, most, least
 
     if (allocated(stepper%explicit)) then
@@ -59,9 +60,11 @@ contains
       call model%communicator%sum(unknowns)
       call model%communicator%maximum(most)
       call model%communicator%minimum(least)
+      shares = ''
+      if (model%communicator%size > 1) shares = ' of '//to_text(least)//' to '//counted(to_text(most), 'element')
       call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
                     counted(to_text(unknowns), 'unknown')//', '//counted(to_text(model%communicator%size), 'rank')// &
-                    ' of '//to_text(least)//' to '//counted(to_text(most), 'element')//'.')
+                    shares//'.')
       call log_stable_step(stepper, log)
       return
     end if
@@ -152,14 +155,14 @@ contains
     associate (now => stepper%now, operator => stepper%operator)
       line = counted(to_text(now%step), 'step')
       if (allocated(stepper%explicit)) then
-        line = line//' by central differences.'
+        line = line//' by central differences'
         return
       end if
       line = line//' ('//to_text(stepper%rejected)//' rejected), '// &
              counted(to_text(now%all_iterations), 'iteration')//' of equilibrium, '// &
              to_text(now%all_force_iterations)//' of the force, '// &
              counted(to_text(operator%factorizations), 'factorization')//', '// &
-             counted(to_text(operator%solves), 'solve')//' by '//operator%solver%package_used()//'.'
+             counted(to_text(operator%solves), 'solve')//' by '//operator%solver%package_used()
     end associate
   end function summary
 end module run_reports

@@ -54,8 +54,8 @@ contains
       if (record%compression%failed) &
         call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
     end if
-    if (struck) call add_impact_energy(lines, deck, now)
     if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
+    if (struck) call add_impact_energy(lines, deck, now)
     call add_energies(lines, now%ledger)
     if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'kinetic energy at most '// &
                                             rounded_text(100*record%scaled_share(), 2)//' % of the total')

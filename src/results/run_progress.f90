@@ -114,7 +114,7 @@ contains
     integer(long) :: now, rate
 
     call system_clock(now, rate)
-    call log%note(text//' after '//duration(real(now - self%started, wp)/rate))
+    call log%note(text//' after '//duration(real(now - self%started, wp)/rate)//'.')
   end subroutine finish
 
   !> Remaining time in words.
