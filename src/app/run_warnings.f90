@@ -195,8 +195,8 @@ contains
     call append(warnings, warning_text(kind, zone, moment(deck, time), deck))
   end subroutine add_warning
 
-  !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor, which
-  !> is immersed by half there.
+  !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor,
+  !> half of which is immersed there.
   pure real(wp) function deepest_indentation(deck) result(limit)
     !> The deck
     type(deck_t), intent(in) :: deck
