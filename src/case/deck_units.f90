@@ -17,13 +17,13 @@ module deck_units
   use kinds, only: wp
   use mathematical_constants, only: pi
   use laminate_deck, only: laminate_group, key_thicknesses
-  use material_deck, only: material_group, key_isotropic, key_along, key_density, key_tension
+  use material_deck, only: material_group, key_isotropic, key_along, key_density, strength_keys, toughness_keys
   use plate_deck, only: plate_group, key_length
   use short_numbers, only: short_text
   use time_deck, only: time_group, key_end
   use unit_systems, only: is_odd, system_named, unit_that_fits, unit_name, systems, quantities, of_pressure, &
                           of_density, of_length, of_thickness, of_radius, of_mass, of_velocity, of_toughness, of_time, &
-                          of_strength
+                          of_strength, of_fibre_toughness
   implicit none
   private
   public :: check_units
@@ -115,7 +115,14 @@ contains
     stiffest = maxloc(deck%materials%e1, 1)
     call add(of_pressure, deck%materials(stiffest)%e1, material_group, &
              merge(key_isotropic, key_along, deck%settings%is_given(material_group, key_isotropic, stiffest)), stiffest)
-    call add(of_strength, deck%materials(stiffest)%xt, material_group, key_tension, stiffest)
+    do i = 1, size(strength_keys)
+      call add(of_strength, deck%settings%real_of(material_group, strength_keys(i), stiffest), material_group, &
+               strength_keys(i), stiffest)
+    end do
+    do i = 1, size(toughness_keys)
+      call add(merge(of_fibre_toughness, of_toughness, i <= 2), deck%materials(stiffest)%toughness(i), material_group, &
+               toughness_keys(i), stiffest)
+    end do
     do i = 1, size(deck%materials)
       call add(of_density, deck%materials(i)%density, material_group, key_density, i)
     end do

@@ -15,7 +15,7 @@ module material_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
-                                         key_density = 'density', key_tension = 'XT', &
+                                         key_density = 'density', &
                                          key_shear_strain = 'shear_failure_strain', &
                                          key_expansion = 'alpha1 alpha2', key_library = 'library'
   !> Row of the group.
@@ -75,6 +75,9 @@ module material_deck
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
       &Transverse thermal expansion.']
+  !> Keys of the strengths.
+  character(len=*), parameter, public :: strength_keys(7) = [character(len=4) :: 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', &
+                                                             'Sm23']
   !> Keys of the fracture energies in the order of the modes.
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 

@@ -8,9 +8,10 @@ module unit_systems
 
   !> Kinds of quantities.
   integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
-                                of_mass = 6, of_velocity = 7, of_toughness = 8, of_time = 9, of_strength = 10
+                                of_mass = 6, of_velocity = 7, of_toughness = 8, of_time = 9, of_strength = 10, &
+                                of_fibre_toughness = 11
   !> Number of kinds of quantities.
-  integer, parameter, public :: quantities = 10
+  integer, parameter, public :: quantities = 11
   !> The systems: metre, kilogram, second; millimetre, tonne, second; millimetre, kilogram, millisecond; millimetre,
   !> millinewton, kilogram, second.
   character(len=*), parameter, public :: systems(4) = [character(len=10) :: 'SI', 'mm-t-s', 'mm-kg-ms', 'mm-mN-kg-s']
@@ -30,7 +31,8 @@ module unit_systems
     real(wp) :: size
   end type unit_t
 
-  !> The units, in order of their kinds. A thickness, a radius and a strength have those of lengths and pressures.
+  !> The units, in order of their kinds. A thickness, a radius and a strength have those of lengths and pressures, the
+  !> fracture energy of fibres that of a toughness.
   type(unit_t), parameter :: units(*) = [ &
     unit_t('Pa', of_pressure, 1.0_wp), unit_t('kPa', of_pressure, 1.0e3_wp), unit_t('MPa', of_pressure, 1.0e6_wp), &
     unit_t('GPa', of_pressure, 1.0e9_wp), &
@@ -50,13 +52,17 @@ module unit_systems
     'kPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'mm/s', 'mN/mm', 's'], [9, 4])
   !> Smallest and largest usual values of plates, impactors and their materials, SI. Moduli reach from foam to diamond,
   !> densities from foam to platinum, velocities from a tool that slips to a fragment, strengths from glue to fibres.
+  !> Fracture energies of fibres are of 10 to 200 kJ/m^2.
   real(wp), parameter :: least(quantities) = &
-    [1.0e7_wp, 10.0_wp, 1.0e-3_wp, 2.0e-5_wp, 1.0e-4_wp, 1.0e-6_wp, 0.05_wp, 5.0_wp, 1.0e-8_wp, 1.0e5_wp]
+    [1.0e7_wp, 10.0_wp, 1.0e-3_wp, 2.0e-5_wp, 1.0e-4_wp, 1.0e-6_wp, 0.05_wp, 5.0_wp, 1.0e-8_wp, 1.0e5_wp, &
+     1.0e3_wp]
   real(wp), parameter :: largest(quantities) = &
-    [1.5e12_wp, 2.5e4_wp, 20.0_wp, 0.5_wp, 1.0_wp, 1.0e5_wp, 1.0e3_wp, 1.0e5_wp, 1.0e2_wp, 2.0e10_wp]
+    [1.5e12_wp, 2.5e4_wp, 20.0_wp, 0.5_wp, 1.0_wp, 1.0e5_wp, 1.0e3_wp, 1.0e5_wp, 1.0e2_wp, 2.0e10_wp, &
+     1.0e6_wp]
   !> Usual values, by which one of several fitting units is chosen.
   real(wp), parameter :: usual(quantities) = &
-    [7.0e10_wp, 1.6e3_wp, 0.2_wp, 2.0e-3_wp, 1.0e-2_wp, 0.3_wp, 3.0_wp, 6.0e2_wp, 1.0e-3_wp, 5.0e8_wp]
+    [7.0e10_wp, 1.6e3_wp, 0.2_wp, 2.0e-3_wp, 1.0e-2_wp, 0.3_wp, 3.0_wp, 6.0e2_wp, 1.0e-3_wp, 5.0e8_wp, &
+     5.0e4_wp]
 
 contains
 
@@ -167,5 +173,6 @@ contains
     dimension_of = quantity
     if (quantity == of_thickness .or. quantity == of_radius) dimension_of = of_length
     if (quantity == of_strength) dimension_of = of_pressure
+    if (quantity == of_fibre_toughness) dimension_of = of_toughness
   end function dimension_of
 end module unit_systems

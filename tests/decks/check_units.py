@@ -31,6 +31,10 @@ ROWS = (
     ('k in N/mm^1.5', 'sun_chen', (('k', 10**-4.5),), 'k', 'N/mm^1.5'),
     ('strengths in MPa', 'peanut_cracked', (('XT', 1e-6), ('XC', 1e-6), ('YT', 1e-6), ('YC', 1e-6), ('S12', 1e-6),
                                             ('Sm23', 1e-6)), 'XT', 'MPa'),
+    ('strength of the matrix in MPa', 'peanut_cracked', (('YT', 1e-6),), 'YT', 'MPa'),
+    ('shear strength in GPa', 'peanut_cracked', (('S12', 1e-9),), 'S12', 'GPa'),
+    ('fracture energies of fibres in N/mm', 'experiments/t700_m21_25J', (('G_ft', 1e-3),), 'G_ft', 'N/mm'),
+    ('fracture energies of the matrix in N/mm', 'experiments/t700_m21_25J', (('G_mc', 1e-3),), 'G_mc', 'N/mm'),
 )
 
 
