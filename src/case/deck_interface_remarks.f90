@@ -102,7 +102,7 @@ contains
 
     longest = 0
     do direction = 1, 2
-      edges = cell_edges(deck%plate, deck%mesh, direction)
+      edges = cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction)
       range = cells_within(edges, zone(direction))
       longest = max(longest, maxval(edges(range(1) + 1:range(2) + 1) - edges(range(1):range(2))))
     end do

@@ -99,7 +99,8 @@ contains
     end associate
   end subroutine check_accuracy
 
-  !> Mean edge of the elements within a distance of the struck point, along the direction where it is longer.
+  !> Mean edge of the elements within a distance of the struck point on both sides, along the direction where it is
+  !> longer.
   pure real(wp) function edge_near(deck, distance) result(edge)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -110,9 +111,14 @@ contains
 
     edge = 0
     do direction = 1, 2
-      edges = cell_edges(deck%plate, deck%mesh, direction)
-      first = minloc(abs(edges), 1)
-      last = max(first + 1, count(edges <= distance))
+      edges = cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction)
+      first = count(edges < -distance) + 1
+      last = count(edges <= distance)
+      if (last <= first) then
+        ! No whole element is as near: those beside the struck point.
+        first = max(1, count(edges < 0))
+        last = min(size(edges), count(edges <= 0) + 1)
+      end if
       edge = max(edge, (edges(last) - edges(first))/(last - first))
     end do
   end function edge_near

@@ -54,8 +54,8 @@ contains
     end if
   end function beyond
 
-  !> True where the frame supports the plate: over its face, or only on the edge of a rectangular window. The edge of a
-  !> circle crosses the sides of cells, and supports no node.
+  !> True where the frame supports the plate: over its face, to which the corners beside it belong, or only on the edge
+  !> of a rectangular window. The edge of a circle crosses the sides of cells, and supports no node.
   pure logical function carries(self, point)
     !> The rig
     class(support_t), intent(in) :: self
@@ -73,8 +73,7 @@ contains
     end if
     beyond = abs(point) - self%window/2
     on_end = self%bearing == bearing_face .or. all(beyond <= distance)
-    on_side = self%sides == bearing_face .or. beyond(2) <= distance
-    carries = beyond(1) >= -distance .and. on_end .or. &
-              beyond(2) >= -distance .and. beyond(1) <= distance .and. on_side
+    on_side = self%sides == bearing_face .or. all(beyond <= distance)
+    carries = beyond(1) >= -distance .and. on_end .or. beyond(2) >= -distance .and. on_side
   end function carries
 end module support_parameters
