@@ -13,6 +13,7 @@ module run_warnings
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
+  use plate_options, only: steepest
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
                          warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
@@ -22,7 +23,7 @@ module run_warnings
   use states, only: state_t
   use text, only: line_t, append
   use time_stepping, only: time_stepper_t
-  use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled, steepest
+  use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled
   implicit none
   private
   public :: give_warnings, give_last_warnings, warnings_given
