@@ -25,8 +25,11 @@ module initial_states
   use logger, only: log_t
   use model_building, only: create_model
   use models, only: model_t
+  use root_output, only: print_lines
+  use run_moments, only: moment
   use states, only: new_state, state_t
-  use text, only: rounded_text, to_text
+  use stepping_parameters, only: end_of_run
+  use text, only: append, line_t, rounded_text, to_text
   use time_stepping, only: time_stepper_t
   implicit none
   private
@@ -48,6 +51,8 @@ contains
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: old
     character(len=:), allocatable :: objection
+    type(line_t) :: remark
+    real(wp) :: time, contact_end
     integer :: i
 
     if (present(lacks)) lacks = .false.
@@ -58,7 +63,10 @@ contains
       if (lacks) return
     end if
     call open_checkpoint(deck%initial%from, communicator, archive, old, error)
-    if (.not. allocated(error)) call archive%close(error)
+    if (allocated(error)) return
+    call archive%item('time', time)
+    call archive%item('record/contact_end', contact_end)
+    call archive%close(error)
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
@@ -70,7 +78,28 @@ contains
       if (is_mapped(deck, old)) old%delaminations(i)%zone = covering_extents(deck, old, i)
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
+    if (time < merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())) then
+      call remark_stopped(deck, moment(old, time), remark)
+      call print_lines(communicator, [remark])
+    end if
   end subroutine fit_initial_state
+
+  !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
+  subroutine remark_stopped(deck, at, remark)
+    !> The deck; the summary of its run repeats the warning
+    type(deck_t), intent(inout) :: deck
+    !> Time of that state, such as time 0.001
+    character(len=*), intent(in) :: at
+    !> The warning, with file and line
+    type(line_t), intent(out) :: remark
+    character(len=:), allocatable :: line, sentence
+
+    line = to_text(deck%settings%line_of_group(initial_state_group))
+    sentence = '&'//initial_state_group//' from = '''//deck%initial%from//''': is of a run that was stopped at '//at// &
+               ', before its end: later damage is missing; complete it first.'
+    remark = line_t(deck%source//':'//line//': warning: '//sentence)
+    call append(deck%remarks, 'line '//line//': '//sentence)
+  end subroutine remark_stopped
 
   !> Refuses the checkpoint of the initial state.
   subroutine refuse(deck, reason, error)

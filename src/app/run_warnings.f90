@@ -2,6 +2,7 @@
 !> the end.
 module run_warnings
   use failed_plies_areas, only: failed_areas
+  use contact_loading, only: loading_indentation
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use energy_checks, only: energy_check_t, energy_created, energy_taken, energy_unaccounted
@@ -12,6 +13,7 @@ module run_warnings
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
+  use plate_options, only: steepest
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use roundings, only: rounding
   use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
@@ -22,7 +24,7 @@ module run_warnings
   use states, only: state_t
   use text, only: line_t, append
   use time_stepping, only: time_stepper_t
-  use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled, steepest
+  use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled
   implicit none
   private
   public :: give_warnings, give_last_warnings, warnings_given
@@ -137,6 +139,7 @@ contains
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (is_perforated(model, now)) call add(warning_hole, 0)
     end if
+    energy_check%largest = max(energy_check%largest, energy_of_weight(deck))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
     call record%note_scaled(now%ledger%scaled, energy_check%largest)
@@ -158,6 +161,18 @@ contains
       call add_warning(deck, kind, zone, now%time, record, warnings)
     end subroutine add
   end subroutine find_warnings
+
+  !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
+  !> of an impactor that is laid on a plate begins with zero, and its first steps are compared with this energy.
+  pure real(wp) function energy_of_weight(deck) result(energy)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    real(wp) :: weight
+
+    energy = 0
+    weight = deck%impactor%mass*deck%impactor%gravity
+    if (deck%has_impactor .and. weight > 0) energy = weight*loading_indentation(deck%indentation, weight)
+  end function energy_of_weight
 
   !> Adds warnings of energies.
   subroutine add_energy_warnings(deck, exceeded, time, record, warnings)

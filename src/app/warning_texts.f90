@@ -6,6 +6,7 @@ module warning_texts
   use run_records, only: warning_border, warning_core, warning_energy, warning_hole, warning_indentation, &
                          warning_kinetic, warning_ledger, warning_loss, warning_scaled, warning_slopes, &
                          warning_steps, warning_torn
+  use plate_options, only: steepest
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit
   use text, only: to_text
@@ -13,8 +14,6 @@ module warning_texts
   private
   public :: warning_text
 
-  !> Largest rotation with a cosine of about 1, as assumed by von Karman's strains: the error is 2 %.
-  real(wp), parameter, public :: steepest = 0.2_wp
   !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
   !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
   !> Shells, 1959, art. 100).

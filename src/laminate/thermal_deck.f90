@@ -5,7 +5,9 @@ module thermal_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
+  use material_deck, only: material_group
   use material_parameters, only: material_t
+  use text, only: rounded_text
   implicit none
   private
   public :: fill_thermal, check_thermal
@@ -19,6 +21,9 @@ module thermal_deck
   character(len=key_row_length), parameter, public :: thermal_rows(*) = [character(len=key_row_length) :: &
     'thermal | delta_T | real | 1 | temperature | required | any | &
       &Temperature less that at which the plies had no stress; negative after cooling from the cure.']
+  !> Largest strain of free plies that is small: at 5 % the logarithmic strain differs by 2.5 %. Polymers of 1e-4 per
+  !> degree reach it at 500 degrees.
+  real(wp), parameter :: largest_strain = 0.05_wp
 
 contains
 
@@ -32,7 +37,7 @@ contains
     change = settings%real_of(thermal_group, 'delta_T')
   end subroutine fill_thermal
 
-  !> A change of temperature without effect.
+  !> A change of temperature without effect, or with strains that are not small, as of expansions in 1e-6 per degree.
   subroutine check_thermal(settings, materials, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -40,9 +45,19 @@ contains
     type(material_t), intent(in) :: materials(:)
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
-    integer :: i
+    real(wp) :: change
+    integer :: i, direction
 
     if (all([(all(abs(materials(i)%expansion) <= 0), i=1, size(materials))])) &
       call remark(settings, problems, thermal_group, '', 'has no effect: no material has alpha1 or alpha2.')
+    change = settings%real_of(thermal_group, 'delta_T')
+    do i = 1, size(materials)
+      do direction = 1, 2
+        if (abs(change*materials(i)%expansion(direction)) > largest_strain) &
+          call remark(settings, problems, material_group, merge('alpha1', 'alpha2', direction == 1), &
+                      'strains free plies by '//rounded_text(change*materials(i)%expansion(direction))// &
+                      ' with delta_T, and the model assumes small strains; it is per degree, as 28e-6.', i)
+      end do
+    end do
   end subroutine check_thermal
 end module thermal_deck

@@ -2,14 +2,16 @@
 module plate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark_idle, report
+  use deck_remarks, only: remark, remark_idle, report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, edge_elastic, symmetry_none, &
                              symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_halved, &
                              has_symmetric_imperfection
-  use text, only: line_t, lower_case, to_text
+  use plate_options, only: steepest
+  use text, only: line_t, lower_case, rounded_text, to_text
   implicit none
   private
   public :: fill_plate, check_plate, check_edges
@@ -82,6 +84,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
+    real(wp) :: slope
     logical :: halved(2)
     integer :: i
 
@@ -101,6 +104,11 @@ contains
       'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or ''none''.')
     if (.not. abs(plate%imperfection) > 0) call remark_idle(settings, problems, plate_group, key_half_waves, &
                                                             'has no effect without '//key_imperfection//'.')
+    slope = 0
+    if (settings%is_known(plate_group, key_length)) &
+      slope = abs(plate%imperfection)*pi*maxval(plate%half_waves/plate%length)
+    if (slope > steepest) call remark(settings, problems, plate_group, key_imperfection, 'has a slope of '// &
+                                      rounded_text(slope)//', and the strains assume up to '//to_text(steepest)//'.')
     ! A plate with point symmetry has equal opposite edges.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &

@@ -62,7 +62,9 @@ contains
     call file%check_status(status, name//' could not be made')
     if (file%succeeded()) then
       call h5dwrite_f(dataset, native_type, address, status, memory, space, file%together)
+      ! On one rank HDF5 keeps small data in memory and writes them here, which fails on a full disk.
       call h5dclose_f(dataset, closed)
+      status = min(status, closed)
     end if
     call h5sclose_f(space, closed)
     call h5sclose_f(memory, closed)

@@ -3,11 +3,13 @@ Usage: checkpoint_files.py TRIAL IMPLAM FOLDER
 
 found        without a file the newest complete checkpoint of a folder is read, and results keep the name of the case
 mixed        results of another run are neither continued nor combined with the checkpoint of another
-damaged      a file that is no checkpoint, or incomplete, ends with the exit code of files and a sentence"""
+damaged      a file that is no checkpoint, or incomplete, ends with the exit code of files and a sentence
+full         a disk that is full for one write of a checkpoint ends the run with that code, and leaves no checkpoint"""
 
 import os
 import random
 import sys
+from pathlib import Path
 
 from restart import DAMAGE, IMPACT, SHORT, SINGLE_STEP, copy_run, go_on, main, split_at
 from solver_runs import EXIT_FILES, EXIT_STOPPED, checkpoint_of, history_of, require, run, run_deck, write_deck
@@ -110,7 +112,29 @@ def check_mixed(implam, folder, _):
     require(go_on(implam, alone).read_bytes() == reference, "Alone it does not go on as it was.")
 
 
-TRIALS = {"found": check_found, "mixed": check_mixed, "damaged": check_damaged}
+def check_full(implam, folder, _):
+    """One write fails, anywhere in fields and checkpoint; afterwards there is space again."""
+    library, count = folder / "full.so", folder / "count"
+    deck = write_deck(folder, DAMAGE)
+    source = Path(__file__).resolve().parents[1] / "support/full_disk.c"
+    run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"])
+
+    def run_with(number, code):
+        here = folder / str(number)
+        said = run(["env", f"LD_PRELOAD={library}", f"FULL_AT={number}", f"FULL_COUNT={count}", implam, deck,
+                    "--output", here, *SINGLE_STEP], code)
+        return said, list(here.glob("*_restart.h5"))
+
+    run_with(0, EXIT_STOPPED)
+    writes = int(count.read_text(encoding="utf-8"))
+    require(writes > 100, f"There were only {writes} writes.")
+    for number in random.Random(3).sample(range(1, writes + 1), 12):
+        said, checkpoints = run_with(number, EXIT_FILES)
+        require(not checkpoints, f"Write {number} of {writes} failed, and a checkpoint is left.")
+        print(f"write {number} of {writes}: {one_sentence_of(said, number)}")
+
+
+TRIALS = {"found": check_found, "mixed": check_mixed, "damaged": check_damaged, "full": check_full}
 
 
 if __name__ == "__main__":

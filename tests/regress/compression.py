@@ -11,7 +11,8 @@ buckling the elastic panel in the frame against eigenvalue and postbuckling of C
 bent     the same panel with a stress-free imperfection instead of the pressure
 closing  with cracks that close, also from a checkpoint: energies balance
 coupon   [0]8 fails at XC
-refused  another plate, an unsuitable deck, a file that is no checkpoint: one sentence with both values each"""
+refused  another plate, an unsuitable deck, a file that is no checkpoint: one sentence with both values each; an impact
+         that was stopped before its end: a warning"""
 
 import filecmp
 import json
@@ -24,6 +25,7 @@ from solver_runs import (
     DECKS,
     EXIT_DECK,
     EXIT_FILES,
+    EXIT_STOPPED,
     change_deck,
     read_history,
     require,
@@ -253,6 +255,10 @@ def check_refused(implam, folder, _):
         lines = [line for line in said.splitlines() if "warning:" not in line]
         require(len(lines) == 1 and all(word in lines[0] for word in words), f"{settings}: {said}")
         require(not list(folder.glob(f"{COMPRESSION}_*")), f"{settings}: something was written.")
+    check = [implam, "check", deck_of(folder, COMPRESSION)]
+    require("was stopped at" not in run(check, folder=folder), "A complete impact is called stopped.")
+    run([implam, f"{IMPACT}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
+    require("was stopped at time" in run(check, folder=folder), "An incomplete impact is not warned of.")
 
 
 def southwell(rows):

@@ -32,6 +32,8 @@ SLOW = """&case name='slow' strict=.true. /
 &indentation law='hertz' /
 &time integrator='central_difference' end=1e-3 mass_scaling=10 /
 """
+# Laid on the plate: the energy of the first steps is far below that under the weight.
+LAID = SLOW.replace("travel=1e-4", "mass=0.2 velocity=0 gravity=9.81").replace("end=1e-3", "end=0.1e-3")
 
 
 def warnings_of(implam, folder, history, time):
@@ -65,6 +67,8 @@ def main(implam, folder):
     (slow / "slow.nml").write_text(SLOW, encoding="utf-8")
     printed = run([implam, slow / "slow.nml", "--output", slow])
     require("of the energy" not in printed, "A travel that begins smoothly warns of the energy of its first steps.")
+    (slow / "slow.nml").write_text(LAID, encoding="utf-8")
+    run([implam, slow / "slow.nml", "--output", slow])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """The second deck of a sweep, `then`: a run for each case that begins from the end of the case's first run."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -40,8 +40,20 @@ def following(sweep: Sweep) -> Sweep | None:
     if plan.then is None:
         return None
     text = read_text(plan.then, "the deck")
-    cases = [_second(case, sweep.folder(case), plan.then, text) for case in plan.cases if _has_ended(sweep, case)]
+    cases = [_second(case, checkpoint_in(sweep.folder(case)), plan.then, text)
+             for case in plan.cases if _has_ended(sweep, case)]
     return Sweep(replace(plan, cases=cases, then=None, scatter=None, random=frozenset(), notes=()), sweep.program)
+
+
+def foreseen(sweep: Sweep, then: Path, cases: Sequence[Case]) -> Sweep:
+    """Return the second runs of cases before their first ones, in a folder of their own, so that decks can be checked.
+
+    They begin from checkpoints that do not exist, with which the program does not compare them.
+    """
+    text = read_text(then, "the deck")
+    seconds = [_second(case, sweep.folder(case) / "pending_restart.h5", then, text) for case in cases]
+    output = sweep.plan.output / "second_decks"
+    return Sweep(replace(sweep.plan, output=output, cases=seconds, then=None), sweep.program)
 
 
 def _has_ended(sweep: Sweep, case: Case) -> bool:
@@ -50,8 +62,8 @@ def _has_ended(sweep: Sweep, case: Case) -> bool:
     return record is not None and record.exit_code == EXIT_DONE and checkpoint_in(sweep.folder(case)) is not None
 
 
-def _second(case: Case, folder: Path, then: Path, text: str) -> Case:
-    """Return the second run of a case."""
+def _second(case: Case, checkpoint: Path, then: Path, text: str) -> Case:
+    """Return the second run of a case, which begins from a checkpoint."""
     name = then.name
     text = copy_groups(case.deck, text, SHARED, name)
     paths = {path: value for key, value in case.values.items() if (path := key_path(key))}
@@ -60,7 +72,7 @@ def _second(case: Case, folder: Path, then: Path, text: str) -> Case:
     begun = key_path("initial_state.from")
     if begun is None:
         raise DeckError(f"{name}: no &initial_state.")
-    settings[begun] = deck_value(str(checkpoint_in(folder).absolute()))
+    settings[begun] = deck_value(str(checkpoint.absolute()))
     return Case(case.number, case.values, name, set_keys(text, settings, name), case.repeat)
 
 

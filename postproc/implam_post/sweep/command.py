@@ -5,6 +5,7 @@ import itertools
 import os
 import re
 import shlex
+import shutil
 import sys
 import time
 from collections import Counter
@@ -29,8 +30,8 @@ _SHOWN = 20  # faulty decks reported one by one
 _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
-def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
-    """Let the program check every deck, and report all errors before one is run."""
+def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int, *, warns: bool = True) -> None:
+    """Let the program check every deck, and report all errors, and warnings too, before one is run."""
     with ThreadPoolExecutor(jobs) as pool:
         verdicts = list(pool.map(lambda case: check_deck(sweep.program, sweep.deck(case)), cases))
     faulty = [(case, printed) for case, (sound, printed) in zip(cases, verdicts, strict=True) if not sound]
@@ -39,6 +40,8 @@ def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
     if faulty:
         more = f" (the first {_SHOWN} are listed)" if len(faulty) > _SHOWN else ""
         raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
+    if not warns:
+        return
     warnings = [[found[1] for line in printed if (found := re.match(r".*?: warning: (.*)", line))]
                 for _, printed in verdicts]
     # Warnings that differ in numbers alone are alike: the first one's words stand for all.
@@ -129,6 +132,17 @@ def print_outcomes(sweep: Sweep) -> int:
     return EXIT_USAGE if failed else EXIT_STOPPED if left else EXIT_DONE
 
 
+def _check_second(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
+    """Check the decks of second runs before hours of first ones; their folder is kept if one is faulty."""
+    if sweep.plan.then is None or not cases:
+        return
+    from implam_post.sweep.chain import foreseen
+    second = foreseen(sweep, sweep.plan.then, cases)
+    second.write_decks()
+    check_decks(second, second.open_cases(), jobs, warns=False)
+    shutil.rmtree(second.plan.output)
+
+
 def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     """Write and check the decks, then run or list them."""
     sweep.write_decks()
@@ -138,6 +152,7 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     if options.table:
         return max(_gather(sweep, tables), _work_on_second(sweep, options, tables))
     check_decks(sweep, cases, options.jobs)
+    _check_second(sweep, cases, options.jobs)
     if options.array:
         # In a queue the second runs follow once the first ones have ended.
         is_first = bool(cases) or sweep.plan.then is None

@@ -166,6 +166,18 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((self.called("run"), self.called("check")), (0, 4))
         self.assertEqual([path for path in self.output.rglob("*") if path.suffix not in (".nml", "")], [])
 
+    def test_faults_of_second_decks(self) -> None:
+        """They are reported before the first runs; sound ones leave no decks behind."""
+        deck = self.folder / "cai_compression.nml"
+        arguments = self.arguments('deck = "cai_impact.nml"\nthen = "cai_compression.nml"\n'
+                                   '[grid]\n"impactor.velocity" = [4.0, 5.0]', "--array")
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual((code, (self.output / "second_decks").exists()), (0, False), text)
+        deck.write_text(deck.read_text().replace("&line ", "&lime "))
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual(code, 2, text)
+        self.assertRegex(text, "case 2: .*\n.*&lime: there is no such group(.*\n)*.*decks are faulty; nothing was run")
+
     def test_killed(self) -> None:
         """The sweep alone, all of its processes, all but the runs are killed: the table is as if nothing had been."""
         reference = self.folder / "reference"
