@@ -7,10 +7,12 @@ module deck_line_supports
   use kinds, only: wp
   use line_deck, only: line_group, key_displacement
   use line_loads, only: line_load_t, along_x, along_y
+  use material_parameters, only: largest_strain
   use mesh_parameters, only: is_mirrored, symmetry_point, edge_clamped, edge_elastic, edge_free
   use model_building, only: unrestrained
   use roundings, only: rounding
   use support_parameters, only: support_t, bearing_face, window_none, window_circle
+  use text, only: rounded_text
   implicit none
   private
   public :: check_line_supports, check_in_plane_balance, check_moved_lines
@@ -77,7 +79,7 @@ contains
                 'edge with in_plane = ''fixed''.', 1)
   end subroutine check_in_plane_balance
 
-  !> Reports prescribed deflections of lines where supports constrain the plate.
+  !> Reports prescribed deflections of lines where supports constrain the plate, and strains that are not small.
   subroutine check_moved_lines(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -87,6 +89,12 @@ contains
 
     do line = 1, size(deck%lines)
       associate (l => deck%lines(line), plate => deck%plate)
+        if (l%prescribed .and. l%component <= 2) then
+          if (abs(l%value) > largest_strain*plate%length(l%component)) &
+            call remark(deck%settings, problems, line_group, key_displacement, 'is '// &
+                        rounded_text(100*abs(l%value)/plate%length(l%component))//' % of the plate''s length, and '// &
+                        'the model assumes small strains.', line)
+        end if
         if (.not. (l%prescribed .and. l%component == 3 .and. abs(l%value) > 0)) cycle
         along = merge(1, 2, l%direction == along_x)
         if (any([(resists(deck%supports(i), l, along, plate%length), i=1, size(deck%supports))])) then

@@ -6,7 +6,7 @@ module thermal_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
   use material_deck, only: material_group
-  use material_parameters, only: material_t
+  use material_parameters, only: largest_strain, material_t
   use text, only: rounded_text
   implicit none
   private
@@ -21,9 +21,6 @@ module thermal_deck
   character(len=key_row_length), parameter, public :: thermal_rows(*) = [character(len=key_row_length) :: &
     'thermal | delta_T | real | 1 | temperature | required | any | &
       &Temperature less that at which the plies had no stress; negative after cooling from the cure.']
-  !> Largest strain of free plies that is small: at 5 % the logarithmic strain differs by 2.5 %. Polymers of 1e-4 per
-  !> degree reach it at 500 degrees.
-  real(wp), parameter :: largest_strain = 0.05_wp
 
 contains
 
