@@ -45,13 +45,15 @@ contains
     integer, intent(in) :: cells
     !> Smallest length of the extension, rounded up to cells
     real(wp), intent(in), optional :: least
-    real(wp) :: reach
+    real(wp) :: reach, side
     integer :: range(2), last
 
     last = size(edges) - 1
     range = cells_within(edges, extent)
-    reach = extent/2 + (cells - rounding)*min(edges(range(1) + 1) - edges(range(1)), &
-                                              edges(range(2) + 1) - edges(range(2)))
+    side = edges(range(2) + 1) - edges(range(2))
+    ! A model that begins at the struck point has there its innermost cell.
+    if (edges(1) < -rounding*edges(last + 1)) side = min(side, edges(range(1) + 1) - edges(range(1)))
+    reach = extent/2 + (cells - rounding)*side
     if (present(least)) reach = max(reach, extent/2 + least*(1 - rounding))
     range = [max(1, range(1) - 1), min(last, range(2) + 1)]
     do while (range(1) > 1 .and. edges(range(1)) > -reach)
