@@ -38,9 +38,9 @@ def main(implam, folder):
             history = read_history(run_deck(implam, path))
             lost = max(abs(value) for value in history["energy_error"]) / IMPACT
             taken = max(abs(value) for value in history["energy_algorithmic"]) / IMPACT
-            print(f"{stacking}, {kinematics}, {steps}, {contact}: starts with {history['force'][0]:g} N at a deflection "
-                  f"of {history['deflection'][0]:.2e}, peak {max(history['force']):.0f} N, energy error {lost:.1e}, "
-                  f"algorithmic {taken:.1e}", flush=True)
+            print(f"{stacking}, {kinematics}, {steps}, {contact}: starts with {history['force'][0]:g} N at a "
+                  f"deflection of {history['deflection'][0]:.2e}, peak {max(history['force']):.0f} N, "
+                  f"energy error {lost:.1e}, algorithmic {taken:.1e}", flush=True)
             require(abs(history["deflection"][0]) > 1e-3, "The plate is not deflected before.")
             require(history["force"][0] < FIRST, "It starts inside the plate.")
             require(max(history["force"]) > 2 * FIRST, "It does not strike the plate.")
