@@ -6,6 +6,7 @@ module coarse_runs
   use errors, only: error_t
   use interface_figures, only: interface_figures_t, figures_of
   use kinds, only: wp
+  use layer_switches, only: advance_with_layers
   use model_building, only: create_model
   use models, only: model_t
   use queue_signals, only: stop_signal
@@ -45,6 +46,7 @@ contains
     type(time_stepper_t) :: stepper
     type(error_t), allocatable :: error
     integer :: checks
+    logical :: switched
 
     coarse = coarser_deck(deck)
     call create_model(coarse%setup_t, communicator, model, error)
@@ -53,7 +55,9 @@ contains
     coarse_run%record = new_run_record(model)
     checks = steps_between_checks(coarse%stepping, model%mesh%elements())
     do while (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
-      call stepper%advance(model, end_of_run(coarse%stepping, coarse_run%record%contact_end), error)
+      ! As the run itself: contact areas and adaptive layers follow the state.
+      call advance_with_layers(model, stepper, coarse%linear_solver, &
+                               end_of_run(coarse%stepping, coarse_run%record%contact_end), switched, error)
       if (allocated(error)) exit
       call coarse_run%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
       if (modulo(stepper%now%step, checks) > 0) cycle

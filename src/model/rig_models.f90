@@ -70,7 +70,9 @@ contains
               self%clamps(size(distribution%points)), source=0)
     allocate (self%springs(3, size(distribution%points)), self%clamp_preload(size(distribution%points)), source=0.0_wp)
     do i = 1, size(supports)
-      self%unilateral = self%unilateral .or. supports(i)%shape > 0 .and. supports(i)%unilateral
+      ! The same on every rank, also on those without a point of the rig.
+      self%unilateral = self%unilateral .or. supports(i)%shape > 0 .and. supports(i)%unilateral .or. &
+                        supports(i)%clamp_force > 0
       nodes = pack([(k, k=1, mesh%nodes())], nodes_on_frame(mesh, supports(i)))
       do k = 1, size(nodes)
         point = distribution%local(mesh%first_point(nodes(k)))
@@ -86,7 +88,6 @@ contains
         point = distribution%local(mesh%first_point(nodes(k)))
         if (point == 0) cycle
         if (supports(i)%clamp_force > 0) then
-          self%unilateral = .true.
           self%clamps(point) = i
           self%clamp_preload(point) = self%clamp_preload(point) + supports(i)%clamp_force*clamp_share(mesh)
         else if (supports(i)%clamp_stiffness > 0) then

@@ -183,7 +183,7 @@ contains
   end subroutine count_step
 
   !> Stores the changes of a load step, and chooses the control of the next one: load or dissipated energy, whichever
-  !> advanced by the larger fraction of its total.
+  !> advanced by the larger fraction of its total. The run ends if a step under load control has dissipated all of it.
   pure subroutine record_path(self, old, dissipation)
     !> State at the end of the step
     class(state_t), intent(inout) :: self
@@ -197,6 +197,7 @@ contains
     self%path%force_change = self%force - old%force
     self%path%dissipated = self%ledger%delamination - old%ledger%delamination
     self%path%by_dissipation = self%path%dissipated > dissipation*self%path%factor_change
+    if (self%ledger%delamination >= dissipation) self%time = 1
   end subroutine record_path
 
   !> Saves or loads the state.

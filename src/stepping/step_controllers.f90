@@ -277,7 +277,8 @@ contains
     if (damage_lag < stepping%controls%allowed_damage_lag) self%target = min(2*self%target, stepping%time%step_max)
   end subroutine limit_by_ply_damage
 
-  !> Halves the step after a rejected one.
+  !> Halves the step after a rejected one. Pending doublings are cancelled: with them the next trial would have the
+  !> length that was rejected.
   pure subroutine reject(self, step)
     !> The controller
     class(step_controller_t), intent(inout) :: self
@@ -285,6 +286,7 @@ contains
     real(wp), intent(in) :: step
 
     self%target = step/(2*self%part)
+    call reset_errors(self)
   end subroutine reject
 
   !> True if the operator should be factorized again before a step: by the paper's rule, or once the additional

@@ -298,6 +298,24 @@ def check_errors(implam, folder, _):
         estimate = found["fast"]["estimated_errors"][figure]
         print(f"{figure}: {off:.3g} off, estimate {estimate:.3g} of {found['finer'][figure]:.4g}")
         require(off <= 2 * estimate, f"{figure} is {off} off, the estimate was {estimate}.")
+    check_coarse_run(implam, folder)
+
+
+def check_coarse_run(implam, folder):
+    """The coarse run is that of the coarser deck, with an area of contact that follows the nose, too."""
+    blunt = ["plate%length=0.1,0.1", "mesh%patch=4e-3", "impactor%radius=2", "impactor%contact_area='sphere'",
+             "impactor%mass=0.1", "time%end=100e-6"]
+    fine = ["mesh%elements=16,16", "time%step=2e-6", "case%error_estimate=.true."]
+    coarse = ["mesh%elements=8,8", "time%step=4e-6", "case%error_estimate=.false."]
+    found = []
+    for name, settings in (("blunt", fine), ("blunt_coarse", coarse)):
+        deck = write_deck(folder / name, "../sun_chen.nml", [*blunt, *settings])
+        run_deck(implam, deck)
+        found.append(summary_of(deck.parent))
+    third = abs(found[0]["impactor_velocity"] - found[1]["impactor_velocity"]) / 3
+    estimate = found[0]["estimated_errors"]["impactor_velocity"]
+    print(f"estimate {estimate:.6g}, a third of the difference {third:.6g}")
+    require(abs(estimate - third) <= 1e-3 * third, "The coarse run is not that of the coarser deck.")
 
 
 def static_run(implam, folder, starter):
