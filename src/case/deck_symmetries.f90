@@ -3,7 +3,7 @@ module deck_symmetries
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: report, are_clear
-  use delamination_deck, only: key_starter_at
+  use delamination_deck, only: key_starter_at, key_strip
   use delamination_parameters, only: delamination_t, law_front
   use impactor_deck, only: impactor_group, key_at
   use interface_places, only: delamination_group
@@ -26,8 +26,8 @@ module deck_symmetries
   !> Tolerance of zero coupling stiffness, relative to the stiffness it couples: plies that cancel each other leave
   !> 1e-16, and one degree in one of a hundred plies leaves 1e-4.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
-  !> Tolerance of the distance of a clamp from the image of another one, relative to the plate: .1 um in 100 mm,
-  !> below the digits of a deck and above round-off.
+  !> Tolerance of the distance of a clamp from the image of another one, relative to the plate, and of the ends of a
+  !> strip from their images: .1 um in 100 mm, below the digits of a deck and above round-off.
   real(wp), parameter :: same_place = 1.0e-6_wp
 
 contains
@@ -84,8 +84,26 @@ contains
         call report(deck%settings, problems, delamination_group, key_starter_at, &
                     'the starter is not on the lines '// &
                   'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
+      if (strip_is_eccentric(deck%delaminations(i), deck%plate%symmetry) .and. &
+          are_clear(deck%settings, problems, delamination_group, key_strip, deck%delaminations(i)%group)) &
+        call report(deck%settings, problems, delamination_group, key_strip, 'the strip is not its own image under '// &
+                    'symmetry = '//name//'; let it begin as far below 0 as it ends above, or use ''none''.', &
+                    deck%delaminations(i)%group)
     end do
   end subroutine check_starters
+
+  !> True if a starter across the width of its zone has an image beside it.
+  pure logical function strip_is_eccentric(delamination, symmetry) result(is_eccentric)
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> The symmetry
+    integer, intent(in) :: symmetry
+    logical :: halved(2)
+
+    halved = is_halved(symmetry)
+    is_eccentric = halved(1) .and. abs(sum(delamination%starter_strip)) > &
+                   same_place*maxval(abs(delamination%starter_strip))
+  end function strip_is_eccentric
 
   !> True if the centre of a starter is not on a line of symmetry.
   pure logical function starter_is_eccentric(delamination, symmetry)

@@ -39,15 +39,19 @@ contains
     real(wp), contiguous, intent(inout) :: field(:, :)
     real(wp), allocatable :: change(:, :)
     real(wp) :: values(3)
-    integer :: i
+    integer :: i, place
 
     allocate (change, source=field)
-    do i = 1, size(model%lines)
-      associate (line => model%lines(i))
-        if (.not. line%load%prescribed) cycle
-        values = line%load%motion_at(time, model%setup%ramp_time)
-        call line%move_to(values(derivative), change)
-      end associate
+    ! Rotations and upper layers first, as displacements of lower layers contain them.
+    do place = 0, 1 + maxval([0, model%lines%load%layer])
+      do i = 1, size(model%lines)
+        associate (line => model%lines(i))
+          if (.not. line%load%prescribed) cycle
+          if (place /= merge(1 + line%load%layer, 0, line%load%component <= 3)) cycle
+          values = line%load%motion_at(time, model%setup%ramp_time)
+          call line%move_to(values(derivative), change)
+        end associate
+      end do
     end do
     change = change - field
     where (model%fixed(:, model%distribution%points)) change = 0

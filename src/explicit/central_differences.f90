@@ -33,8 +33,8 @@ module central_differences
   !> growth in between: a slope changes by less than velocity times time over element length, far below a hundredth.
   integer, parameter :: steps_between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
-  !> Fraction of that allowance, a squared frequency, below which steps are lengthened again: they are a tenth too short
-  !> at most.
+  !> Fraction of the allowed frequency below which that is lowered again, and of the longest step below which steps are
+  !> lengthened: steps are up to a fifth too short.
   real(wp), parameter :: lengthening_ratio = 0.8_wp
   !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp

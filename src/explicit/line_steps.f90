@@ -37,7 +37,7 @@ module line_steps
 
   !> The lines of a model.
   type :: line_steps_t
-    !> Prescribed components, sorted by point
+    !> Prescribed components, sorted by point and component
     type(prescribed_dof_t), allocatable :: dofs(:)
     !> First prescribed component of each point, (points + 1)
     integer, allocatable, private :: first(:)
@@ -169,25 +169,29 @@ contains
     end do
   end subroutine start_from
 
-  !> Sorts prescribed components by point.
+  !> Sorts prescribed components by point, displacements before rotations: the moment of a line that turns a layer is
+  !> what the forces of displaced lines at the layer's middle leave.
   pure subroutine sort_dofs(self, dofs)
     !> The lines
     class(line_steps_t), intent(inout) :: self
     !> Prescribed components, in any order
     type(prescribed_dof_t), intent(in) :: dofs(:)
-    integer :: order(size(dofs)), i, p
+    integer :: order(size(dofs)), component, i, p
 
     self%first = 1
     do i = 1, size(dofs)
       self%first(dofs(i)%point + 1:) = self%first(dofs(i)%point + 1:) + 1
     end do
     order = 0
-    do i = 1, size(dofs)
-      p = self%first(dofs(i)%point)
-      do while (order(p) > 0)
-        p = p + 1
+    do component = 1, 5
+      do i = 1, size(dofs)
+        if (dofs(i)%component /= component) cycle
+        p = self%first(dofs(i)%point)
+        do while (order(p) > 0)
+          p = p + 1
+        end do
+        order(p) = i
       end do
-      order(p) = i
     end do
     self%dofs = dofs(order)
   end subroutine sort_dofs

@@ -78,7 +78,8 @@ contains
     call communicator%maximum(least)
     pressure = max(0.0_wp, edge_gap*indentation - least - apart)
     parts = [self%area*total_of(communicator, self%under*pressure), total_of(communicator, self%beside*pressure)]
-    weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
+    ! An indentation below the rounding of deflections leaves no pressure.
+    if (sum(parts) > 0) weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
   end function weights
 
   !> Area under pressure in the modelled part. Collective.

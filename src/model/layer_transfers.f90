@@ -9,6 +9,10 @@ module layer_transfers
   private
   public :: layer_transfer_t
 
+  !> Name of the field of permanent shear strains of plies: strain and accumulated magnitude of each. In the axes of
+  !> plies along x or y the strain has the opposite sign in a mirror image.
+  character(len=*), parameter, public :: shear_field = 'ply_failure/permanent_shear'
+
   !> One item of any type, as a table of reals, which represent every integer exactly.
   type :: stored_item_t
     !> Its name
@@ -27,6 +31,8 @@ module layer_transfers
     logical, allocatable :: is_split(:)
     !> Signs of the motion of each point with an image as origin, (5, points)
     real(wp), allocatable :: signs(:, :)
+    !> True for elements whose origin is a mirror image
+    logical, allocatable :: mirrored(:)
     !> The items, the first ones of the list
     type(stored_item_t), allocatable :: kept(:)
     !> Their number
@@ -64,6 +70,7 @@ contains
     self%loading = .true.
     allocate (self%point_origin(new%points()), self%element_origin(new%elements()), self%is_split(new%elements()))
     allocate (self%signs(5, new%points()), source=1.0_wp)
+    allocate (self%mirrored(new%elements()))
     do point = 1, size(self%point_origin)
       place = new%lines_of(new%point_node(point))
       call find_image(old, new, 0, place, turned)
@@ -81,6 +88,7 @@ contains
         origin = old%element_at(place(1) + (place(2) - 1)*old%cells(1), plies(1))
         self%is_split(element) = any(old%element_plies(:, origin) /= plies)
       end associate
+      self%mirrored(element) = turned(1) .neqv. turned(2)
     end do
   end subroutine turn_to
 
@@ -262,6 +270,9 @@ contains
         do i = 1, size(columns)
           if (origins(columns(i)) > 0) value(:, i) = values(:, origins(columns(i)))
           if (rows > 0) value(:rows, i) = self%signs(:rows, columns(i))*value(:rows, i)
+          if (name == shear_field) then
+            if (self%mirrored(columns(i))) value(1::2, i) = -value(1::2, i)
+          end if
         end do
       end associate
     else

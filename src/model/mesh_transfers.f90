@@ -6,7 +6,7 @@
 module mesh_transfers
   use kinds, only: wp
   use lagrange9, only: line_values
-  use layer_transfers, only: layer_transfer_t
+  use layer_transfers, only: layer_transfer_t, shear_field
   use layered_meshes, only: layered_mesh_t
   use line_overlaps, only: line_overlap_t, node_bounds, overlaps_of
   implicit none
@@ -243,6 +243,7 @@ contains
             terms((ply - 1)*rows + 1:ply*rows, n) = &
               saved((ply - 1)*rows + 1:ply*rows, old%element_at(old%cell_at(place(1), place(2)), ply))
           end do
+          if (name == shear_field .and. (turned(1) .neqv. turned(2))) terms(1::2, n) = -terms(1::2, n)
         end do
       end do
     end associate

@@ -54,6 +54,7 @@ contains
         strained = failures%strained_plies(model, ply, ply, element)
         stresses(:, 1, element) = middle_stress(strained(1), elasticity, strains(:6, element), shear)
         stresses(:, 2:3, element) = face_stresses(strained(1), elasticity, strains(:6, element), shear)
+        stresses(1:2, :, element) = stresses(1:2, :, element) + spread(failures%carried_by_cracks(ply, element), 2, 3)
       end associate
     end do
   end function stresses_of_ply

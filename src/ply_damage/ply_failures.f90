@@ -55,6 +55,8 @@ module ply_failures
     procedure :: total_dissipation
     !> Neighbouring plies of an element with their permanent strains.
     procedure :: strained_plies
+    !> Stresses that closed cracks of a ply carry.
+    procedure :: carried_by_cracks
     !> Failed modes and reduced constants of a ply.
     procedure :: failed
     procedure :: elasticity
@@ -230,6 +232,19 @@ contains
     plies = model%plies(first:last)
     if (allocated(self%bands)) plies = self%bands%strained(first, last, element)
   end function strained_plies
+
+  !> Stresses along and across the fibres that closed cracks of a ply of an element carry, uniform over its volume.
+  pure function carried_by_cracks(self, ply, element) result(stresses)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    !> Ply of the laminate, and element of this rank
+    integer, intent(in) :: ply, element
+    !> Negative in compression
+    real(wp) :: stresses(2)
+
+    stresses = 0
+    if (allocated(self%bands)) stresses = self%bands%trial(ply, element)%recovered(:2)
+  end function carried_by_cracks
 
   !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element)
