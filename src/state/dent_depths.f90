@@ -6,6 +6,7 @@ module dent_depths
   use models, only: model_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
+  use roundings, only: rounding
   implicit none
   private
   public :: dent_depth
@@ -56,11 +57,12 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Height at the struck point and slopes along x and y
     real(wp), intent(out) :: plane(3)
-    !> False: there are no cells around the dent
+    !> False: there are no cells around the dent, or they lie on one line, about which the plane may turn
     logical, intent(out) :: is_known
     type(exact_sum_t) :: sums(9)
-    real(wp) :: totals(9), place(2), centred(5), w, area, determinant
+    real(wp) :: totals(9), place(2), centred(5), w, area
     integer :: element, point, i
+    logical :: is_free(2)
 
     associate (mesh => model%mesh)
       do element = 1, size(model%distribution%elements)
@@ -85,20 +87,9 @@ contains
       ! Moments about the centroid of the cells.
       centred = [totals(4) - totals(2)**2, totals(5) - totals(2)*totals(3), totals(6) - totals(3)**2, &
                  totals(8) - totals(2)*totals(7), totals(9) - totals(3)*totals(7)]
-      if (any(mesh%halved .and. .not. mesh%mirrored) .or. all(mesh%mirrored)) then
-        plane = [totals(7), 0.0_wp, 0.0_wp]
-      else if (mesh%mirrored(1)) then
-        plane(3) = centred(5)/centred(3)
-        plane(1) = totals(7) - plane(3)*totals(3)
-      else if (mesh%mirrored(2)) then
-        plane(2) = centred(4)/centred(1)
-        plane(1) = totals(7) - plane(2)*totals(2)
-      else
-        determinant = centred(1)*centred(3) - centred(2)**2
-        plane(2:3) = [centred(3)*centred(4) - centred(2)*centred(5), &
-                      centred(1)*centred(5) - centred(2)*centred(4)]/determinant
-        plane(1) = totals(7) - dot_product(plane(2:3), totals(2:3))
-      end if
+      is_free = .not. (mesh%mirrored .or. any(mesh%halved .and. .not. mesh%mirrored))
+      call fit_slopes(centred, totals(4) + totals(6), is_free, plane(2:3), is_known)
+      plane(1) = totals(7) - dot_product(plane(2:3), totals(2:3))
     end associate
 
   contains
@@ -131,4 +122,35 @@ contains
       end associate
     end function term
   end subroutine find_plane
+
+  !> Slopes of the plane.
+  pure subroutine fit_slopes(moments, square, is_free, slopes, is_known)
+    !> Moments about the centroid over the area: xx, xy, yy, xw, yw
+    real(wp), intent(in) :: moments(5)
+    !> Mean square of the distance of the cells from the struck point
+    real(wp), intent(in) :: square
+    !> True: the surface may be tilted along x, along y; false: symmetry prevents it
+    logical, intent(in) :: is_free(2)
+    !> Along x and y
+    real(wp), intent(out) :: slopes(2)
+    !> False: the moments do not determine them
+    logical, intent(out) :: is_known
+    real(wp) :: determinant
+
+    slopes = 0
+    is_known = .true.
+    associate (xx => moments(1), xy => moments(2), yy => moments(3), xw => moments(4), yw => moments(5))
+      if (all(is_free)) then
+        determinant = xx*yy - xy**2
+        is_known = determinant > rounding*square**2
+        if (is_known) slopes = [yy*xw - xy*yw, xx*yw - xy*xw]/determinant
+      else if (is_free(1)) then
+        is_known = xx > rounding*square
+        if (is_known) slopes(1) = xw/xx
+      else if (is_free(2)) then
+        is_known = yy > rounding*square
+        if (is_known) slopes(2) = yw/yy
+      end if
+    end associate
+  end subroutine fit_slopes
 end module dent_depths
