@@ -79,9 +79,8 @@ contains
     self%factor_is_due = factor_is_due
   end function new_dynamic_step
 
-  !> Predictor. With an exact operator the displacement is kept, which saves element loops. Otherwise the velocity is
-  !> kept: a predictor by the acceleration adds energy where contact is stiff. Closed contacts stay closed, and tied
-  !> jumps keep their values.
+  !> Predictor. An exact operator keeps the displacement, which saves element loops. Otherwise the velocity is kept: an
+  !> acceleration would add energy where contact is stiff. Closed contacts stay closed; tied jumps keep their values.
   subroutine begin(self, at)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
@@ -182,7 +181,6 @@ contains
   end subroutine find_residual
 
   !> Internal forces from the equation of motion, after a correction that solves it to round-off: saves an element loop.
-  !> The strain energy is half their work, which residual stresses do not permit.
   subroutine find_internal_from_motion(self, model, old, new, energy)
     !> The problem
     class(dynamic_step_t), intent(in) :: self
@@ -191,7 +189,7 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end; receives internal and inertia forces
     type(state_t), intent(inout) :: new
-    !> Strain energy of this rank's elements
+    !> Strain energy of this rank's elements: half the work of these forces, without residual stresses
     real(wp), intent(out) :: energy
 
     call model%inertia(new%motion%acceleration, new%motion%inertia)
