@@ -128,7 +128,7 @@ contains
     call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
     self%impact%patch%offset = now%contact%offset
-    call self%impact%patch%gather(model, self%inertia%inverse(7, :))
+    call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
               self%strain(lanes, model%elements%batches), source=0.0_wp)
     self%initial_work = now%ledger%external_work
@@ -245,7 +245,7 @@ contains
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
     call self%circles%prepare(model, self%inertia%inverse(7, :))
-    call self%impact%patch%gather(model, self%inertia%inverse(7, :))
+    call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
     self%prepared = self%steps
   end subroutine prepare

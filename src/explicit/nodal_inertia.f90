@@ -36,6 +36,8 @@ module nodal_inertia
     !> Adds forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: move_dependents
+    !> Inverse inertia of w where each image moves by itself.
+    procedure :: inverse_of_images
   end type nodal_inertia_t
 
 contains
@@ -161,6 +163,23 @@ contains
       inverse(1) = 1/mass(1)
     end if
   end function inverse_block
+
+  !> Inverse inertia of w at each point, as if images of a point moved by themselves: that of their master times their
+  !> number, since images have the same inertia.
+  pure function inverse_of_images(self) result(inverse)
+    !> The inertia
+    class(nodal_inertia_t), intent(in) :: self
+    !> (points)
+    real(wp) :: inverse(size(self%inverse, 2))
+    integer :: images(size(inverse)), i
+
+    images = 1
+    do i = 1, size(self%dependents)
+      images(self%masters(i)) = images(self%masters(i)) + 1
+    end do
+    inverse = images*self%inverse(along_z, :)
+    inverse(self%dependents) = inverse(self%masters)
+  end function inverse_of_images
 
   !> Adds forces on dependent points to those on their masters.
   pure subroutine fold(self, forces)
