@@ -27,7 +27,7 @@ module initial_states
   use models, only: model_t
   use root_output, only: print_lines
   use run_moments, only: moment
-  use states, only: new_state, state_t
+  use states, only: new_state, state_t, time_item
   use stepping_parameters, only: end_of_run
   use text, only: append, line_t, rounded_text, to_text
   use time_stepping, only: time_stepper_t
@@ -64,7 +64,7 @@ contains
     end if
     call open_checkpoint(deck%initial%from, communicator, archive, old, error)
     if (allocated(error)) return
-    call archive%item('time', time)
+    call archive%item(time_item, time)
     call archive%item('record/contact_end', contact_end)
     call archive%close(error)
     if (allocated(error)) return

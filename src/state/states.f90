@@ -16,6 +16,9 @@ module states
   private
   public :: state_t, new_state
 
+  !> Name of the time in checkpoints.
+  character(len=*), parameter, public :: time_item = 'time'
+
   !> State without the large arrays of the plate's motion and plies. It has many components because a rejected step must
   !> change none of them.
   type :: small_state_t
@@ -208,7 +211,7 @@ contains
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
-    call archive%item('time', self%time)
+    call archive%item(time_item, self%time)
     call archive%item('step', self%step)
     call archive%item('load_factor', self%load_factor)
     call self%path%visit(archive, model)
