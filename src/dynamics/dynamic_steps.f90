@@ -20,7 +20,7 @@ module dynamic_steps
   use motion_forces, only: weight_forces, weight_start_forces, find_internal_forces
   implicit none
   private
-  public :: dynamic_step_t, new_dynamic_step
+  public :: dynamic_step_t
 
   !> Interval of steps at which internal forces are computed from the displacement, so that round-off does not
   !> accumulate.
@@ -60,25 +60,6 @@ module dynamic_steps
 
 contains
 
-  !> A step in time.
-  pure function new_dynamic_step(integrator, step, renewal, factor_is_due) result(self)
-    !> Integrator of the plate
-    type(plate_integrator_t), intent(in) :: integrator
-    !> Time step
-    real(wp), intent(in) :: step
-    !> Number of changed ties and contacts at which the operator is factorized again
-    integer, intent(in) :: renewal
-    !> True: the operator is factorized again at the predictor
-    logical, intent(in) :: factor_is_due
-    !> The problem
-    type(dynamic_step_t) :: self
-
-    self%integrator = integrator
-    self%step = step
-    self%renewal = renewal
-    self%factor_is_due = factor_is_due
-  end function new_dynamic_step
-
   !> Predictor. An exact operator keeps the displacement, which saves element loops. Otherwise the velocity is kept: an
   !> acceleration would add energy where contact is stiff. Closed contacts stay closed; tied jumps keep their values.
   subroutine begin(self, at)
@@ -97,7 +78,7 @@ contains
       self%keeps_displacement = self%keeps_velocity &
         .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
       self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
-        .and. .not. (model%map%layered .or. model%setup%has_thermal .or. &
+        .and. .not. (model%map%layered .or. &
         allocated(model%rig%constrained_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
       if (self%skips_elements) self%skips_elements = self%coupling%forces_agree()
       ! Ranks without dependent points choose as the others do.
@@ -189,7 +170,7 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end; receives internal and inertia forces
     type(state_t), intent(inout) :: new
-    !> Strain energy of this rank's elements: half the work of these forces, without residual stresses
+    !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 
     call model%inertia(new%motion%acceleration, new%motion%inertia)
@@ -200,6 +181,11 @@ contains
                                 old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
     energy = model%product(new%motion%displacement, new%motion%internal)/2
+    if (.not. model%setup%has_thermal) return
+    ! Residual stresses store energy that these forces did not: their work is added to that before.
+    energy = model%product(new%motion%displacement - old%motion%displacement, &
+                           new%motion%internal + old%motion%internal)/2
+    if (model%communicator%is_root()) energy = energy + old%ledger%strain/model%mesh%multiplicity
   end subroutine find_internal_from_motion
 
   !> Residual relative to internal, inertia and impact forces.

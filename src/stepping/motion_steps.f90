@@ -1,6 +1,6 @@
 !> Steps in time: trial, error and length.
 module motion_steps
-  use dynamic_steps, only: dynamic_step_t, new_dynamic_step
+  use dynamic_steps, only: dynamic_step_t
   use errors, only: error_t
   use growth_in_steps, only: grow_in_step, grows_by_steps
   use initial_equilibrium, only: find_acceleration
@@ -71,7 +71,8 @@ contains
                                 growth_limit(model, stepping, controller))
       call prepare_operator(stepper, model, stepper%integrator%mass_factor(step), factor_is_due, error)
       if (allocated(error)) return
-      problem = new_dynamic_step(stepper%integrator, step, stepping%adapt%iterations, factor_is_due)
+      problem = dynamic_step_t(integrator=stepper%integrator, step=step, renewal=stepping%adapt%iterations, &
+                               factor_is_due=factor_is_due)
       call solve_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
       if (converged .and. model%map%layered) &
         call grow_in_step(problem, model, stepping%equilibrium, stepper%operator, now, stepper%trial, converged, error)
