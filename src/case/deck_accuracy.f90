@@ -9,7 +9,7 @@ module deck_accuracy
   use impactor_deck, only: impactor_group, key_integrator
   use kinds, only: wp
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, key_grading, fill_mesh
-  use mesh_parameters, only: symmetry_quarter
+  use mesh_parameters, only: is_halved
   use output_deck, only: output_group, key_fields_every
   use elastic_impacts, only: elastic_impact_t
   use setup_elastic_impacts, only: setup_elastic_impact_t, start_elastic_impact, contact_end, largest_step, largest_cell
@@ -25,7 +25,7 @@ module deck_accuracy
   !> Error of the history allowed over that of the peak: 3 % and 1 %, as a small shift in time changes a steep history
   !> by more than its peak (doc/studies/speed.md). Mesh and step get half of both each.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
-  !> Largest number of elements along one direction of the modelled part, twice that for a full plate, with
+  !> Largest number of elements from the plate's centre to an edge, twice that from edge to edge, with
   !> factorizations and without: more take hours. Central differences take .2 us an element and step (`explicit_costs`):
   !> 1e5 steps of 400 x 400 elements are an hour.
   integer, parameter :: max_factored = 100, max_explicit = 400
@@ -193,10 +193,10 @@ contains
     !> Remarks are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: half(2), cell
-    integer :: number(2), parts, max_along
+    integer :: number(2), parts(2), max_along
     type(line_t), allocatable :: words(:)
 
-    parts = merge(1, 2, deck%plate%symmetry == symmetry_quarter)
+    parts = merge(1, 2, is_halved(deck%plate%symmetry))
     max_along = merge(max_explicit, max_factored, deck%has_time .and. is_explicit(deck%stepping))
     half = deck%plate%length/2
     cell = side

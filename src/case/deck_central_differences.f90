@@ -148,10 +148,13 @@ contains
     !> Step of the plate; shortened where the contact decides
     real(wp), intent(inout) :: step
     type(setup_scales_t) :: scales
+    real(wp) :: longest
 
     scales = scales_of(deck%setup_t)
-    if (.not. (scales%contact_time > 0 .and. part_of_rise*scales%contact_time < step)) return
-    step = part_of_rise*scales%contact_time
+    ! Refinements halve this step, too.
+    longest = part_of_rise*scales%contact_time/2**deck%refine
+    if (.not. (longest > 0 .and. longest < step)) return
+    step = longest
     if (deck%stepping%central%longest > 0) step = min(step, deck%stepping%central%longest)
     deck%stepping%central%longest = step
     call append(deck%reasons, 'Steps of '//short_text(step)//': the force of first contact rises within '// &

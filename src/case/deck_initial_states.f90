@@ -10,6 +10,7 @@ module deck_initial_states
   use initial_state_deck, only: initial_state_group
   use interface_places, only: delamination_group
   use kinds, only: wp
+  use laminate_parameters, only: laminate_t, shear_energy
   use line_deck, only: line_group, key_rise
   use material_parameters, only: constant_names, constants_of, constants
   use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
@@ -79,6 +80,8 @@ contains
       objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))
     else if (differ(deck%plate%imperfection, old%plate%imperfection)) then
       objection = both('&plate imperfection', to_text(deck%plate%imperfection), to_text(old%plate%imperfection))
+    else if (abs(deck%plate%imperfection) > 0 .and. any(deck%plate%half_waves /= old%plate%half_waves)) then
+      objection = both('&plate half_waves', integer_list(deck%plate%half_waves), integer_list(old%plate%half_waves))
     else if (deck%plate%symmetry /= old%plate%symmetry .and. deck%plate%symmetry /= symmetry_none) then
       objection = both(key_symmetry, part_name(deck%plate%symmetry), part_name(old%plate%symmetry))// &
                   '; allowed: the same, or ''none'''
@@ -140,8 +143,20 @@ contains
                          to_text(there(i)))
         return
       end do
+      if (mine%shear_correction /= its%shear_correction) &
+        objection = both('&laminate shear_correction', correction_name(mine), correction_name(its))
     end associate
   end function laminate_objection
+
+  !> Name of the reduction of the transverse shear stiffness.
+  pure function correction_name(laminate) result(name)
+    !> The laminate
+    type(laminate_t), intent(in) :: laminate
+    !> As the deck has it
+    character(len=:), allocatable :: name
+
+    name = trim(merge('''energy''', '''5/6''   ', laminate%shear_correction == shear_energy))
+  end function correction_name
 
   !> First difference of ply damage.
   function damage_objection(deck, old) result(objection)

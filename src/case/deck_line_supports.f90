@@ -11,7 +11,7 @@ module deck_line_supports
   use mesh_parameters, only: is_mirrored, symmetry_point, edge_clamped, edge_elastic, edge_free
   use model_building, only: unrestrained
   use roundings, only: rounding
-  use support_parameters, only: support_t, bearing_face, window_none, window_circle
+  use support_parameters, only: support_t, bearing_face, window_none, window_circle, window_rectangle
   use text, only: rounded_text
   implicit none
   private
@@ -100,8 +100,9 @@ contains
         if (any([(resists(deck%supports(i), l, along, plate%length), i=1, size(deck%supports))])) then
           call report(deck%settings, problems, line_group, key_displacement, 'the line runs from edge to edge of '// &
                     'the plate, over the frame of &support, which holds the deflection there; load by '// &
-                    '&impactor travel or by a force, or open the window to the edges at its ends.', line)
-        else if (any(holds(plate%edges(2*along - 1:2*along), plate%edge_stiffness(1)))) then
+                    '&impactor travel or by a force.', line)
+        else if (any(holds(plate%edges(2*along - 1:2*along), plate%edge_stiffness(1))) .or. &
+                 any([(holds_ends(deck%supports(i), l, along, plate%length), i=1, size(deck%supports))])) then
           call remark(deck%settings, problems, line_group, key_displacement, 'the line runs to edges that hold the '// &
                     'deflection; its force depends on the size of the cells there.', line)
         end if
@@ -142,6 +143,23 @@ contains
       return
     end if
     if (support%shape == window_circle) half(along) = sqrt(support%radius**2 - line%at**2)
-    resists = half(along) < lengths(along)/2*(1 - rounding)
+    resists = half(along) < lengths(along)/2*(1 - rounding) .or. &
+              support%shape == window_rectangle .and. abs(line%at) >= half(3 - along)*(1 - rounding)
   end function resists
+
+  !> True: a window that reaches the edges of the plate holds it at the ends of a line.
+  pure logical function holds_ends(support, line, along, lengths)
+    !> The rig
+    type(support_t), intent(in) :: support
+    !> The line, which the rig does not resist
+    type(line_load_t), intent(in) :: line
+    !> Direction that it runs along, 1 for x, 2 for y
+    integer, intent(in) :: along
+    !> Lengths of the plate
+    real(wp), intent(in) :: lengths(2)
+
+    holds_ends = support%shape == window_rectangle .and. .not. (support%unilateral .and. line%value < 0) .and. &
+                 support%window(along) >= lengths(along)*(1 - rounding) .and. &
+                 abs(line%at) < support%window(3 - along)/2
+  end function holds_ends
 end module deck_line_supports

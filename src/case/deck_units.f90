@@ -21,9 +21,9 @@ module deck_units
   use plate_deck, only: plate_group, key_length
   use short_numbers, only: short_text
   use time_deck, only: time_group, key_end
-  use unit_systems, only: is_odd, system_named, unit_that_fits, unit_name, systems, quantities, of_pressure, &
-                          of_density, of_length, of_thickness, of_radius, of_mass, of_velocity, of_toughness, of_time, &
-                          of_strength, of_fibre_toughness
+  use unit_systems, only: base_units, is_odd, system_named, unit_that_fits, unit_name, systems, quantities, &
+                          of_pressure, of_density, of_length, of_thickness, of_radius, of_mass, of_velocity, &
+                          of_toughness, of_time, of_strength, of_fibre_toughness
   implicit none
   private
   public :: check_units
@@ -250,15 +250,13 @@ contains
     integer, intent(in) :: system
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
-    real(wp) :: ball, ratio
+    real(wp) :: base(3), ball, ratio
 
     associate (impactor => deck%impactor, law => deck%indentation)
       if (.not. impactor%radius > 0) return
       if (is_odd(of_radius, impactor%radius, system)) return
-      ! kg/m^3 from t/mm^3 or kg/mm^3.
-      ball = impactor%mass/(4*pi/3*impactor%radius**3)
-      if (unit_name(of_mass, system) == 't') ball = ball*1.0e12_wp
-      if (unit_name(of_time, system) == 'ms') ball = ball*1.0e9_wp
+      base = base_units(system)
+      ball = impactor%mass*base(2)/(4*pi/3*(impactor%radius*base(1))**3)
       if (abs(ball/(1000*steel) - 1) < near) then
         call report_unit(deck, problems, quantity_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
                        'is a thousand times a steel ball''s', &

@@ -6,7 +6,7 @@ module deck_rules
   use deck_settings, only: settings_t, setting_t, present_group_t
   use deck_values, only: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
-  use text, only: line_t, append, joined, lower_case, nearest_name, to_text
+  use text, only: line_t, append, joined, lower_case, nearest_name, to_text, words_of
   implicit none
   private
   public :: resolve_settings
@@ -227,6 +227,7 @@ contains
           setting%valid = scan%entries(entry)%valid
           setting%values = scan%entries(entry)%values
           if (setting%valid) call check_values(key, place, scan%entries(entry), vocabulary, setting%valid, problems)
+          if (setting%valid) call take_spelling(key, setting%values)
         else
           setting%line = settings%line_of_group(group, place)
           call take_default(key, setting, problems)
@@ -295,6 +296,25 @@ contains
     if (.not. valid) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
                                          fault//'; '//allowed_sentence(key)//limit//'.', place)
   end subroutine check_values
+
+  !> Writes choices as the table does, as they are accepted in any case. A text with several choices stays as it is.
+  pure subroutine take_spelling(key, values)
+    !> The key as the table has it
+    type(key_entry_t), intent(in) :: key
+    !> Its values, valid
+    type(value_t), intent(inout) :: values(:)
+    type(line_t), allocatable :: choices(:)
+    integer :: i, j
+
+    if (key%kind /= 'choice' .and. key%kind /= 'choice or real') return
+    ! Conditions on a real value follow the choices behind a comma.
+    choices = words_of(key%allowed(:index(key%allowed//',', ',') - 1), ' ')
+    do i = 1, size(values)
+      do j = 1, size(choices)
+        if (lower_case(values(i)%text) == lower_case(choices(j)%text)) values(i)%text = choices(j)%text
+      end do
+    end do
+  end subroutine take_spelling
 
   !> Which of the groups of its name a group is.
   pure integer function place_of(scan, accepted, block) result(place)

@@ -243,9 +243,10 @@ contains
     do i = 1, size(delaminations)
       before = place
       place = delaminations(i)%group
+      ! Strengths by default differ between the interfaces of a group.
+      call check_strengths(settings, delaminations(i), place, problems)
       if (place == before) cycle
       call check_toughness(settings, delaminations(i), place, problems)
-      call check_strengths(settings, delaminations(i), place, problems)
       call remark_idle_keys(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
       if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
@@ -302,7 +303,7 @@ contains
     end if
   end subroutine check_toughness
 
-  !> Checks strengths of a cohesive law, and that all interfaces have the same kind of law.
+  !> Checks the strengths of a cohesive law, and remarks on a front that stands in for one.
   subroutine check_strengths(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -349,7 +350,7 @@ contains
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: objection
 
-    if (.not. settings%is_given(group, 'stiffness', place)) return
+    if (.not. settings%is_given(group, 'stiffness', place) .or. problems%concern(group, 'stiffness', place)) return
     if (.not. are_clear(settings, problems, group, &
                         'G_c G_Ic G_IIc eta strength_opening strength_shear stiffness', place)) return
     associate (d => delamination)

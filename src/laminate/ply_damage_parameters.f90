@@ -20,8 +20,8 @@ module ply_damage_parameters
 
   !> Properties that two runs must have in common for one to start with the damage of the other, by their names in the
   !> deck.
-  character(len=*), parameter, public :: damage_names(*) = [character(len=13) :: 'd', 'e', 'criteria', 'stress', &
-    'in_situ', 'crack_closure']
+  character(len=*), parameter, public :: damage_names(*) = [character(len=15) :: 'd', 'e', 'criteria', 'stress', &
+    'in_situ', 'permanent_shear', 'crack_closure']
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
@@ -51,6 +51,6 @@ contains
     real(wp) :: numbers(size(damage_names))
 
     numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, merge(1, 0, [damage%in_situ, &
-                                                                                   damage%crack_closure])], wp)]
+                                                          damage%permanent_shear, damage%crack_closure])], wp)]
   end function numbers_of
 end module ply_damage_parameters
