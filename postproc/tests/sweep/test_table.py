@@ -11,7 +11,7 @@ import numpy as np
 
 from implam_post.io.units import Axis, axis_of, system_of
 from implam_post.sweep.plan import COLUMNS
-from implam_post.sweep.plots import plot_table, series
+from implam_post.sweep.plots import dimension_of_swept, plot_table, series
 from implam_post.sweep.table import FIGURES, Table, write_csv, write_hdf5
 
 
@@ -68,6 +68,13 @@ class TableTest(unittest.TestCase):
         self.assertEqual([path.name for path in drawn], ["area_energy.png", "scatter.png"])
         self.assertGreater(min(path.stat().st_size for path in drawn), 5000)
         self.assertEqual(plot_table(table({"energy": [1.0]}, [math.nan]), self.folder / "none"), [])
+
+    def test_dimensions_of_swept_values(self) -> None:
+        """Keys have the dimension that they have in their group, other names that of their word."""
+        for name, dimension in (("material.E", "stress"), ("material[2].E", "stress"), ("ply_damage.e", ""),
+                                ("impactor.mass", "mass"), ("e", ""), ("energy", "energy"),
+                                ("delamination[*].G_c", "toughness")):
+            self.assertEqual(dimension_of_swept(name), dimension, name)
 
     def test_units(self) -> None:
         """Systems by the density of carbon/epoxy, and the same blow in each of them."""
