@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from implam_post.io.units import Axis, axis_of, system_of
+from implam_post.io.units import Axis, axis_of, dimension_of, system_of
 from implam_post.sweep.plan import COLUMNS
 from implam_post.sweep.plots import dimension_of_swept, plot_table, series
 from implam_post.sweep.table import FIGURES, Table, write_csv, write_hdf5
@@ -88,6 +88,8 @@ class TableTest(unittest.TestCase):
                 self.assertAlmostEqual(axis.factor * value / shown, 1, delta=1e-12)
                 self.assertEqual(axis.label, f"x [{unit}]")
         self.assertEqual(axis_of("x", "energy", np.array([0.05]), "SI").label, "x [mJ]")
+        self.assertEqual([dimension_of(name) for name in ("residual_strength", "effective_modulus", "contacts")],
+                         ["stress", "stress", ""])
         self.assertEqual(axis_of("x", "force", np.array([2.5e6]), "mm-mN-kg-s"), Axis(1e-6, "x [kN]"))
         self.assertEqual(axis_of("x", "stress", np.array([5e4]), "mm-mN-kg-s").label, "x [MPa]")
         self.assertEqual(axis_of("x", "force", np.array([1.0]), "").label, "x (the deck's units)")
