@@ -175,6 +175,17 @@ class ScatterPlanTest(unittest.TestCase):
         with self.assertRaisesRegex(DeckError, "'im7_8552' is none of the published materials"):
             adopt(deck, "deck.nml", lambda: read_library(TABLE.replace("im7_8552", "other   ")))
 
+    def test_toughness_of_the_only_material(self) -> None:
+        """Interfaces take it where all plies are of one published material, under whatever names."""
+        library = read_library(TABLE)
+        deck = ("&case units='SI' /\n&material name='a' library='im7_8552' /\n"
+                "&material name='b' library='IM7_8552' /\n"
+                "&laminate materials='a', 'b' /\n&delamination below_ply=1 /\n")
+        for text, adopted in ((deck, True), (deck.replace("IM7_8552", "as4_3501_6"), False),
+                              (deck.replace("library='IM7_8552'", "E=70e9"), False)):
+            groups = read_namelist(adopt(text, "deck.nml", lambda: library))
+            self.assertEqual("g_iic" in groups["delamination"][0], adopted, text)
+
     def test_a_part_of_the_plate(self) -> None:
         """Under symmetry the place of impact stays, and a note says so."""
         plan = self.plan("[scatter]\nnumber = 1\n", "symmetry='point'")
