@@ -121,6 +121,8 @@ def _from_deck(deck: Deck) -> Panel:
 
 def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
     """Combine the panel with supports and load of the deck."""
+    if "elastic" in deck.edges():
+        raise deck.error("plate", "edges = 'elastic' can't be written: give other edges, and add springs there.")
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
         raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
     fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"
