@@ -119,6 +119,15 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertIn("window", second["support"][0])
         self.assertEqual(set(plan.names) - {"variant"}, plan.random)
 
+    def test_variants_with_fewer_groups_have_the_same_inputs(self) -> None:
+        """The first of two groups has the factors of an only one."""
+        plan = self.plan("[scatter]\nnumber = 2\n[variants]\na = {}\nb = { drop = ['delamination[2]'] }\n")
+        for one, other in zip(plan.cases[:2], plan.cases[2:], strict=True):
+            first, second = (read_namelist(case.deck)["delamination"] for case in (one, other))
+            self.assertEqual((len(first), len(second)), (2, 1))
+            self.assertEqual(first[0], second[0])
+            self.assertNotEqual(first[0]["g_iic"], first[1]["g_iic"])
+
     def test_some_variants(self) -> None:
         """The first variant and those asked for, with the decks that they have among all; a sentence for others."""
         text = "[variants]\na = {}\nb = { 'impactor.energy' = 5 }\nc = { 'impactor.energy' = 6 }\n"
