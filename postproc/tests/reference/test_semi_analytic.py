@@ -8,6 +8,7 @@ from scipy.signal import fftconvolve
 from implam_post.io.errors import DeckError
 from implam_post.io.history import History
 from implam_post.io.quantities import contact, peak, rebound_velocity, second_peak
+from implam_post.reference.check_impact import notes
 from implam_post.reference.navier import centre_shape, odd_pairs, patch_shape
 from implam_post.reference.semi_analytic import (
     _kernels,
@@ -111,6 +112,13 @@ class ClosedFormTest(unittest.TestCase):
                 self.assertRaisesRegex(DeckError, "the semi-analytic solution", impact_case,
                                        deck(KARAS, ("&impactor ", change)))
         impact_case(deck(KARAS, ("&impactor ", "&impactor at=0, 0 ")))
+
+    def test_what_it_does_not_model(self) -> None:
+        """Large deflection and a contact that spreads are named."""
+        self.assertEqual(notes(deck(KARAS)), [])
+        found = notes(deck(KARAS, ("kinematics='linear'", ""), ("&impactor ", "&impactor contact_area='sphere' ")))
+        self.assertEqual(len(found), 2)
+        self.assertIn("sphere", found[1])
 
     def test_one_pair_of_half_waves(self) -> None:
         """The kernel's response to a steadily growing force is that of three oscillators."""
