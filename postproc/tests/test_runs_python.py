@@ -15,6 +15,7 @@ import numpy as np
 
 import implam_post as implam
 from implam_post.io.units import dimension_of
+from implam_post.plot.curves import AXES
 from tests.program import ROOT, SMALL
 from tests.program import implam as program
 
@@ -68,6 +69,7 @@ class PythonInterfaceTest(unittest.TestCase):
         other = {"-": "", "pressure": "stress", "length/time": "velocity"}
         self.assertEqual({name: dimension_of(name) for name, _ in rows},
                          {name: other.get(unit, unit) for name, unit in rows})
+        self.assertLessEqual(AXES.keys(), {name for name, _ in rows})
 
     def test_fields_have_coordinates(self) -> None:
         """Values and places belong together: clamped edges do not move, the struck point moves most."""

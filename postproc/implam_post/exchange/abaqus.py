@@ -63,7 +63,7 @@ def _material(name: str, state: MaterialState, material: Material) -> Iterator[s
 
 def _orientation_name(angle: float) -> str:
     """Return the name of the axes at an angle."""
-    return "AT_" + f"{angle:g}".replace("-", "MINUS_").replace(".", "_")
+    return "AT_" + f"{angle + 0.0:g}".replace("-", "MINUS_").replace(".", "_")
 
 
 def _orientation(angle: float) -> Iterator[str]:

@@ -22,6 +22,8 @@ def summary(panel: Panel) -> Iterator[str]:
            f"{counted(len(panel.materials()), 'material')}")
     if panel.pressure is not None:
         yield f"uniform pressure on the struck face: {panel.pressure:g}"
+    for group in panel.unwritten:
+        yield f"note: &{group} isn't written: add what it holds or loads."
 
 
 def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]]

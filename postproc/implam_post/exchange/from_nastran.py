@@ -52,7 +52,7 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
     """Return the cards that were read, fields of them that were not, and other cards, with their lines."""
     lines = [card.line for card in bulk.cards]
     if bulk.first_line > 1:
-        yield f"lines 1-{bulk.first_line - 1}: executive and case control, of which SPC counts"
+        yield f"lines 1-{bulk.first_line - 1}: executive and case control, of which SPC, TEMP and WTMASS count"
     yield "taken:"
     for name in TAKEN:
         if there := [card.line for card in bulk.named(name)]:

@@ -74,7 +74,10 @@ def _plain(place: float, thickness: float) -> float:
 
 @dataclass(frozen=True)
 class Panel:
-    """A rectangular panel about the struck point in its cells; lines are those between cells, in ascending order."""
+    """A rectangular panel about its middle in its cells; lines are those between cells, in ascending order.
+
+    `unwritten` names groups of the deck that hold or load the panel and are not exchanged.
+    """
 
     name: str
     plies: Sequence[Ply]
@@ -85,6 +88,7 @@ class Panel:
     in_plane_fixed: bool
     degradation: Degradation
     pressure: float | None = None
+    unwritten: tuple[str, ...] = ()
 
     @property
     def cells(self) -> tuple[int, int]:

@@ -6,13 +6,16 @@ import numpy as np
 
 from implam_post.exchange.degradation import degradation_of
 from implam_post.exchange.panel import Cell, Panel, Stack
-from implam_post.io.deck import Deck, as_number, read_deck, recorded_deck
+from implam_post.exchange.starters import starters_of
+from implam_post.io.deck import Deck, read_deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
 from implam_post.laminate.decks import plies_of
 from implam_post.laminate.sections import Ply
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
+# Groups that hold or load the panel and have no card of their own.
+_UNWRITTEN = ("support", "line")
 
 
 def read_panel(path: Path, time: float | None = None) -> Panel:
@@ -106,47 +109,23 @@ def _from_deck(deck: Deck) -> Panel:
     parts = (1 if part in ("none", "half_y") else 2, 2 if part in ("quarter", "half_y") else 1)
     x, y = (np.linspace(-length / 2, length / 2, factor * int(count) + 1)
             for length, count, factor in zip(lengths, elements, parts, strict=True))
-    starters = _starters(deck, len(plies))
+    starters = starters_of(deck, plies, x, y, IMAGES.get(part, IMAGES["full"]))
     stacks = {}
-    for i, column in enumerate(_in_reach(x)):
-        for j, row in enumerate(_in_reach(y)):
-            delaminated = [ply for ply, side in starters if max(column, row) <= side / 2]
-            ends = [*sorted(delaminated), len(plies)]
+    for i in range(len(x) - 1):
+        for j in range(len(y) - 1):
+            ends = [*sorted({ply for ply, cells in starters if cells[i, j]}), len(plies)]
             stacks[i, j] = tuple(Stack(above + 1, end, (end - above) * (0,))
                                  for above, end in zip([0, *ends], ends, strict=False))
     return _panel(deck, plies, x, y, stacks)
 
 
-def _in_reach(lines: np.ndarray) -> np.ndarray:
-    """Return how far the middle of each cell is from the struck point; 0 for the cells that touch it."""
-    middles = (lines[1:] + lines[:-1]) / 2
-    touching = (lines[1:] >= -1e-9 * lines[-1]) & (lines[:-1] <= 1e-9 * lines[-1])
-    return np.where(touching, 0.0, np.abs(middles))
-
-
-def _starters(deck: Deck, plies: int) -> list[tuple[int, float]]:
-    """Return ply above and side of each starter delamination."""
-    found = []
-    for group in deck.groups.get("delamination", []):
-        where = f"{deck.path.name}: &delamination"
-        named = group.get("below_ply", [0.0])
-        if str(named[0]).lower() in ("all", "between_angles"):
-            angles = [ply.angle for ply in plies_of(deck)]
-            named = [ply for ply in range(1, plies) if (angles[ply] - angles[ply - 1]) % 180]
-        side = np.sqrt(0.0005 * np.prod(deck.lengths()))
-        for value in named:
-            below_ply = as_number(value, f"{where} below_ply")
-            if below_ply not in range(1, plies):
-                raise deck.error("delamination", f"below_ply needs integers from 1 to {plies - 1}.")
-            found.append((int(below_ply), as_number(group.get("starter", [side])[0], f"{where} starter")))
-    return found
-
-
 def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
     """Combine the panel with supports and load of the deck."""
+    if "elastic" in deck.edges():
+        raise deck.error("plate", "edges = 'elastic' can't be written: give other edges, and add springs there.")
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
         raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
     fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
     return Panel(deck.name, plies, x, y, stacks, deck.edges(), fixed, degradation_of(deck),
-                 deck.number("pressure", "value") if uniform else None)
+                 deck.number("pressure", "value") if uniform else None, tuple(filter(deck.has, _UNWRITTEN)))

@@ -38,16 +38,21 @@ def corner_of(run: Run) -> float | None:
 
 
 def resistance(run: Run) -> dict[str, Measured]:
-    """Return what ASTM D7136 requires beyond the summary; NaN where the force never drops, or nothing is damaged."""
+    """Return what ASTM D7136 requires beyond the summary; NaN where the force never drops, or nothing is damaged.
+
+    Energies are those of an impactor that is free: one whose travel is given brings none. Load steps have no time over
+    which a force could be filtered, and no threshold.
+    """
     found: dict[str, Measured] = {}
     history, corner = run.columns, corner_of(run)
     if history is not None and np.any(history["force"]) and "impactor_displacement" in history.columns:
-        turned = damage_resistance.threshold(history, corner) if corner else None
+        turned = damage_resistance.threshold(history, corner) if corner and not history.by_load_steps else None
         force, time, energy = (turned.force, turned.time, turned.energy) if turned else 3 * (math.nan,)
         found |= {"threshold_force": Measured(force, "force"), "threshold_at": Measured(time, "time"),
-                  "energy_to_threshold": Measured(energy, "energy"),
-                  "energy_to_peak": Measured(damage_resistance.energy_to_peak(history), "energy"),
                   "largest_displacement": Measured(float(np.max(history["impactor_displacement"])), "length")}
+        if "energy_impact" in run.summary:
+            found |= {"energy_to_threshold": Measured(energy, "energy"),
+                      "energy_to_peak": Measured(damage_resistance.energy_to_peak(history), "energy")}
     if run.fields is not None and run.fields.snapshots[-1].mesh.interfaces:
         size = damage_resistance.extent(run.fields)
         sizes = dict.fromkeys(("damage_diameter", "damage_length", "damage_width"), 0.0) if size is None else {

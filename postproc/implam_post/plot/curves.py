@@ -14,7 +14,8 @@ from implam_post.plot.style import PictureStyle
 
 # What columns are called on an axis, and their dimensions.
 AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentation": ("indentation", "length"),
-        "deflection": ("deflection of struck point", "length"), "patch_mean": ("deflection of the patch", "length"),
+        "deflection": ("deflection of struck point", "length"),
+        "patch_deflection": ("deflection of the patch", "length"),
         "impactor_displacement": ("displacement of the impactor", "length"),
         "delaminated_area": ("delaminated area", "area"), "projected_area": ("projected area", "area")}
 

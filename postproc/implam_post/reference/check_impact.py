@@ -76,6 +76,8 @@ def notes(deck: Deck) -> list[str]:
     found = []
     if deck.choice("case", "kinematics", ("von_karman", "linear")) != "linear":
         found.append("the deck requires von Karman strains; the semi-analytic plate is linear.")
+    if deck.choice("impactor", "contact_area", ("patch", "sphere")) == "sphere":
+        found.append("the deck's impactor presses as a sphere; the semi-analytic one presses on the patch alone.")
     found += [f"the deck models &{group}; the semi-analytic plate stays undamaged."
               for group in ("ply_damage", "delamination") if deck.has(group)]
     return found

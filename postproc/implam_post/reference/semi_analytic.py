@@ -50,9 +50,14 @@ def impact_case(deck: Deck) -> ImpactCase:
     impactor = impactor_of(deck)
     if set(deck.edges()) != {"simple"}:
         raise deck.error("plate", "the semi-analytic solution needs edges = 'simple' all round.")
-    for group in ("pressure", "static"):
+    for group in ("pressure", "static", "line"):
         if deck.has(group):
-            raise deck.error(group, "the semi-analytic solution knows no load but the impactor.")
+            raise deck.error(group, "the semi-analytic solution knows no load but the impactor, no support but the "
+                                    "edges.")
+    if deck.has("initial_state"):
+        raise deck.error("initial_state", "the semi-analytic solution begins at rest and undamaged.")
+    if any(deck.numbers("impactor", "at")):
+        raise deck.error("impactor", "the semi-analytic solution is that of a plate struck in its middle, at = 0, 0.")
     patch, end = deck.number("mesh", "patch", 0.0), deck.number("time", "end")
     if not 0 < patch <= min(deck.lengths()):
         raise deck.error("mesh", "patch needs a side between zero and that of the plate: under a point load the "

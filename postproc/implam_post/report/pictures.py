@@ -45,7 +45,7 @@ def layup_figure(summary: Mapping[str, Any]) -> Figure:
     for entry in summary.get("interfaces", []):
         height = bottoms[entry["ply_above"] - 1]
         axes.plot([0, 1], [height, height], color="red", linewidth=2)
-        axes.text(1.01, height, "grown" if entry["first_growth"] else "intact", color="red", va="center", fontsize=8)
+        axes.text(1.01, height, "grown" if entry["first_growth"] else "not grown", color="red", va="center", fontsize=8)
     axes.annotate("", (0.5, 0), (0.5, _SPACE), arrowprops={"arrowstyle": "->", "color": "red"})
     axes.set(xlim=(-_SPACE, 1 + _SPACE), ylim=(-1.02, _SPACE))
     axes.axis("off")
@@ -53,7 +53,7 @@ def layup_figure(summary: Mapping[str, Any]) -> Figure:
 
 
 def _fibre(axes: Any, angle: float, height: float, depth: float) -> None:
-    """Draw the direction of the fibres at the left of a ply, as seen from the struck face."""
+    """Draw the direction of the fibres at the left of a ply, x to the right and y up as in the maps."""
     turned, length = np.radians(angle), 0.4 * depth
     axes.plot(np.array([-1, 1]) * 0.03 * np.cos(turned) - _SPACE / 2,
               height + np.array([-1, 1]) * length * np.sin(turned), color="black", linewidth=1)

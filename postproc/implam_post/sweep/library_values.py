@@ -76,7 +76,8 @@ def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
         for key in library[published.lower()]:
             if key not in _TOUGHNESSES:
                 take("material", place, key, library[published.lower()])
-    if len({str(word).lower() for word in deck.values("laminate", "materials")}) == 1 and len(materials) == 1:
+    # Interfaces take the toughness of a material that is the only one of the deck (src/case/deck_library.f90).
+    if len({str(group.get("library", [""])[0]).lower() for group in materials}) == 1:
         for place, group in enumerate(deck.groups.get("delamination", []), start=1):
             for key in () if {"g_c", "g_ic", "g_iic"} & group.keys() else _TOUGHNESSES:
                 take("delamination", place, key, library[named[1].lower()])

@@ -13,13 +13,13 @@ from implam_post.sweep.table import FIGURES, Table
 
 _MAX_SERIES, _MAX_COLUMNS, _LONGEST = 10, 6, 40
 _SCATTERED = ("peak_force", "max_deflection", "absorbed_energy", "delaminated_area", "first_growth_force")
-# What free names and keys of the deck are measured in, and keys alone.
+# What free names and keys are measured in, keys alone, and keys of &material: e of &ply_damage is a fraction.
 _WORDS = {"energy": "energy", "velocity": "velocity", "mass": "mass"}
 _DIMENSIONS = {**_WORDS,
                **dict.fromkeys(("radius", "thicknesses", "ply_thickness", "patch", "cell", "starter"), "length"),
                **dict.fromkeys(("end", "step", "step_max"), "time"),
-               **dict.fromkeys(("g_c", "g_ic", "g_iic"), "toughness"),
-               **dict.fromkeys(("e", "e1", "e2", "g12", "g13", "g23", "xt", "xc", "yt", "yc", "s12"), "stress")}
+               **dict.fromkeys(("g_c", "g_ic", "g_iic"), "toughness")}
+_OF_MATERIAL = dict.fromkeys(("e", "e1", "e2", "g12", "g13", "g23", "xt", "xc", "yt", "yc", "s12"), "stress")
 
 
 def plot_table(table: Table, folder: Path) -> list[Path]:
@@ -106,7 +106,7 @@ def _scatter_one(axes: Axes, table: Table, name: str, values: np.ndarray) -> str
     """Draw numbers against a swept value, or beside each other for values without a number; return the axis' label."""
     numbers = table.numbers(name)
     if numbers is not None:
-        along = axis_of(name, _dimension(name), numbers, table.system)
+        along = axis_of(name, dimension_of_swept(name), numbers, table.system)
         axes.plot(along.factor * numbers, values, "o", markersize=4, alpha=0.7)
         axes.xaxis.set_major_locator(MaxNLocator(5))
         return along.label
@@ -122,9 +122,11 @@ def _varied(table: Table) -> list[str]:
     return [name for name in table.swept if len(set(map(str, table.columns[name]))) > 1]
 
 
-def _dimension(name: str) -> str:
+def dimension_of_swept(name: str) -> str:
     """Return the dimension of a swept name, by its last word."""
     group, _, word = name.lower().rpartition(".")
+    if group.partition("[")[0] == "material" and word in _OF_MATERIAL:
+        return _OF_MATERIAL[word]
     return (_DIMENSIONS if group else _WORDS).get(word, "")
 
 

@@ -126,8 +126,11 @@ class Scatter:
         return set_keys(text, settings, name), drawn
 
     def _values(self, found: Input) -> list[float]:
-        """Return the samples of an input, run by run, which do not depend on the other inputs."""
-        column = found.column.replace("G13 factor", "G12 factor")
+        """Return the samples of an input, run by run, which do not depend on the other inputs.
+
+        The first group of a name has those of an only one, so that a variant which leaves out the second is paired.
+        """
+        column = found.column.replace("G13 factor", "G12 factor").replace("[1].", ".")
         return _drawn(column, found.kind == PLACE, found.variation, self.number, self.seed, self.method)
 
 

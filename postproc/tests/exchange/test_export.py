@@ -146,6 +146,52 @@ class PanelTest(ExportTest):
                                  for stacks in panel.stacks.values()),
                          {((1, 1), (2, 2), (3, 3)): 4, ((1, 1), (2, 3)): 12, ((1, 3),): 20})
 
+    def apart(self, delamination: str, *changes: tuple[str, str]) -> Counter:
+        """Return how many cells of a deck of 6 by 6 are delaminated below each ply."""
+        deck = DECK.replace("&delamination below_ply=2 G_c=1 zone=12,12 starter=2 /", delamination)
+        deck = deck.replace("symmetry='quarter'", "").replace("elements=3, 3", "elements=6, 6")
+        for change in changes:
+            deck = deck.replace(*change)
+        self.keep_deck(deck)
+        panel = read_panel(self.folder / "damaged.nml")
+        return Counter(ply for cell in panel.stacks for ply in panel.delaminated(cell))
+
+    def test_starters_by_law(self) -> None:
+        """A front has one by default, a cohesive interface only that of its key; strengths make it cohesive."""
+        front, cohesive = {2: 4}, {}
+        without = (" YT=46", ""), ("S12=105", "")
+        for keys, changes, expected in (
+                ("", (), cohesive), ("growth='equilibrium'", (), front), ("law='front'", (), front),
+                ("law='cohesive'", (), cohesive), ("law='cohesive' starter=6.1", (), {2: 16}), ("", without, front),
+                ("strength_opening=9 strength_shear=9", without, cohesive), ("strength_shear=9", without, front)):
+            with self.subTest(keys, changes=changes):
+                self.assertEqual(self.apart(f"&delamination below_ply=2 G_c=1 {keys} /", *changes), expected)
+
+    def test_places_of_starters(self) -> None:
+        """A circle, a centre beside the struck point, a plate struck aside, and a strip across the zone."""
+        start = "&delamination below_ply=2 G_c=1 zone=10,8"
+        struck = "&pressure", "&impactor mass=1 velocity=1 radius=1 at=4, 0 /\n&pressure"
+        for keys, changes, expected in (
+                ("starter=6", (), 4), ("starter=7 starter_shape='round'", (), 12), ("starter=4 starter_at=3,-3", (), 1),
+                ("starter=6.1", (struck,), 12), ("starter_strip=-2.1, 4", (), 3 * 4)):
+            with self.subTest(keys):
+                self.assertEqual(self.apart(f"{start} {keys} /", *changes), {2: expected})
+
+    def test_interfaces_by_word(self) -> None:
+        """Interfaces lie where the angle or the material changes."""
+        delamination = "&delamination below_ply='all' G_c=1 zone=12,12 starter=2 /"
+        angles = "angles=45, 0, 90", "angles=90, 90, -90"
+        self.assertEqual(self.apart(delamination, angles), {1: 4, 2: 4})
+        self.assertEqual(self.apart(delamination, angles, ("'metal', ", "'carbon/a', ")), {})
+
+    def test_unwritten_groups(self) -> None:
+        """Frames and lines of the deck are named, as they have no cards."""
+        self.keep_deck(DECK + "&support window=10, 10 /\n&line at=0 displacement=0 /")
+        code, text = self.run_command(to_nastran, self.results)
+        self.assertEqual(code, 0, text)
+        self.assertIn("note: &support isn't written", text)
+        self.assertIn("note: &line isn't written", text)
+
     def test_refused(self) -> None:
         """Results without the state of what the deck models, times outside, what isn't in the deck."""
         with h5py.File(self.results, "a") as file:
@@ -157,7 +203,9 @@ class PanelTest(ExportTest):
         self.assertEqual(self.run_command(to_nastran, self.folder / "none.nml")[0], 4)
         self.assertEqual(self.run_command(to_nastran, self.folder / "damaged.nml", "--time", "1")[0], 1)
         self.assertEqual(self.run_command(to_nastran, self.results, "--time", "7")[0], 1)
-        for change, key in ((("'clamped','clamped'", "'clamped','glued'"), "edges"), (("elements=3, 3", "elements=3"),
+        for change, key in ((("'clamped','clamped'", "'clamped','glued'"), "edges"),
+                            (("'clamped','clamped'", "'elastic','clamped'"), "can't be written"),
+                            (("elements=3, 3", "elements=3"),
                             "elements"), (("below_ply=2", "below_ply=3"), "below_ply"), (("d=100", "d=0.5"), "d must")):
             self.keep_deck(DECK.replace(*change))
             code, text = self.run_command(to_abaqus, self.folder / "damaged.nml")
@@ -343,6 +391,14 @@ class AbaqusTest(ExportTest):
         self.assertIn("*ORIENTATION, NAME=AT_90\n0, 1, 0, -1, 0, 0\n3, 0.", text)
         self.assertIn("1, 36, 1\n*STEP\n*STATIC\n*DLOAD\nSTRUCK, P, 0.25", text)
         self.assertTrue(all(len(line) <= 255 for line in lines))
+
+    def test_orientations(self) -> None:
+        """Each layer has axes of its name, also where an angle is minus nought."""
+        self.keep_deck(DECK.replace("angles=45, 0, 90", "angles=0, -0, 90"))
+        text = "\n".join(abaqus_input(self.panel(), ""))
+        defined, used = (set(re.findall(pattern, text)) for pattern in (r"\*ORIENTATION, NAME=(\w+)", r", (AT_\w+)"))
+        self.assertEqual(defined, {"AT_0", "AT_90"})
+        self.assertEqual(used, defined)
 
     def test_command(self) -> None:
         """It says what it wrote."""

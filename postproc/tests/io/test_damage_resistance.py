@@ -3,13 +3,16 @@
 import math
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
 from implam_post.io.damage_resistance import energy_to_peak, extent, kinds_of_damage, low_pass, threshold
 from implam_post.io.fields import Fields, Mesh, Snapshot, read_fields
 from implam_post.io.history import ENERGIES, History
+from implam_post.io.run_figures import resistance
 from tests.io.test_fields import write_fields
 
 CORNER = 6e3
@@ -50,6 +53,18 @@ class ThresholdTest(unittest.TestCase):
         self.assertAlmostEqual(found.force / force, 1, delta=0.05)
         self.assertAlmostEqual(found.time, 0.8e-3, delta=0.1e-3)
         self.assertAlmostEqual(found.energy / (STIFFNESS * (SPEED * 0.8e-3)**2 / 2), 1, delta=0.06)
+
+    def test_impactors_whose_travel_is_given(self) -> None:
+        """They bring no energy that could be transferred, and load steps have no time to be filtered over."""
+        force = STIFFNESS * SPEED * 0.8e-3
+        fallen = history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2)
+        for summary, by_load_steps, energies, has_threshold in (
+                ({"energy_impact": 25.0}, False, True, True), ({}, False, False, True), ({}, True, False, False)):
+            run = SimpleNamespace(summary=summary, system="SI", fields=None,
+                                  columns=replace(fallen, by_load_steps=by_load_steps))
+            found = resistance(run)
+            self.assertEqual("energy_to_peak" in found and "energy_to_threshold" in found, energies)
+            self.assertEqual(math.isfinite(found["threshold_force"].value), has_threshold)
 
     def test_what_is_no_drop(self) -> None:
         """Vibration without damage, a fall without it, and damage without a fall."""

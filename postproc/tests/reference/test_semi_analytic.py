@@ -5,8 +5,10 @@ import unittest
 import numpy as np
 from scipy.signal import fftconvolve
 
+from implam_post.io.errors import DeckError
 from implam_post.io.history import History
 from implam_post.io.quantities import contact, peak, rebound_velocity, second_peak
+from implam_post.reference.check_impact import notes
 from implam_post.reference.navier import centre_shape, odd_pairs, patch_shape
 from implam_post.reference.semi_analytic import (
     _kernels,
@@ -101,6 +103,22 @@ class ClosedFormTest(unittest.TestCase):
         force = history["force"]
         impulse = np.sum(weight - (force[1:] + force[:-1]) / 2) * history.time[1]
         self.assertAlmostEqual(impulse, momentum, delta=1e-12)
+
+    def test_refused(self) -> None:
+        """No solution stands for a plate struck beside its middle, with a line, or with a state of its own."""
+        for change in ("&impactor at=0.02, 0 ", "&line at=0 displacement=0 /\n&impactor ",
+                       "&initial_state from='a_restart.h5' /\n&impactor "):
+            with self.subTest(change):
+                self.assertRaisesRegex(DeckError, "the semi-analytic solution", impact_case,
+                                       deck(KARAS, ("&impactor ", change)))
+        impact_case(deck(KARAS, ("&impactor ", "&impactor at=0, 0 ")))
+
+    def test_what_it_does_not_model(self) -> None:
+        """Large deflection and a contact that spreads are named."""
+        self.assertEqual(notes(deck(KARAS)), [])
+        found = notes(deck(KARAS, ("kinematics='linear'", ""), ("&impactor ", "&impactor contact_area='sphere' ")))
+        self.assertEqual(len(found), 2)
+        self.assertIn("sphere", found[1])
 
     def test_one_pair_of_half_waves(self) -> None:
         """The kernel's response to a steadily growing force is that of three oscillators."""

@@ -119,6 +119,15 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertIn("window", second["support"][0])
         self.assertEqual(set(plan.names) - {"variant"}, plan.random)
 
+    def test_variants_with_fewer_groups_have_the_same_inputs(self) -> None:
+        """The first of two groups has the factors of an only one."""
+        plan = self.plan("[scatter]\nnumber = 2\n[variants]\na = {}\nb = { drop = ['delamination[2]'] }\n")
+        for one, other in zip(plan.cases[:2], plan.cases[2:], strict=True):
+            first, second = (read_namelist(case.deck)["delamination"] for case in (one, other))
+            self.assertEqual((len(first), len(second)), (2, 1))
+            self.assertEqual(first[0], second[0])
+            self.assertNotEqual(first[0]["g_iic"], first[1]["g_iic"])
+
     def test_some_variants(self) -> None:
         """The first variant and those asked for, with the decks that they have among all; a sentence for others."""
         text = "[variants]\na = {}\nb = { 'impactor.energy' = 5 }\nc = { 'impactor.energy' = 6 }\n"
@@ -174,6 +183,17 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertEqual(adopt(plain, "deck.nml", dict), plain)
         with self.assertRaisesRegex(DeckError, "'im7_8552' is none of the published materials"):
             adopt(deck, "deck.nml", lambda: read_library(TABLE.replace("im7_8552", "other   ")))
+
+    def test_toughness_of_the_only_material(self) -> None:
+        """Interfaces take it where all plies are of one published material, under whatever names."""
+        library = read_library(TABLE)
+        deck = ("&case units='SI' /\n&material name='a' library='im7_8552' /\n"
+                "&material name='b' library='IM7_8552' /\n"
+                "&laminate materials='a', 'b' /\n&delamination below_ply=1 /\n")
+        for text, adopted in ((deck, True), (deck.replace("IM7_8552", "as4_3501_6"), False),
+                              (deck.replace("library='IM7_8552'", "E=70e9"), False)):
+            groups = read_namelist(adopt(text, "deck.nml", lambda: library))
+            self.assertEqual("g_iic" in groups["delamination"][0], adopted, text)
 
     def test_a_part_of_the_plate(self) -> None:
         """Under symmetry the place of impact stays, and a note says so."""

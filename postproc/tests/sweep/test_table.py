@@ -9,9 +9,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from implam_post.io.units import Axis, axis_of, system_of
+from implam_post.io.units import Axis, axis_of, dimension_of, system_of
 from implam_post.sweep.plan import COLUMNS
-from implam_post.sweep.plots import plot_table, series
+from implam_post.sweep.plots import dimension_of_swept, plot_table, series
 from implam_post.sweep.table import FIGURES, Table, write_csv, write_hdf5
 
 
@@ -69,6 +69,13 @@ class TableTest(unittest.TestCase):
         self.assertGreater(min(path.stat().st_size for path in drawn), 5000)
         self.assertEqual(plot_table(table({"energy": [1.0]}, [math.nan]), self.folder / "none"), [])
 
+    def test_dimensions_of_swept_values(self) -> None:
+        """Keys have the dimension that they have in their group, other names that of their word."""
+        for name, dimension in (("material.E", "stress"), ("material[2].E", "stress"), ("ply_damage.e", ""),
+                                ("impactor.mass", "mass"), ("e", ""), ("energy", "energy"),
+                                ("delamination[*].G_c", "toughness")):
+            self.assertEqual(dimension_of_swept(name), dimension, name)
+
     def test_units(self) -> None:
         """Systems by the density of carbon/epoxy, and the same blow in each of them."""
         self.assertEqual([system_of(density) for density in (1580.0, 1.58e-9, 1.58e-6, 1.0, None)],
@@ -81,6 +88,8 @@ class TableTest(unittest.TestCase):
                 self.assertAlmostEqual(axis.factor * value / shown, 1, delta=1e-12)
                 self.assertEqual(axis.label, f"x [{unit}]")
         self.assertEqual(axis_of("x", "energy", np.array([0.05]), "SI").label, "x [mJ]")
+        self.assertEqual([dimension_of(name) for name in ("residual_strength", "effective_modulus", "contacts")],
+                         ["stress", "stress", ""])
         self.assertEqual(axis_of("x", "force", np.array([2.5e6]), "mm-mN-kg-s"), Axis(1e-6, "x [kN]"))
         self.assertEqual(axis_of("x", "stress", np.array([5e4]), "mm-mN-kg-s").label, "x [MPa]")
         self.assertEqual(axis_of("x", "force", np.array([1.0]), "").label, "x (the deck's units)")
