@@ -243,7 +243,6 @@ contains
     do i = 1, size(delaminations)
       before = place
       place = delaminations(i)%group
-      ! Strengths by default differ between the interfaces of a group.
       call check_strengths(settings, delaminations(i), place, problems)
       if (place == before) cycle
       call check_toughness(settings, delaminations(i), place, problems)
@@ -303,7 +302,7 @@ contains
     end if
   end subroutine check_toughness
 
-  !> Checks the strengths of a cohesive law, and remarks on a front that stands in for one.
+  !> Checks the strengths of a cohesive law, by default others for each interface; remarks on a front in its place.
   subroutine check_strengths(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
