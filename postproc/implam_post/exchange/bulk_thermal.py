@@ -25,7 +25,7 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
     """Return the temperatures; None if no ply expands, or none is given."""
     plies = list(plies)
     defaults = list(bulk.named("TEMPD"))
-    cards = _cards_with_reference(bulk, properties, {ply.material.name for ply in plies}, remarks)
+    cards = _cards_with_reference(bulk, properties, {ply.material.name for ply in plies})
     if not any(any(ply.material.expansion) for ply in plies):
         for card in cards:
             remarks.untaken(card, {_TREF[card.name]: "TREF"})
@@ -48,19 +48,12 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
     return Thermal(None, reference if len(references) == 1 and reference else None)
 
 
-def _cards_with_reference(bulk: BulkData, properties: Collection[int], names: Collection[str], remarks: Remarks
-                          ) -> list[BulkCard]:
-    """Return the cards whose TREF counts: those of the laminate, or that of the material of a PSHELL.
-
-    Nastran takes TREF of a PCOMP for all its plies, 0 where it is blank, and none of their materials (Quick Reference
-    Guide, PCOMP, remark 3).
-    """
+def _cards_with_reference(bulk: BulkData, properties: Collection[int], names: Collection[str]) -> list[BulkCard]:
+    """Return the cards whose TREF counts: those of the laminate if they give it, else those of its materials."""
     laminates = [card for card in bulk.named("PCOMP", "PCOMPG") if bulk.integer(card, 1) in properties]
-    materials = [card for card in bulk.named("MAT1", "MAT8") if f"{card.name}_{card.fields.field(1)}" in names]
-    for card in materials if laminates else ():
-        if card.given(_TREF[card.name]):
-            remarks.add(card, "TREF isn't taken: that of the laminate counts for all plies, 0 where it is blank")
-    return laminates or materials
+    if any(card.given(_TREF[card.name]) for card in laminates):
+        return laminates
+    return [card for card in bulk.named("MAT1", "MAT8") if f"{card.name}_{card.fields.field(1)}" in names]
 
 
 def _temperature(bulk: BulkData, cards: Iterable[BulkCard], remarks: Remarks) -> float | None:

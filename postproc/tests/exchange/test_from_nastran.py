@@ -248,8 +248,7 @@ class ReportTest(ImportTest):
 
         self.assertIn("lines 1-4: executive and case control", printed)
         self.assertRegex(printed, rf"GRID     20, lines {first('GRID')}-{first('GRID') + 19}\n")
-        for name, text in (("MAT8", "TREF isn't taken: that of the laminate counts"),
-                           ("PCOMP", "NSM is spread over the plies")):
+        for name, text in (("MAT8", "TREF isn't taken, as it differs"), ("PCOMP", "NSM is spread over the plies")):
             self.assertIn(f"{name}, line {first(name)}: {text}", printed)
         untaken = printed[printed.index("not taken:"):]
         self.assertRegex(untaken, r"PARAM    2, lines 5-7\n")
