@@ -57,11 +57,11 @@ class ThresholdTest(unittest.TestCase):
     def test_impactors_whose_travel_is_given(self) -> None:
         """They bring no energy that could be transferred, and load steps have no time to be filtered over."""
         force = STIFFNESS * SPEED * 0.8e-3
-        fallen = history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2)
+        decreased = history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2)
         for summary, by_load_steps, energies, has_threshold in (
                 ({"energy_impact": 25.0}, False, True, True), ({}, False, False, True), ({}, True, False, False)):
             run = SimpleNamespace(summary=summary, system="SI", fields=None,
-                                  columns=replace(fallen, by_load_steps=by_load_steps))
+                                  columns=replace(decreased, by_load_steps=by_load_steps))
             found = resistance(run)
             self.assertEqual("energy_to_peak" in found and "energy_to_threshold" in found, energies)
             self.assertEqual(math.isfinite(found["threshold_force"].value), has_threshold)
