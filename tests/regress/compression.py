@@ -47,8 +47,8 @@ ROUNDED = 1e-11
 # Finer cells of the compression; areas and energies then, relative, are kept to rounding.
 FINER = ["mesh%elements=14, 22"]
 MAPPED = 1e-12
-# Measured, after impacts whose steps differ by 1.5 %: matrix .4 and 2.6, ply energy .5 and 12 %, first step +2.5 and 2.0 %
-# of fracture, 1.1e-2 and 2e-3 of the energy.
+# Measured, after impacts whose steps differ by 1.5 %: matrix .4 and 2.6, ply energy .5 and 12 %, first step +2.5 and
+# 2.0 % of fracture, 1.1e-2 and 2e-3 of the energy.
 EXTENDED = {"matrix_damage_area": 0.05, "energy_ply_damage": 0.15}
 GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 2e-2, 1e-6
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
