@@ -182,6 +182,7 @@ contains
     real(wp), intent(in) :: event
     !> The state
     type(state_t), intent(inout) :: now
+    real(wp), allocatable :: rates(:, :)
     real(wp) :: step, longest, load_factors(2)
 
     step = self%steps%now
@@ -193,15 +194,17 @@ contains
     load_factors = [now%load_factor, model%setup%load_factor_at(now%time + step)]
     call self%lines%find_rates(model, self%steps, load_factors(2), model%setup%offset_left(now%time + step), &
                                self%motion)
-    call self%change_length(model, now%motion%velocity, -1)
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
-      if (allocated(self%inertia%springs)) &
+      if (allocated(self%inertia%springs)) then
         call self%rigs%add_spring_forces(self%inertia%springs, self%steps, u, v, self%force)
+        rates = v
+      end if
+      call self%change_length(model, v, -1)
       call move_single(self, model, u, v)
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
                        self%force, now%interfaces%cohesive, u, v)
-      if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, u, v)
+      if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, rates, v)
       call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)

@@ -89,20 +89,21 @@ contains
     force = force - springs*(u + steps%now*v)
   end subroutine add_spring_forces
 
-  !> Books the work of springs in a step beyond their stored energy: half the stiffness times the change in the step,
-  !> times the sum of the changes in this and the previous step. The change of the previous step is approximated by that
-  !> of this step, with an error of third order.
-  pure subroutine book_springs(self, springs, steps, u, v)
+  !> Books the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h, the
+  !> sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
+  !> (v_old**2 + v**2)/4), where the change of step length is booked with the force -k (u_old + h v_old).
+  pure subroutine book_springs(self, springs, steps, before, after)
     !> The springs' state
     class(rig_steps_t), intent(inout) :: self
     !> Stiffness, (5, points)
     real(wp), intent(in) :: springs(:, :)
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Unknowns and their rates at the end of the step, (5, points)
-    real(wp), intent(in) :: u(:, :), v(:, :)
+    !> Rates of the unknowns before the step and after it, (5, points)
+    real(wp), intent(in) :: before(:, :), after(:, :)
 
-    self%step_loss = self%step_loss + sum(springs*(steps%now*v)**2, 1)
+    self%step_loss = self%step_loss + steps%now/2*sum(springs*( &
+      steps%now*(before + after)*after - (steps%now - steps%last)/2*(before**2 + after**2)), 1)
   end subroutine book_springs
 
   !> Saves or loads.
