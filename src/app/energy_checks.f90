@@ -21,7 +21,7 @@ module energy_checks
   !> State of the check.
   type :: energy_check_t
     !> Largest energy so far of the impactor, of external work, or of the plate without residual stresses, whose energy
-    !> may be far larger than that of the loads.
+    !> may be far larger than that of the loads. It begins with the energy of the impactor's weight.
     real(wp) :: largest = 0
     !> True: the previous step had created more than the tolerance
     logical, private :: created_before = .false.

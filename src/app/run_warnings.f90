@@ -27,7 +27,7 @@ module run_warnings
   use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled
   implicit none
   private
-  public :: give_warnings, give_last_warnings, warnings_given
+  public :: give_warnings, give_last_warnings, warnings_given, energy_of_weight
 
   !> Fraction of the run after which slow motion is checked: the default rise of a travel, after which the velocity is
   !> constant.
@@ -139,7 +139,6 @@ contains
     if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
       if (is_perforated(model, now)) call add(warning_hole, 0)
     end if
-    energy_check%largest = max(energy_check%largest, energy_of_weight(deck))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
     call record%note_scaled(now%ledger%scaled, energy_check%largest)

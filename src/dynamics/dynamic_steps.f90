@@ -78,11 +78,9 @@ contains
       self%keeps_displacement = self%keeps_velocity &
         .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
       self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
-        .and. .not. (model%map%layered .or. &
+        .and. .not. (model%map%layered .or. operator%numbering%has_dependent_points .or. &
         allocated(model%rig%constrained_by) .or. allocated(model%pressure) .or. size(model%lines) > 0)
       if (self%skips_elements) self%skips_elements = self%coupling%forces_agree()
-      ! Ranks without dependent points choose as the others do.
-      if (self%skips_elements) self%skips_elements = .not. model%communicator%any(any(operator%numbering%master > 0))
       call predict(self, model, old, new)
       if (.not. self%keeps_velocity) call self%complete(at)
       self%uses_element_tangents = .false.
@@ -180,9 +178,7 @@ contains
       call find_internal_forces(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, &
                                 old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
-    energy = model%product(new%motion%displacement, new%motion%internal)/2
-    if (.not. model%setup%has_thermal) return
-    ! Residual stresses store energy that these forces did not: their work is added to that before.
+    ! The work of the step is added to the energy before, which residual stresses store, too.
     energy = model%product(new%motion%displacement - old%motion%displacement, &
                            new%motion%internal + old%motion%internal)/2
     if (model%communicator%is_root()) energy = energy + old%ledger%strain/model%mesh%multiplicity

@@ -22,6 +22,8 @@ module numberings
     integer :: first_row = 0, rows = 0, total = 0
     !> Points that this rank owns
     integer :: owned = 0
+    !> True: some point of the mesh has the motion of a master
+    logical :: has_dependent_points = .false.
     !> Master of each point on this rank, or the point itself if another rank has it; 0: none, (local points)
     integer, allocatable :: master(:)
     !> Signs of its motion, (5, local points)
@@ -72,6 +74,7 @@ contains
     free = fixed
     call find_masters(mesh, master, signs, free, images)
     free = .not. free
+    self%has_dependent_points = any(master > 0)
     do point = 1, size(master)
       if (master(point) > 0) free(:, point) = .false.
     end do
