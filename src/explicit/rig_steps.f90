@@ -89,8 +89,8 @@ contains
     force = force - springs*(u + steps%now*v)
   end subroutine add_spring_forces
 
-  !> Books the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h, the
-  !> sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
+  !> Books the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
+  !> the sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
   !> (v_old**2 + v**2)/4), where the change of step length is booked with the force -k (u_old + h v_old).
   pure subroutine book_springs(self, springs, steps, before, after)
     !> The springs' state
