@@ -57,26 +57,23 @@ contains
     !> Percent bending
     real(wp), intent(in) :: bending
     integer :: i
-    logical :: ended
 
     do i = 1, size(strains)
       if (self%strain < strains(i) .and. strain >= strains(i)) self%stresses(i) = self%stress &
         + (stress - self%stress)*(strains(i) - self%strain)/(strain - self%strain)
     end do
-    ended = self%failed .and. self%strain > strains(1)
     self%strain = strain
     self%stress = stress
-    ! After failure the halves of the plate vibrate, and their force on the ends may exceed the strength. Residual
-    ! vibration of an impact may cause drops as large, but at small strains.
-    if (ended) return
+    ! After failure the halves of the plate vibrate, and their force on the ends may exceed the strength.
+    if (self%failed) return
     if (stress > self%strength) then
       self%strength = stress
       self%at = shown_time(time)
       self%shortening = shortening
       self%bending = bending
-      self%failed = .false.
     else if (stress < failure_ratio*self%strength) then
-      self%failed = .true.
+      ! Residual vibration of an impact may cause drops as large, but at small strains.
+      self%failed = strain > strains(1)
     end if
   end subroutine observe
 
