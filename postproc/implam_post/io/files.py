@@ -48,6 +48,11 @@ def read_text(path: Path, what: str) -> str:
         raise FileError(f"{what} {path} cannot be read: it is no text.") from None
 
 
+def printable(name: str) -> str:
+    """Return a file's name for a line of text: it may hold an end of line, or bytes that are no text."""
+    return "".join(letter if letter.isprintable() else "?" for letter in name)
+
+
 def try_lock(path: Path) -> int | None:
     """Lock a file, made if it isn't there; return its descriptor, or nothing if somebody else has locked it.
 

@@ -80,8 +80,13 @@ SAME = {
     "blanks after commas": re.sub(",", ", ", whole()),
     "blanks before names": in_columns(whole(), lambda line: columns(line if line[0] == "," else f"  {line}")),
     "comments": whole().replace("\n", " $ of the test\n$ another, line\n"),
+    # Half of its Å is the end of a line to some.
+    "letters of a comment": whole(laminate=LAMINATE + "$ of the test in Å,1,.25,0.,YES\n"),
+    "equation with commas": whole(more="DEQATN  1       F(A,B,C,D,E,G,H)=SUM(A,B,C,D,E,G,H)\n"),
     "begin with a comma": whole(head=HEAD.replace("BEGIN BULK", "BEGIN, BULK")),
     "ranges": whole(supports="SPC1,1,123456,1,THRU,5\nSPC1,1,123456,21,THRU,25\nSPC1,1,123456,6,11,16,10,15,20\n"),
+    "sets in two cards": whole(head=HEAD.replace("SPC = 1", "SPC = 9"), more="SPCADD,9,1\nSPCADD,9,2\n",
+                               supports=SUPPORTS.replace("SPC1,1,123456,22", "SPC1,2,123456,22")),
     "pairs": whole(supports="".join(f"SPC,1,{number},123456,0.\n" for number in (
         *range(1, 7), 10, 11, 15, 16, *range(20, 26)))),
     "system of the grids": whole(grids=SYSTEM.replace(",1.,1.,0.", ",1.,0.,0.") + free_grids(system="7")),
@@ -125,6 +130,9 @@ REFUSED = {
     "lost continuation": (in_columns(whole()).replace("PCOMP   1" + " " * 55 + "SYM     ", "PCOMP   1" + " " * 55
                           + "SYM     +A").replace("        1       .25     45.", "+B      1       .25     45."),
                           "11: +B", "no card names"),
+    "long number": (whole(more="GRID,99,,-5.5511151231258-17,0.,0.\n"), "57: GRID", "has more than 16 characters"),
+    "two temperatures": (whole(more="TEMPD,4,20.\nTEMPD,4,30.\n", material=MATERIAL.replace("0.,0.", "0.,3.-5")),
+                         "58: TEMPD", "set 4 has another temperature in line 57"),
     "no BEGIN BULK": (whole(head=HEAD.replace("BEGIN BULK\n", "")), "2: CEND", "no line BEGIN BULK"),
     "include": (whole(more="INCLUDE 'more.bdf'\n"), "57: INCLUDE", "into one file"),
     "include above": (whole(head="INCLUDE 'case.txt'\n" + HEAD), "INCLUDE", "into one file"),
