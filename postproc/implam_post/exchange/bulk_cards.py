@@ -55,6 +55,8 @@ class BulkCard:
         sentence = (lines or [type(error).__name__])[0].rstrip(".")
         if match := re.match(r"invalid literal for int\(\) with base 10: ('.*')$", sentence):
             sentence = f"{match[1]} isn't an integer"
+        if match := re.match(r"field=('.*') is not (\d+) characters long", sentence):
+            sentence = f"{match[1]} has more than {match[2]} characters"
         if isinstance(error, (LookupError, AttributeError, TypeError)):
             sentence = "its fields aren't those of such a card"  # words of Python on pyNastran's inside
         for word, plain in _WORDS:
@@ -127,8 +129,8 @@ class _Splitter:
         self._note(card, line)
 
     def _note(self, card: BulkCard, line: str) -> None:
-        """Note which continuation the line names."""
-        if lost := _beyond_last_field(line):
+        """Note which continuation the line names; a value behind its last field is an error if the card is read."""
+        if card.name in KNOWN and (lost := _beyond_last_field(line)):
             raise card.error(f"{lost} stands behind the last field of a line with commas and would be lost: go on in a "
                              "line of its own.")
         self._left_open = _named_continuation(line)

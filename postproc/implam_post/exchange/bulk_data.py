@@ -13,6 +13,7 @@ from implam_post.io.errors import DeckError, FileError, ImplamError, reason
 
 _BEGIN = re.compile(r"\s*BEGIN(\s+|\s*,\s*)BULK", re.I)
 _CEND = re.compile(r"\s*CEND\b", re.I)
+_LINE_END = re.compile(r"\r\n|\r|\n")
 
 
 class BulkData:
@@ -87,7 +88,8 @@ class BulkData:
 
     def _split(self, text: str) -> None:
         """Find the cards between BEGIN BULK, if there is one, and ENDDATA."""
-        lines = text.splitlines()
+        # Not splitlines: read as latin-1, letters of UTF-8 have bytes at which it splits.
+        lines = _LINE_END.split(text)
         begin = next((number for number, line in enumerate(lines) if _BEGIN.match(line)), -1)
         if begin < 0 and (end := next((number for number, line in enumerate(lines, 1) if _CEND.match(line)), 0)):
             raise DeckError(f"{self.path.name}:{end}: CEND: no line BEGIN BULK follows.")

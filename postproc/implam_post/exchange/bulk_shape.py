@@ -25,8 +25,8 @@ _OTHERS = ("CTRIA3", "CTRIA6", "CTRIAR", "CQUADR", "CQUAD", "CSHEAR", "CHEXA", "
 class Shape:
     """The panel in its own axes: x and y along its edges, the origin in its middle, z from the struck face on.
 
-    Rows of `axes` are these axes in the file's basic system; `places` has x and y of each grid, `angle` is that of the
-    material axis from x, and `turn` is 1 if angles grow from x to y, -1 if the struck face is the last ply's.
+    Rows of `axes` are these axes in the file's basic system; `places` has x and y of each grid, and `turn` is 1 if
+    angles grow from x to y, -1 if the struck face is the last ply's. `quads` are the file's elements.
     """
 
     lengths: tuple[float, float]
@@ -34,9 +34,13 @@ class Shape:
     axes: np.ndarray
     places: dict[int, np.ndarray]
     elements: tuple[int, int]
-    angle: float
     turn: int
-    properties: set[int]
+    quads: Sequence["_Quadrilateral"]
+
+    @property
+    def properties(self) -> set[int]:
+        """Numbers of the properties of the elements."""
+        return {quad.read.pid for quad in self.quads}
 
 
 @dataclass(frozen=True)
@@ -49,9 +53,9 @@ class _Quadrilateral:
     normal: np.ndarray
 
 
-def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck_last: bool, remarks: Remarks) -> Shape:
+def read_shape(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, tuple[BulkCard, Any]],
+               struck_last: bool, remarks: Remarks) -> Shape:
     """Return the rectangle; `struck_last` if the impactor comes from the side of the last ply."""
-    systems = _systems(bulk)
     points = {number: _position(bulk, systems, *grid) for number, grid in grids.items()}
     quads = _quadrilaterals(bulk, points, remarks)
     normal = quads[0].normal
@@ -78,8 +82,7 @@ def read_shape(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], struck
     middle = (low + high) / 2
     return Shape((_plain(lengths[0]), _plain(lengths[1])), axes.T @ middle, axes,
                  {number: (place - middle)[:2] for number, place in local.items()}, _elements(quads, axes, lengths),
-                 _material_angle(bulk, quads, axes, systems), -1 if struck_last else 1,
-                 {quad.read.pid for quad in quads})
+                 -1 if struck_last else 1, quads)
 
 
 def _no_rectangle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndarray, area: float, lengths: np.ndarray
@@ -144,7 +147,7 @@ def _grid_defaults(bulk: BulkData) -> dict[str, tuple[int, Any]]:
     return {"cp": (2, found.cp), "cd": (6, found.cd), "ps": (7, str(found.ps or ""))}
 
 
-def _systems(bulk: BulkData) -> dict[int, Any]:
+def read_systems(bulk: BulkData) -> dict[int, Any]:
     """Return the basic system and those of CORD2R cards, ready to transform."""
     from pyNastran.bdf.bdf import BDF
     model = BDF(debug=None)
@@ -252,14 +255,13 @@ def _elements(quads: Sequence[_Quadrilateral], axes: np.ndarray, lengths: np.nda
     return max(2, -(-cells[0] // share)), max(2, -(-cells[1] // share))
 
 
-def _material_angle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndarray, systems: Mapping[int, Any]
-                    ) -> float:
+def material_angle(bulk: BulkData, systems: Mapping[int, Any], shape: Shape) -> float:
     """Return the angle from x to the material axis, which all elements have to share."""
-    angles = [_angle(bulk, quad, axes, systems) for quad in quads]
-    for quad, angle in zip(quads, angles, strict=True):
+    angles = [_angle(bulk, quad, shape.axes, systems) for quad in shape.quads]
+    for quad, angle in zip(shape.quads, angles, strict=True):
         if abs((angle - angles[0] + 90) % 180 - 90) > 1e-4:
             raise bulk.error(quad.card, f"its material axis is {_plain(angle):g} degrees from x, that of line "
-                                        f"{quads[0].card.line} {_plain(angles[0]):g}: a panel has one laminate.")
+                                        f"{shape.quads[0].card.line} {_plain(angles[0]):g}: a panel has one laminate.")
     return _plain(angles[0])
 
 

@@ -1,6 +1,6 @@
 """Supports of the edges from bulk data: SPC1, SPC and the constraints of GRID."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,8 @@ from implam_post.exchange.remarks import Remarks
 
 EDGES = ("x-min", "x-max", "y-min", "y-max")
 _RIGID_MOTIONS = 3
+# Rotations at edges along y and along x: that along the edge, which a simple support holds, and the other one.
+_ROTATIONS = ((4, 5), (5, 4))
 Held = dict[int, dict[int, BulkCard]]
 
 
@@ -39,7 +41,7 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
     kinds = tuple(_kind(components, number, _card_on(held, on_edges, number), remarks)
                   for number, components in enumerate(common))
     fixed, lines = _in_plane(kinds, in_plane)
-    pins = _pins(bulk, held, on_edges, common, remarks)
+    pins = _pins(bulk, held, on_edges, common, kinds, remarks)
     if pins and (fixed or len(pins) > _RIGID_MOTIONS):
         card, grid = pins[0]
         raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of an entire edge.")
@@ -67,17 +69,17 @@ def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shap
 def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
     """Return the numbers of the sets of supports that count."""
     there = {bulk.integer(card, 1) for card in bulk.named("SPC1", "SPC")}
-    added = {bulk.integer(card, 1): card for card in bulk.named("SPCADD")}
+    added: dict[int, set[int]] = {}
+    for card in bulk.named("SPCADD"):
+        sets = {bulk.integer(card, number) for number in range(2, len(card.fields))}
+        added.setdefault(bulk.integer(card, 1), set()).update(sets)
     wanted = bulk.support_set if chosen is None else chosen
     if wanted is None:
         if len(there) > 1 or added:
             raise bulk.missing(f"there are the sets of supports {', '.join(map(str, sorted(there | set(added))))}: "
                                "choose one by --spc.")
         return there
-    sets = {wanted}
-    if wanted in added:
-        card = added[wanted]
-        sets = {bulk.integer(card, number) for number in range(2, len(card.fields))}
+    sets = added.get(wanted, {wanted})
     if absent := sets - there:
         origin = "of the case control" if chosen is None else "by --spc"
         raise bulk.missing(f"SPC = {wanted} {origin} needs an SPC1 or SPC of set {min(absent)}, which isn't there.")
@@ -158,7 +160,7 @@ def _card_on(held: Held, on_edges: Mapping[int, list[int]], number: int) -> Bulk
 
 def _kind(components: set[int], number: int, card: BulkCard | None, remarks: Remarks) -> str:
     """Return the kind of an edge; a simple support holds the rotation along the edge, a clamp the other one too."""
-    along, about_normal = (4, 5) if number < 2 else (5, 4)
+    along, about_normal = _ROTATIONS[number // 2]
     turns = components & {4, 5}
     if 3 not in components:
         if components and card:
@@ -179,8 +181,8 @@ def _in_plane(kinds: tuple[str, ...], in_plane: list[set[int]]) -> tuple[bool, t
     return False, tuple((number, component) for number in supported for component in sorted(in_plane[number]))
 
 
-def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]], remarks: Remarks
-          ) -> list[tuple[BulkCard, int]]:
+def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]],
+          kinds: Sequence[str], remarks: Remarks) -> list[tuple[BulkCard, int]]:
     """Return card and grid of in-plane constraints beyond the edges; corners must have those of their edges."""
     pins = []
     for grid, edges in on_edges.items():
@@ -195,6 +197,8 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
         if missing:
             remarks.edge(" and ".join(EDGES[number] for number in edges),
                          f"the corner grid {grid} turns freely in the file, Implam holds it as its edges")
+        # Implam's supports hold the rotation along the edge, whether or not the file does.
+        expected |= {_ROTATIONS[number // 2][0] for number in edges if kinds[number] != "free"}
         for component, card in there.items():
             if component in expected:
                 continue

@@ -62,7 +62,9 @@ def _temperature(bulk: BulkData, cards: Iterable[BulkCard], remarks: Remarks) ->
     for card in cards:
         for number in range(1, len(card.fields), 2):
             if card.fields.field(number) is not None:
-                found[bulk.integer(card, number)] = card, bulk.real(card, number + 1)
+                group, value = bulk.integer(card, number), bulk.real(card, number + 1)
+                if found.setdefault(group, (card, value))[1] != value:
+                    raise bulk.error(card, f"set {group} has another temperature in line {found[group][0].line}.")
     chosen = bulk.temperature_set
     if chosen is None and len(found) == 1 and bulk.first_line == 1:
         chosen = next(iter(found))

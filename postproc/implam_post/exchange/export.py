@@ -10,6 +10,7 @@ from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
 from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, finite, reason, run
+from implam_post.io.files import printable
 
 
 def summary(panel: Panel) -> Iterator[str]:
@@ -59,10 +60,11 @@ def to_nastran(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--z0", action="store_true", help="place stacks of delaminated cells by Z0 of their PCOMP, for "
                         "programs that refuse ZOFFS beside a PCOMP")
     return run(lambda options: _command(options, ".bdf", lambda panel, chosen: nastran_deck(
-        panel, chosen.source.name, chosen.z0)), parser, arguments)
+        panel, printable(chosen.source.name), chosen.z0)), parser, arguments)
 
 
 def to_abaqus(arguments: Sequence[str] | None = None) -> int:
     """Run implam-to-abaqus."""
-    return run(lambda options: _command(options, ".inp", lambda panel, chosen: abaqus_input(panel, chosen.source.name)),
+    return run(lambda options: _command(options, ".inp", lambda panel, chosen: abaqus_input(
+        panel, printable(chosen.source.name))),
                _parser("implam-to-abaqus", "Abaqus' input, which CalculiX reads too"), arguments)

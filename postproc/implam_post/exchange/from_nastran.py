@@ -10,12 +10,13 @@ from pathlib import Path
 from implam_post.exchange.bulk_cards import KNOWN
 from implam_post.exchange.bulk_data import BulkData, ranges, read_bulk_data
 from implam_post.exchange.bulk_laminate import read_laminate
-from implam_post.exchange.bulk_shape import Shape, read_grids, read_shape
+from implam_post.exchange.bulk_shape import material_angle, read_grids, read_shape, read_systems
 from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
+from implam_post.io.files import printable
 from implam_post.laminate.sections import Ply
 
 TAKEN = KNOWN
@@ -27,20 +28,26 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
     for card in bulk.named("INCLUDE"):
         raise bulk.error(card, "it isn't followed: put all bulk data into one file.")
     remarks = Remarks()
-    grids = read_grids(bulk)
-    shape = read_shape(bulk, grids, struck_last, remarks)
-    plies = _turned(read_laminate(bulk, shape.properties, remarks, shear_23), shape)
+    systems, grids = read_systems(bulk), read_grids(bulk)
+    shape = read_shape(bulk, systems, grids, struck_last, remarks)
+    plies = read_laminate(bulk, shape.properties, remarks, shear_23)
+    # Plies of isotropic materials have no axis: their elements may begin at any corner.
+    angle = 0.0 if all(ply.material.isotropic for ply in plies) else material_angle(bulk, systems, shape)
+    plies = _turned(plies, angle, shape.turn)
     thermal = read_thermal(bulk, shape.properties, plies, remarks)
     held = read_supports(bulk, grids, shape, supports, remarks)
-    return deck_text(name, bulk.path.name, shape, held, plies, impact, thermal), remarks
+    return deck_text(name, printable(bulk.path.name), shape, held, plies, impact, thermal), remarks
 
 
-def _turned(plies: list[Ply], shape: Shape) -> list[Ply]:
-    """Return the plies from the struck face on, their angles from the panel's x."""
-    if shape.turn > 0 and shape.angle == 0:
+def _turned(plies: list[Ply], angle: float, turn: int) -> list[Ply]:
+    """Return the plies from the struck face on, their angles from the panel's x, where the material axis has `angle`.
+
+    `turn` is -1 if the last ply is at the struck face.
+    """
+    if turn > 0 and angle == 0:
         return plies
-    turned = [replace(ply, angle=_within(shape.angle + shape.turn * ply.angle)) for ply in plies]
-    return turned[::shape.turn]
+    turned = [replace(ply, angle=_within(angle + turn * ply.angle)) for ply in plies]
+    return turned[::turn]
 
 
 def _within(angle: float) -> float:

@@ -1,6 +1,7 @@
 """Errors reported to the user in one sentence, and the exit codes they lead to (those of the solver)."""
 
 import argparse
+import io
 import math
 import sys
 from collections.abc import Callable, Sequence
@@ -68,6 +69,8 @@ def positive(text: str) -> float:
 def run(command: Callable[[argparse.Namespace], int], parser: CommandParser, arguments: Sequence[str] | None) -> int:
     """Run `command` on the parsed `arguments` and return the exit code; errors become one sentence."""
     options = parser.parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="surrogateescape")  # names of files whose bytes are no text
     try:
         return command(options)
     except ImplamError as error:

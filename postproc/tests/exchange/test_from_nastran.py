@@ -3,6 +3,7 @@
 import contextlib
 import importlib.util
 import io
+import os
 import re
 import tempfile
 import unittest
@@ -280,6 +281,14 @@ class ReportTest(ImportTest):
         bulk = Bulk(laminate=[(*LAMINATE[0][:2], -0.5e-3, *LAMINATE[0][3:])])
         self.assertNotIn("Z0", self.run_command(bulk.text())[1])
 
+    def test_name_that_is_no_text(self) -> None:
+        """The comment of the deck shows it as far as it is text."""
+        path = self.folder / os.fsdecode(b"pan\xe9l\n.bdf")
+        path.write_text(Bulk().text())
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(from_nastran.main([str(path)]), 0)
+        self.assertIn("! Panel of pan?l?.bdf.", path.with_suffix(".nml").read_text())
+
     def test_a_deck_is_not_replaced_unasked(self) -> None:
         """Only -o may name a deck that is there."""
         (self.folder / "panel.bdf").write_text(Bulk().text())
@@ -395,6 +404,11 @@ class RefusedTest(ImportTest):
         code, printed = self.run_command(turned)
         self.assertEqual((code, printed.count("\n")), (2, 1), printed)
         self.assertIn("material axis is 10 degrees", printed)
+        metal = turned.replace(small(*LAMINATE[0])[0], small("PSHELL", 1, 2, 1e-3, 2, None, 2)[0], 1)
+        for line in small(*LAMINATE[0])[1:]:
+            metal = metal.replace(line + "\n", "")
+        self.assertEqual(self.run_command(metal)[0], 0)
+        self.assertEqual([ply.angle for ply in plies_of(read_deck(self.folder / "panel.nml"))], [0])
         self.refused(Bulk(theta=3), "coordinate system 3")
 
     def test_supports(self) -> None:
@@ -417,6 +431,8 @@ class RefusedTest(ImportTest):
         self.assertEqual(code, 0, printed)
         self.assertEqual(read_deck(self.folder / "panel.nml").edges(), 4 * ["simple"])
         self.assertIn("edge x-min and y-min: the corner grid 1 turns freely", printed)
+        self.assertEqual(self.deck(Bulk(edges=4 * ("3",), more=[("SPC1", 1, "45", 1)])).edges(), 4 * ["simple"])
+        self.refused(Bulk(edges=("3", "3", "", ""), more=[("SPC1", 1, "45", 1)]), "it holds grid 1")
         self.refused(Bulk(edges=("", "34", "", ""), more=[("SPC1", 1, "34", *inner)]),
                      "the corner grid 1 doesn't hold component 3")
 
