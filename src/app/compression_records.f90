@@ -31,7 +31,7 @@ module compression_records
     real(wp) :: buckling = 0
     !> Largest compression of both gauges, with the nominal strain and the stress then
     real(wp), private :: pressed(3, 2) = 0
-    !> Stress at the strains; 0: not reached
+    !> Stress at the strains; 0: not reached; negative: no stress has exceeded the largest one since
     real(wp), private :: stresses(2) = 0
     !> Last strain and stress
     real(wp), private :: strain = 0, stress = 0
@@ -59,17 +59,19 @@ contains
     integer :: i
     logical :: ended
 
-    do i = 1, size(strains)
-      if (self%strain < strains(i) .and. strain >= strains(i)) self%stresses(i) = self%stress &
-        + (stress - self%stress)*(strains(i) - self%strain)/(strain - self%strain)
-    end do
     ended = self%failed .and. self%strain > strains(1)
+    do i = 1, size(strains)
+      if (ended .or. self%strain >= strains(i) .or. strain < strains(i)) cycle
+      self%stresses(i) = -max(0.0_wp, self%stress + (stress - self%stress)*(strains(i) - self%strain)/ &
+                              (strain - self%strain))
+    end do
     self%strain = strain
     self%stress = stress
     ! After failure the halves of the plate vibrate, and their force on the ends may exceed the strength. Residual
     ! vibration of an impact may cause drops as large, but at small strains.
     if (ended) return
     if (stress > self%strength) then
+      self%stresses = abs(self%stresses)
       self%strength = stress
       self%at = shown_time(time)
       self%shortening = shortening
