@@ -1,8 +1,10 @@
 !> A coarse run: the same setup with half the elements along each side and twice the step, about an eighth of
 !> the work. The difference gives an estimate of the error.
 module coarse_runs
+  use cell_grids, only: has_enough_elements
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
+  use deck_mesh_lines, only: lacks_window_lines
   use errors, only: error_t
   use interface_figures, only: interface_figures_t, figures_of
   use kinds, only: wp
@@ -49,6 +51,7 @@ contains
     logical :: switched
 
     coarse = coarser_deck(deck)
+    if (lacks_window_lines(coarse)) return
     call create_model(coarse%setup_t, communicator, model, error)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
@@ -76,10 +79,16 @@ contains
     type(deck_t), intent(in) :: deck
     !> The same setup, coarser
     type(deck_t) :: coarse
+    integer :: direction, number
 
     coarse = deck
-    coarse%mesh%elements = max(2, (deck%mesh%elements + 1)/coarser)
     coarse%mesh%cell = coarser*deck%mesh%cell
+    do direction = 1, 2
+      do number = max(2, (deck%mesh%elements(direction) + 1)/coarser), deck%mesh%elements(direction)
+        coarse%mesh%elements(direction) = number
+        if (has_enough_elements(coarse%plate, coarse%mesh, direction)) exit
+      end do
+    end do
     associate (time => coarse%stepping%time)
       time%step = min(coarser*time%step, time%end)
       time%step_max = max(time%step, min(coarser*time%step_max, time%end))

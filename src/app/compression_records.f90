@@ -35,6 +35,8 @@ module compression_records
     real(wp), private :: stresses(2) = 0
     !> Last strain and stress
     real(wp), private :: strain = 0, stress = 0
+    !> Strain at the largest stress
+    real(wp), private :: strain_at_strength = 0
   contains
     !> Updates the record with a state.
     procedure :: observe
@@ -68,6 +70,7 @@ contains
     if (self%failed) return
     if (stress > self%strength) then
       self%strength = stress
+      self%strain_at_strength = strain
       self%at = shown_time(time)
       self%shortening = shortening
       self%bending = bending
@@ -101,7 +104,7 @@ contains
     class(compression_record_t), intent(in) :: self
 
     modulus = 0
-    if (all(self%stresses > 0)) modulus = (self%stresses(2) - self%stresses(1))/(strains(2) - strains(1))
+    if (all(self%stresses > 0) .and. self%strain_at_strength >= strains(2)) modulus = (self%stresses(2) - self%stresses(1))/(strains(2) - strains(1))
   end function modulus
 
   !> Saves or loads the record.
@@ -127,5 +130,6 @@ contains
     call archive%item('compression/stresses_2', self%stresses(2))
     call archive%item('compression/strain', self%strain)
     call archive%item('compression/stress', self%stress)
+    call archive%item('compression/strain_at_strength', self%strain_at_strength)
   end subroutine visit
 end module compression_records

@@ -153,7 +153,7 @@ contains
     if (.not. allocated(error)) call continue_run(finer, communicator, profile, error)
     if (allocated(error)) then
       if (error%code == exit_stopped) &
-        error%message = error%message//', or do all that is left with the same command.'
+        error%message = error%message//', or repeat this command, which completes both runs.'
       return
     end if
     call print_changes(deck, finer, communicator, error)
@@ -231,7 +231,7 @@ contains
     if (allocated(command%output)) folder = command%output
     if (path /= '') folder = path
     call newest_checkpoint(communicator, folder, path, error)
-    if (.not. allocated(error)) call print_lines(communicator, [line_t('Going on from '//path//'.')])
+    if (.not. allocated(error)) call print_lines(communicator, [line_t('Continuing from '//path//'.')])
   end subroutine find_checkpoint
 
   !> Reads the deck of a checkpoint. Results continue in the folder of the checkpoint.

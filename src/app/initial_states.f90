@@ -179,7 +179,7 @@ contains
 
     call load_transfer(deck, model, stepper, transfer, mapping, old, error)
     if (allocated(error)) return
-    call log%note('The plate begins as '//deck%initial%from//' has left it.')
+    call log%note('The plate starts from the end of the run of '//deck%initial%from//'.')
     call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
     if (allocated(error)) return
     if (is_mapped(deck, old)) then
@@ -191,8 +191,8 @@ contains
         return
       end if
     end if
-    call log%note('It holds '//rounded_text(stepper%now%ledger%initial)// &
-                  ' of energy, most of it dissipated: the ledger begins with that.')
+    call log%note('The energy ledger starts with '//rounded_text(stepper%now%ledger%initial)// &
+                  ', most of it dissipated by that run.')
   end subroutine take_initial_state
 
   !> Loads the state of the other run, on its mesh, and transfers it to this one's. Collective.

@@ -81,7 +81,7 @@ contains
     if (seconds > 1) clause = ': at least '
     clause = clause//duration_text(seconds)//' of one processor'
     if (deck%has_ply_damage .or. size(deck%delaminations) > 0) clause = clause// &
-      ' while nothing breaks, many times that where it does'
+      ' without damage, many times that with damage'
     clause = clause//'.'
   end function min_time
 end module run_costs

@@ -49,28 +49,24 @@ contains
     !> The log
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: shares
-    integer :: unknowns, most, least
+    integer :: most, least
 
     if (allocated(stepper%explicit)) then
-      associate (partition => model%distribution)
-        unknowns = count(.not. model%fixed(:, :partition%owned))
-        most = size(partition%elements)
-      end associate
+      most = size(model%distribution%elements)
       least = most
-      call model%communicator%sum(unknowns)
       call model%communicator%maximum(most)
       call model%communicator%minimum(least)
       shares = ''
       if (model%communicator%size > 1) shares = ' of '//to_text(least)//' to '//counted(to_text(most), 'element')
       call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
-                    counted(to_text(unknowns), 'unknown')//', '//counted(to_text(model%communicator%size), 'rank')// &
-                    shares//'.')
+                    counted(to_text(stepper%unknowns), 'unknown')//', '// &
+                    counted(to_text(model%communicator%size), 'rank')//shares//'.')
       call log_stable_step(stepper, log)
       return
     end if
     associate (operator => stepper%operator)
       call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
-                    counted(to_text(operator%numbering%total), 'unknown')//', '// &
+                    counted(to_text(stepper%unknowns), 'unknown')//', '// &
                     counted(to_text(model%communicator%size), 'rank')//', factored by '// &
                     operator%solver%package_used()//'.')
     end associate

@@ -291,7 +291,8 @@ contains
     if (.not. (signalled .or. late)) return
     call save_checkpoint(self, error)
     call fail(error, exit_stopped, 'Stopped '//trim(causes(merge(2, 1, signalled)))//' at '// &
-              moment(self%deck, self%stepper%now%time)//'; go on with: implam restart '//self%base//checkpoint_ending)
+              moment(self%deck, self%stepper%now%time)//'; continue with: implam restart '//self%base// &
+              checkpoint_ending)
   end subroutine stop_if_due
 
   !> Writes the output that is due after a step. The clocks advance before the checkpoint is saved, so that a restart

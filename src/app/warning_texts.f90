@@ -55,7 +55,7 @@ contains
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')
     case (warning_loss)
-      text = energy_text('taken', 'take smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
+      text = energy_text('dissipated', 'take smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
     case (warning_ledger)
       text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
              ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
@@ -89,7 +89,7 @@ contains
 
     !> Sentence on an energy above its limit, with a remedy.
     pure function energy_text(what, cure, explicit_remedy) result(words)
-      !> created or taken
+      !> created or dissipated
       character(len=*), intent(in) :: what
       !> Remedies for implicit steps and for central differences
       character(len=*), intent(in) :: cure, explicit_remedy

@@ -224,7 +224,7 @@ contains
   end subroutine choose_elements
 
   !> Core of elements of the required size around the struck point, which waves of first contact do not leave before its
-  !> end.
+  !> end. Across a narrow plate it ends two elements before the edges.
   subroutine choose_core(deck, cell, wave_length)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -232,16 +232,20 @@ contains
     real(wp), intent(in) :: cell
     !> Length of the waves; 0: no impactor
     real(wp), intent(in) :: wave_length
-    type(line_t), allocatable :: extents(:)
+    type(line_t), allocatable :: words(:)
+    real(wp) :: extents(2)
     integer :: direction
 
     if (deck%settings%is_known(mesh_group, key_core) .or. deck%settings%is_known(mesh_group, key_cell)) return
     if (size(deck%delaminations) > 0 .or. .not. wave_length > 0) return
-    allocate (extents(0))
+    extents = min(deck%mesh%patch + 2*core_waves*wave_length, &
+                  deck%plate%length - 2*abs(deck%mesh%struck) - 4*cell)
+    if (any(extents <= deck%mesh%patch)) return
+    allocate (words(0))
     do direction = 1, 2
-      call append(extents, short_text(deck%mesh%patch + 2*core_waves*wave_length))
+      call append(words, short_text(extents(direction)))
     end do
-    call deck%settings%choose(mesh_group, key_core, extents)
+    call deck%settings%choose(mesh_group, key_core, words)
     call choose_one(deck, mesh_group, key_cell, cell)
   end subroutine choose_core
 

@@ -1,7 +1,7 @@
 !> Checks of sizes of plate, laminate, mesh and interfaces. Zones and starters consist of entire cells, so that their
 !> sizes may differ from those of the deck.
 module deck_extents
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cell_edges, has_enough_elements
   use deck_contents, only: deck_t
   use deck_line_conflicts, only: check_line_conflicts
   use deck_mesh_lines, only: check_window_lines
@@ -144,6 +144,7 @@ contains
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: shorter
+    integer :: i
 
     shorter = minval(deck%plate%length)
     associate (s => deck%settings, patch => deck%mesh%patch)
@@ -157,11 +158,11 @@ contains
       else if (patch < min_patch*shorter) then
         call report(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
                   to_text(min_patch*shorter)//'.')
-      else if (any(.not. is_halved(deck%plate%symmetry) .and. deck%mesh%elements == 2 .and. &
-               patch < deck%plate%length) .and. are_clear(s, problems, mesh_group, key_elements) .and. &
+      else if (.not. (deck%mesh%cell > 0 .or. all([(has_enough_elements(deck%plate, deck%mesh, i), i=1, 2)])) .and. &
+               are_clear(s, problems, mesh_group, key_elements) .and. &
                are_clear(s, problems, plate_group, key_symmetry)) then
-        call report(s, problems, mesh_group, key_elements, 'a loaded patch with plate around it takes at least 3 '// &
-                  'elements each way.')
+        call report(s, problems, mesh_group, key_elements, 'are too few for the loaded patch and the plate around '// &
+                    'it; give more.')
       end if
     end associate
   end subroutine check_patch
@@ -188,8 +189,8 @@ contains
         do direction = 1, 2
           parts = merge(1, 2, halved(direction))
           least = parts*(sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + 1)
+          if (has_enough_elements(deck%plate, mesh, direction)) cycle
           if (abs(mesh%struck(direction)) > 0) parts = 1
-          if (mesh%elements(direction) >= least .and. modulo(mesh%elements(direction), parts) == 0) cycle
           call report(s, problems, mesh_group, key_elements, 'the core needs at least '//to_text(least)//' along '// &
                     merge('x', 'y', direction == 1)//trim(merge(', and an even number.', '.                    ', &
                                                                 parts == 2)))
@@ -237,15 +238,15 @@ contains
     end do
   end subroutine check_zones
 
-  !> True for an interface of the same group as the one before it, whose sizes are the same.
+  !> True for an interface of the same group and law as one before it, whose sizes are the same.
   pure logical function repeats(deck, i)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The interface
     integer, intent(in) :: i
 
-    repeats = .false.
-    if (i > 1) repeats = deck%delaminations(i)%group == deck%delaminations(i - 1)%group
+    repeats = any(deck%delaminations(:i - 1)%group == deck%delaminations(i)%group .and. &
+                  deck%delaminations(:i - 1)%law == deck%delaminations(i)%law)
   end function repeats
 
   !> Warns of lines, zones and starters whose size on the mesh differs from the deck's.

@@ -28,9 +28,6 @@ contains
 
     do i = 1, size(deck%delaminations)
       place = deck%delaminations(i)%group
-      if (i > 1) then
-        if (deck%delaminations(i - 1)%group == place) cycle
-      end if
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
       if (deck%delaminations(i)%law == law_front) then
         call require('a front needs it, and layers follow the damage of law = ''cohesive'' only')

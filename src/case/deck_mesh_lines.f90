@@ -11,7 +11,7 @@ module deck_mesh_lines
   use support_deck, only: key_window, support_group
   implicit none
   private
-  public :: check_window_lines
+  public :: check_window_lines, lacks_window_lines
 
 contains
 
@@ -24,35 +24,43 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: direction
 
-    if (misses(window_lines(deck%supports, 1), 1) .or. misses(window_lines(deck%supports, 2), 2)) then
+    if (lacks_window_lines(deck)) then
       call report(deck%settings, problems, support_group, key_window, 'no line of the mesh can be moved to an edge '// &
                 'of the window; give more elements, or keep the patch off the edge.')
       return
     end if
     do direction = 1, 2
       if (.not. deck%settings%is_given(mesh_group, key_lines(direction))) cycle
-      if (misses(deck%settings%reals_of(mesh_group, key_lines(direction)), direction)) &
+      if (misses(deck, deck%settings%reals_of(mesh_group, key_lines(direction)), direction)) &
         call report(deck%settings, problems, mesh_group, key_lines(direction), 'no line of the mesh can be moved '// &
                   'there; allowed: on the plate, off the patch, with more elements between lines.')
     end do
-
-  contains
-
-    !> True if the mesh has no line at a coordinate.
-    pure logical function misses(lines, direction)
-      !> The coordinates
-      real(wp), intent(in) :: lines(:)
-      !> 1 for x, 2 for y
-      integer, intent(in) :: direction
-      integer :: line
-
-      misses = .false.
-      associate (edges => cell_edges(deck%plate, deck%mesh, direction))
-        do line = 1, size(lines)
-          misses = misses .or. lines(line) > edges(1) .and. &
-                   minval(abs(edges - lines(line))) > rounding*deck%plate%length(direction)
-        end do
-      end associate
-    end function misses
   end subroutine check_window_lines
+
+  !> True if the edge of a rectangular window is no line of the mesh, which then has no nodes on it.
+  pure logical function lacks_window_lines(deck) result(lacks)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    lacks = misses(deck, window_lines(deck%supports, 1), 1) .or. misses(deck, window_lines(deck%supports, 2), 2)
+  end function lacks_window_lines
+
+  !> True if the mesh has no line at a coordinate.
+  pure logical function misses(deck, lines, direction)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The coordinates
+    real(wp), intent(in) :: lines(:)
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    integer :: line
+
+    misses = .false.
+    associate (edges => cell_edges(deck%plate, deck%mesh, direction))
+      do line = 1, size(lines)
+        misses = misses .or. lines(line) > edges(1) .and. &
+                 minval(abs(edges - lines(line))) > rounding*deck%plate%length(direction)
+      end do
+    end associate
+  end function misses
 end module deck_mesh_lines

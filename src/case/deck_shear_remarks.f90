@@ -45,7 +45,7 @@ contains
       call remark(deck%settings, problems, delamination_group, key_zone, &
                   'at the border of the zone all layers have '// &
                   'one rotation, though plies shear unlike each other: the plate is up to a few per cent too '// &
-                  'stiff; take a zone as large as the plate.', i)
+                  'stiff; take a zone as large as the plate.', deck%delaminations(i)%group)
       exit
     end do
   end subroutine check_correction

@@ -129,7 +129,7 @@ contains
     problem%key = lower_case(key)
     problem%message = message
     if (.not. is_warning .and. self%errors() == max_problems) &
-      problem%message = 'there are more faults; mend those above first.'
+      problem%message = 'there are more faults; correct those above first.'
     self%list = [self%list, problem]
   end subroutine add
 

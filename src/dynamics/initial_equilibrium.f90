@@ -21,7 +21,7 @@ module initial_equilibrium
   real(wp), parameter :: tolerance = 1.0e-11_wp
   integer, parameter :: max_iterations = 100
 
-  !> What Aitken's extrapolation keeps of a correction.
+  !> Data of the previous correction for Aitken's extrapolation.
   type :: aitken_t
     !> Its factor
     real(wp) :: factor = 1
@@ -49,15 +49,23 @@ contains
     if (model%setup%has_thermal) then
       call equilibrate(model, operator, .false., state, error)
       if (allocated(error)) return
-      energy = state%ledger%strain + state%ledger%ply_damage
+      energy = stored_and_dissipated(state)
       state%ledger%initial = state%ledger%initial + energy
       state%ledger%residual = energy
     end if
     if (.not. lines_precede(model)) return
     call equilibrate(model, operator, .true., state, error)
     if (allocated(error)) return
-    state%ledger%external_work = state%ledger%strain + state%ledger%ply_damage - energy
+    state%ledger%external_work = stored_and_dissipated(state) - energy
   end subroutine find_initial_equilibrium
+
+  !> Energy stored in a plate at rest, and dissipated by its damage.
+  pure real(wp) function stored_and_dissipated(state) result(energy)
+    !> The state
+    type(state_t), intent(in) :: state
+
+    energy = state%ledger%strain + state%ledger%ply_damage + state%ledger%delamination
+  end function stored_and_dissipated
 
   !> True: residual stresses or lines deform the plate before a run in time.
   pure logical function has_initial_motion(model)
@@ -118,6 +126,8 @@ contains
     call model%communicator%sum(energy)
     state%ledger%strain = energy*model%mesh%multiplicity
     state%ledger%ply_damage = state%ledger%ply_damage + damage
+    state%ledger%delamination = state%ledger%delamination + &
+                                state%interfaces%cohesive%dissipation(model, before%interfaces%cohesive)
     state%deflection = model%deflection(state%motion%displacement)
     ! The impactor starts at first contact with the deflected plate.
     if (model%setup%has_impactor) &

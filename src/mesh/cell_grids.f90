@@ -2,11 +2,11 @@
 module cell_grids
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t, parts_of, is_halved, is_mirrored
-  use gradings, only: graded_half_line, graded_line, cored_half_line, off_centre_line, move_to_lines
+  use gradings, only: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
   use nine_node_grids, only: nine_node_grid_t, last_line
   implicit none
   private
-  public :: cell_grid_t, create_grid, cell_edges
+  public :: cell_grid_t, create_grid, cell_edges, has_enough_elements
 
   !> Cells and their nodes.
   type, extends(nine_node_grid_t) :: cell_grid_t
@@ -92,6 +92,33 @@ contains
     if (direction == 1 .and. allocated(mesh%x_lines)) call move_to_lines(edges, kept, mesh%x_lines)
     if (direction == 2 .and. allocated(mesh%y_lines)) call move_to_lines(edges, kept, mesh%y_lines)
   end function cell_edges
+
+  !> True if the elements along x or y suffice for the loaded patch, the core and the plate around them. The mesh around
+  !> a struck point has at least one element outside of them on each side, and a core at the centre as many on both.
+  pure logical function has_enough_elements(plate, mesh, direction) result(enough)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    logical :: halved(2), is_aside
+    integer :: parts
+
+    associate (number => mesh%elements(direction), patch => mesh%patch, length => plate%length(direction))
+      halved = is_halved(plate%symmetry)
+      is_aside = abs(mesh%struck(direction)) > 0
+      parts = merge(1, 2, halved(direction))
+      if (mesh%cell > 0) then
+        enough = number >= parts*(1 + sum(core_elements(patch/2, mesh%core(direction)/2, mesh%cell))) .and. &
+                 (is_aside .or. modulo(number, parts) == 0)
+      else if (is_aside) then
+        enough = number >= parts*(1 + sum(core_elements(patch/2, 0.0_wp, length/max(number, 1))))
+      else
+        enough = number > 2 .or. halved(direction) .or. patch <= 0 .or. .not. patch < length
+      end if
+    end associate
+  end function has_enough_elements
 
   !> Nodes at the edges and centres of the cells. The struck node is on the line next to the struck point, which has a
   !> line on every valid mesh.

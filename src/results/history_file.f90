@@ -215,17 +215,20 @@ contains
     if (status /= 0 .or. found /= expected//new_line('a')) then
       call fail(error, exit_files, 'The history '//from//' has other columns than this run writes; move it away.')
     else
-      call measure_rows(unit, len(found, long), rows_to_keep, bytes, kept)
+      call measure_rows(unit, len(found, long), rows_to_keep, bytes, kept, status)
       same = kept < rows_to_keep
       if (.not. same) same = ends_with(unit, bytes, last)
-      if (.not. same) then
+      if (status /= 0) then
+        call fail(error, exit_files, "Can't read the history "//from//'.')
+      else if (.not. same) then
         call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
                   to_text(rows_to_keep)//' differs; move it away, or take the checkpoint of that run.')
       else
         call copy%open(to, 'w')
-        call copy_bytes(unit, bytes, copy)
+        call copy_bytes(unit, bytes, copy, status)
         call copy%close()
         if (copy%failed) call fail(error, exit_files, "Can't write "//to//'.')
+        if (status /= 0) call fail(error, exit_files, "Can't read the history "//from//'.')
       end if
     end if
     close (unit, iostat=status)
@@ -249,7 +252,7 @@ contains
   end function ends_with
 
   !> Finds the end of the last row to keep. A row without line end was truncated by a kill and is ignored.
-  subroutine measure_rows(unit, header_bytes, rows_to_keep, bytes, kept)
+  subroutine measure_rows(unit, header_bytes, rows_to_keep, bytes, kept, status)
     !> Unit of the history
     integer, intent(in) :: unit
     !> Length of the header
@@ -260,15 +263,18 @@ contains
     integer(long), intent(out) :: bytes
     !> Number of these rows
     integer, intent(out) :: kept
+    !> 0 unless the file can't be read
+    integer, intent(out) :: status
     character(len=block_length) :: block
     integer(long) :: place, length
-    integer :: i, status
+    integer :: i
 
+    status = 0
     kept = 0
     bytes = header_bytes
     place = header_bytes
     inquire (unit, size=length)
-    do while (place < length .and. kept < rows_to_keep)
+    do while (place < length .and. kept < rows_to_keep .and. status == 0)
       block = ''
       read (unit, pos=place + 1, iostat=status) block(:min(length - place, len(block, long)))
       do i = 1, block_length
@@ -282,19 +288,22 @@ contains
   end subroutine measure_rows
 
   !> Copies the first part of a file.
-  subroutine copy_bytes(unit, bytes, copy)
+  subroutine copy_bytes(unit, bytes, copy, status)
     !> Unit of the file
     integer, intent(in) :: unit
     !> Length to copy
     integer(long), intent(in) :: bytes
     !> Where to
     type(output_stream_t), intent(inout) :: copy
+    !> 0 unless the file can't be read
+    integer, intent(out) :: status
     character(len=block_length) :: block
     integer(long) :: place
-    integer :: length, status
+    integer :: length
 
+    status = 0
     place = 0
-    do while (place < bytes)
+    do while (place < bytes .and. status == 0)
       length = int(min(bytes - place, len(block, long)))
       read (unit, pos=place + 1, iostat=status) block(:length)
       call copy%put(block(:length))

@@ -23,9 +23,9 @@ module elastic_impacts
     real(wp) :: indentation = 0, deflection = 0
     !> Time after which the force never passes a hundredth of its peak again
     real(wp) :: last_contact = 0
-    !> Time that the bodies touched in all, and velocity of the impactor at the end
+    !> Total time of contact, and velocity of the impactor at the end
     real(wp) :: duration = 0, velocity = 0
-    !> Times that the bodies touched
+    !> Number of contacts
     integer :: contacts = 0
     !> The contact was over before the steps were
     logical :: complete = .false.
@@ -100,7 +100,7 @@ contains
     elastic%velocity = ball(2)
   end function run_elastic_impact
 
-  !> The one root of F = F(alpha_free - compliance F), by Newton's method within an interval.
+  !> The root of F = F(alpha_free - compliance F), by Newton's method within an interval.
   pure subroutine find_force(law, contact, free, compliance, force)
     !> The law
     type(indentation_law_t), intent(in) :: law
@@ -170,9 +170,9 @@ contains
     end associate
   end function difference
 
-  !> The same, but of the largest forces of all contacts like the hardest the one that is farthest off. Where the
-  !> bodies touch again and again, which contact is how far off is a matter of chance, so that the error of the largest
-  !> force is no bound. Ripples of one long contact are many, and their largest is not.
+  !> The same, but with the largest error among the peaks of all contacts whose force is nearly the largest. In repeated
+  !> contacts the error of a single peak may be small by coincidence, so that it is no bound. Of one contact, however
+  !> long, only the largest force counts.
   pure function bound_of_difference(coarse, fine, ratio) result(relative)
     !> The elastic impact with the longer steps
     type(elastic_impact_t), intent(in) :: coarse
@@ -209,7 +209,7 @@ contains
     type(elastic_impact_t), intent(in) :: fine
     !> Steps of the finer one in one of the coarser
     integer, intent(in) :: ratio
-    !> Steps of the coarser one looked at before the largest force and after it
+    !> Steps of the coarser one that are compared before and after the largest force
     integer, intent(in) :: beside
     integer :: number, at, first, last
 

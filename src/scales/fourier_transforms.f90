@@ -4,7 +4,7 @@ module fourier_transforms
   use mathematical_constants, only: pi
   implicit none
   private
-  public :: fourier, unit_turns, sums_of_sines
+  public :: fourier, roots_of_unity, sums_of_sines
 
   !> Points that a sine is spread to on either side: 12 give twelve digits with a grid twice as fine as needed
   !> (Greengard and Lee, Accelerating the nonuniform fast Fourier transform, SIAM Review 46, 2004, table 1).
@@ -13,35 +13,35 @@ module fourier_transforms
 contains
 
   !> exp(-2 pi i j/number) of j = 0 to number/2 - 1, which transforms of `number` values or a part of them take.
-  pure function unit_turns(number) result(turns)
+  pure function roots_of_unity(number) result(roots)
     !> Values, a power of two
     integer, intent(in) :: number
     !> On the unit circle
-    complex(wp), allocatable :: turns(:)
+    complex(wp), allocatable :: roots(:)
     integer :: j
 
-    turns = [(exp(cmplx(0.0_wp, -2*pi*j/number, wp)), j=0, number/2 - 1)]
-  end function unit_turns
+    roots = [(exp(cmplx(0.0_wp, -2*pi*j/number, wp)), j=0, number/2 - 1)]
+  end function roots_of_unity
 
   !> Transforms values in place, to sum_k value_k exp(-2 pi i j k/number), by Stockham's method.
-  pure subroutine fourier(values, turns)
+  pure subroutine fourier(values, roots)
     !> A power of two of them
     complex(wp), intent(inout), contiguous :: values(0:)
-    !> `unit_turns` of as many or a power of two times as many
-    complex(wp), intent(in), contiguous :: turns(0:)
+    !> `roots_of_unity` of as many or a power of two times as many
+    complex(wp), intent(in), contiguous :: roots(0:)
     complex(wp), allocatable :: other(:)
     integer :: half, together, stride
 
     allocate (other(size(values)))
     half = size(values)/2
     together = 1
-    stride = 2*size(turns)/size(values)
+    stride = 2*size(roots)/size(values)
     do while (half >= 1)
-      call halve(half, together, turns(0::stride*together), values, other)
+      call halve(half, together, roots(0::stride*together), values, other)
       half = half/2
       together = 2*together
       if (half >= 1) then
-        call halve(half, together, turns(0::stride*together), other, values)
+        call halve(half, together, roots(0::stride*together), other, values)
       else
         values = other
       end if
@@ -51,11 +51,11 @@ contains
   end subroutine fourier
 
   !> One pass of a transform.
-  pure subroutine halve(half, together, turns, from, to)
+  pure subroutine halve(half, together, roots, from, to)
     !> Pairs, and values that lie together in each
     integer, intent(in) :: half, together
-    !> Turn of each pair
-    complex(wp), intent(in) :: turns(0:)
+    !> Root of unity of each pair
+    complex(wp), intent(in) :: roots(0:)
     !> Values before
     complex(wp), intent(in) :: from(together, 0:half - 1, 0:1)
     !> Values after
@@ -64,12 +64,12 @@ contains
 
     do j = 0, half - 1
       to(:, 0, j) = from(:, j, 0) + from(:, j, 1)
-      to(:, 1, j) = turns(j)*(from(:, j, 0) - from(:, j, 1))
+      to(:, 1, j) = roots(j)*(from(:, j, 0) - from(:, j, 1))
     end do
   end subroutine halve
 
   !> Sums of weight sin(n angle) over all angles for n = 1 to number, each to about twelve digits of the sum of weights.
-  !> Each is spread to a grid as a Gaussian bell, which the transform of the grid is cleared of.
+  !> Each is spread to a grid as a Gaussian, by whose transform that of the grid is divided.
   pure function sums_of_sines(angle, weight, number) result(sums)
     !> Angles, from 0 to pi, and their weights
     real(wp), intent(in) :: angle(:), weight(:)
@@ -106,7 +106,7 @@ contains
         end associate
       end do
     end do
-    call fourier(grid, unit_turns(points))
+    call fourier(grid, roots_of_unity(points))
     sums = [(-sqrt(pi/width)*exp(width*real(i, wp)**2)/points*aimag(grid(i)), i=1, number)]
   end function sums_of_sines
 end module fourier_transforms

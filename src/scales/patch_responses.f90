@@ -7,14 +7,14 @@
 !> convolution equations, SIAM J. Sci. Stat. Comput. 6, 1985): the work grows with the steps times the square of their
 !> logarithm, and not with the steps times the modes.
 module patch_responses
-  use fourier_transforms, only: fourier, unit_turns, sums_of_sines
+  use fourier_transforms, only: fourier, roots_of_unity, sums_of_sines
   use kinds, only: wp
   use modal_plates, only: modal_plate_t
   implicit none
   private
   public :: patch_response_t, start_response, predicted_deflection, predict_deflections, block_steps
 
-  !> Steps whose forces are folded one by one, and those of a block whose forces are folded without transforms.
+  !> Steps whose forces are convolved one by one, and those of a block whose forces are convolved without transforms.
   integer, parameter :: block_steps = 64, direct_steps = 256
   !> Steps that the response is found for where the end isn't known.
   integer, parameter :: first_steps = 1024
@@ -35,12 +35,12 @@ module patch_responses
     real(wp) :: immediate = 0
     !> Deflection at a number of steps after a unit force at the end of a step
     real(wp), allocatable :: later(:)
-    !> Deflection at the ends of all steps by the forces that have been looked ahead with
+    !> Deflection at the ends of all steps by the forces of completed blocks
     real(wp), allocatable :: predicted(:)
-    !> Transforms of the response by the power of two of the block that they are folded with
+    !> Transforms of the response by the power of two of the block that they are convolved with
     type(spectrum_t) :: spectra(31)
-    !> Workspace of the transforms of these lengths
-    complex(wp), allocatable :: turns(:)
+    !> Roots of unity for the transforms of these lengths
+    complex(wp), allocatable :: roots(:)
   end type patch_response_t
 
 contains
@@ -70,8 +70,8 @@ contains
     call find_unit_response(self, known)
   end function start_response
 
-  !> Finds the response for a number of steps. A mode moved by the average acceleration turns by theta a step,
-  !> tan(theta/2) = omega step/2, and after a force of one swings as a sine.
+  !> Finds the response for a number of steps. By the average acceleration the phase of a mode grows by theta in a step,
+  !> tan(theta/2) = omega step/2, and its response to a unit force is a sine.
   pure subroutine find_unit_response(self, steps)
     !> The response
     type(patch_response_t), intent(inout) :: self
@@ -86,12 +86,12 @@ contains
     self%later = sums_of_sines(2*atan(omega*self%step/2), &
                                pack(self%plate%weight, oscillates)*self%step/omega/(1 + (omega*self%step/2)**2), steps)
     self%later = self%later + self%step**2*sum(self%plate%weight, mask=.not. oscillates)*[(real(i, wp), i=1, steps)]
-    self%turns = unit_turns(steps)
+    self%roots = roots_of_unity(steps)
   end subroutine find_unit_response
 
-  !> Deflection at the end of a step, but for the force there.
+  !> Deflection at the end of a step without that by the force of this step.
   pure real(wp) function predicted_deflection(self, step, force) result(deflection)
-    !> The response, which looked ahead at the last multiple of `block_steps`
+    !> The response, with the predictions up to the last multiple of `block_steps`
     type(patch_response_t), intent(in) :: self
     !> The step
     integer, intent(in) :: step
@@ -103,7 +103,7 @@ contains
     deflection = self%predicted(step) + dot_product(self%later(:since), force(step - 1:step - since:-1))
   end function predicted_deflection
 
-  !> Folds the forces of the last block into the steps to come, as many of them as the block has.
+  !> Adds the convolution with the forces of the last block to the following steps, as many as the block has.
   pure subroutine predict_deflections(self, now, force)
     !> The response
     type(patch_response_t), intent(inout) :: self
@@ -119,7 +119,7 @@ contains
     if (.not. any(force(now - length + 1:now) > 0) .or. last <= now) return
     if (2*length > size(self%later)) call find_unit_response(self, 2*length)
     if (length > direct_steps) then
-      call fold_by_transform(self, force(now - length + 1:now), now, last)
+      call convolve_by_transform(self, force(now - length + 1:now), now, last)
     else
       do k = 1, length
         self%predicted(now + 1:last) = self%predicted(now + 1:last) + force(now + 1 - k)*self%later(k:k + last - now &
@@ -129,12 +129,12 @@ contains
   end subroutine predict_deflections
 
   !> The same by transforms twice as long as the block.
-  pure subroutine fold_by_transform(self, force, now, last)
+  pure subroutine convolve_by_transform(self, force, now, last)
     !> The response
     type(patch_response_t), intent(inout) :: self
     !> Forces of the block, a power of two of them
     real(wp), intent(in) :: force(:)
-    !> Steps taken, and the last that the forces are folded into
+    !> Steps taken, and the last step that the convolution is added to
     integer, intent(in) :: now, last
     complex(wp) :: values(2*size(force))
     integer :: length
@@ -143,16 +143,16 @@ contains
     associate (spectrum => self%spectra(trailz(length)))
       if (.not. allocated(spectrum%value)) then
         spectrum%value = [(0.0_wp, 0.0_wp), cmplx(self%later(:2*length - 1), 0.0_wp, wp)]
-        call fourier(spectrum%value, self%turns)
+        call fourier(spectrum%value, self%roots)
       end if
       values(:length) = cmplx(force, 0.0_wp, wp)
       values(length + 1:) = 0
-      call fourier(values, self%turns)
+      call fourier(values, self%roots)
       ! The conjugate of a conjugate's transform goes back.
       values = conjg(values*spectrum%value)
-      call fourier(values, self%turns)
+      call fourier(values, self%roots)
       self%predicted(now + 1:last) = self%predicted(now + 1:last) + real(values(length + 1:length + last &
                                                                                 - now))/(2*length)
     end associate
-  end subroutine fold_by_transform
+  end subroutine convolve_by_transform
 end module patch_responses

@@ -40,8 +40,7 @@ module setup_elastic_impacts
     !> Relative errors of the force's peak and history, by the step and by the mesh; negative: not known
     real(wp) :: step_error(2) = -1, mesh_error(2) = -1
     !> Errors by step and mesh together of the figures that a summary reports, in the order of `figures_of`; negative:
-    !> not
-    !> known
+    !> not known
     real(wp) :: figure_error(5) = -1
     !> Side of the area that carries the contact force, and effect of a larger patch on peak and history
     real(wp) :: contact_side = 0, patch_error(2) = -1
@@ -77,7 +76,7 @@ module setup_elastic_impacts
 
 contains
 
-  !> Makes a setup ready.
+  !> Prepares a setup for preliminary elastic impacts.
   pure function start_elastic_impact(setup, scales) result(elastic)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup

@@ -131,7 +131,7 @@ contains
     name = trim(unit_of(dimension_of(quantity), system))
   end function unit_name
 
-  !> Power of ten of the SI unit in a system's unit: a value in SI has it taken off.
+  !> Power of ten of a system's unit in SI units, by which a value in SI is divided.
   pure integer function decades_of(quantity, system) result(decades)
     !> Kind of the quantity
     integer, intent(in) :: quantity

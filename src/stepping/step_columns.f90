@@ -58,7 +58,7 @@ module step_columns
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
-    'rejected | integer | - | Rejected steps so far; each was repeated with half its length.']
+    'rejected | integer | - | Rejected steps so far; each was repeated with a shorter length or more layers.']
 
   !> Further entries of the ledger.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &

@@ -236,10 +236,8 @@ contains
 
   !> Shortens the step where delaminations that grow one cell per step are about to grow or have grown (section 3.3.3 of
   !> the paper, step 5). As the energy release rate approaches the critical one, the step is halved at 0.9 of it, at
-  !> 0.95
-  !> and so on, down to twice the smallest factor; after growth the smallest factor is taken. It then doubles from step
-  !> to
-  !> step within the limit of growth.
+  !> 0.95 and so on, down to twice the smallest factor; after growth the smallest factor is taken. It then doubles in
+  !> each step within the limit of growth.
   pure subroutine limit_by_fronts(self, stepping, ratio, extended)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self

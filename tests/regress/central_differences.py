@@ -57,6 +57,12 @@ def deck_of(folder, model, *settings):
     return deck
 
 
+def unknowns_of(folder):
+    """Number of unknowns that the log gives first."""
+    log, = folder.glob("*.log")
+    return int(re.search(r"Model: .* (\d+) unknowns", log.read_text(encoding="utf-8")).group(1))
+
+
 def check_ranks(implam, folder, launcher):
     """All histories are the same, and so is one that goes on with another number of ranks."""
     for model in MODELS:
@@ -64,6 +70,8 @@ def check_ranks(implam, folder, launcher):
         for ranks in ("2", "3"):
             found = run_deck(implam, deck_of(folder / model / ranks, model), [*launcher, ranks])
             require_same(found, reference, f"{model} on {ranks} ranks")
+            counts = {unknowns_of(path.parent) for path in (found, reference)}
+            require(len(counts) == 1, f"{model}: the logs give {counts} unknowns.")
         end = read_history(reference)["time"][-1]
         split = deck_of(folder / model / "split", model, f"output%checkpoint_every={0.53 * end!r}")
         uninterrupted = run_deck(implam, split, [*launcher, "2"])

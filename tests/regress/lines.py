@@ -1,5 +1,5 @@
 """Lines on quarters of plates, in time, on ranks and across restarts.
-Usage: lines.py quarter|plane|turned|time|edges|ranks|restart IMPLAM FOLDER [LAUNCHER...]
+Usage: lines.py quarter|plane|turned|time|edges|opened|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
 quarter  a strip against its quarter or half: deflection and forces to 1e-9
@@ -9,6 +9,7 @@ time     prescribed lines are held exactly, with the force of equilibrium: fixed
          starts the same with half the steps, the ledger closed; also beside a pressure, with two integrators
 edges    a line that runs to edges which hold the plate: its work is half its force times its way, in load steps, in
          time and by central differences; held nodes are none of its own
+opened   lines that have opened an interface before the run: its fracture energy is work, and dissipated
 ranks    a notched strip in steps of dissipation, on 1 and 2 ranks: to 1e-6
 restart  the same from a checkpoint while damage grows: bitwise"""
 
@@ -151,6 +152,38 @@ def check_edges(implam, folder, _):
         require(max(found.values())/min(found.values()) < 1.001, f"{edges} {line}: the forces are {found}.")
 
 
+# A double cantilever whose crack has grown before the run. The mass is at rest, so nothing else happens.
+OPENED = """&case name='opened' kinematics='linear' /
+&plate length=0.066, 0.025 edges='free','clamped','free','free' /
+&mesh elements=44, 2 /
+&material name='ply' density=1580 E1=139.4e9 E2=10.16e9 G12=4.6e9 G13=4.6e9 G23=3.54e9 nu12=0.30 /
+&laminate materials='ply' angles=0,0 thicknesses=2*1.5e-3 shear_correction='5/6' /
+&line at=-0.033 layer=1 displacement=-0.7e-3 history='fixed' /
+&line at=-0.033 layer=2 displacement=0.7e-3 history='fixed' /
+&delamination below_ply=1 law='cohesive' G_Ic=170.3 G_IIc=493 strength_opening=10e6 strength_shear=40e6
+              zone=0.066,0.025 starter_strip=-0.033,-0.003 /
+"""
+# Measured: 3e-8 of the work.
+SAME_ENERGY = 1e-6
+
+
+def check_opened(implam, folder, _):
+    """Fracture energy of the initial equilibrium, by implicit steps and by central differences."""
+    for name, steps in (("implicit", "step=1e-6 integrator='generalized_alpha'"),
+                        ("explicit", "integrator='central_difference' mass_scaling=1")):
+        deck = folder / name / "opened.nml"
+        deck.parent.mkdir(parents=True, exist_ok=True)
+        deck.write_text(f"{OPENED}&time end=2e-6 {steps} /\n", encoding="utf-8")
+        history = read_history(run_deck(implam, deck))
+        work, fracture = history["work_external"][-1], history["energy_below_1"][-1]
+        print(f"{name}: {fracture:.6g} of fracture, {work:.6g} of work")
+        require(fracture > 0.02*work, "The crack has not grown.")
+        for what, value, expected in (("energy_delamination", history["energy_delamination"][-1], fracture),
+                                      ("energy_error", history["energy_error"][-1], 0.0),
+                                      ("work_external", work, fracture + history["energy_strain"][-1])):
+            require(abs(value - expected) <= SAME_ENERGY*work, f"{name}: {what} is {value}, not {expected}.")
+
+
 def rms(values):
     """Return the root of the mean of the squares."""
     squares = [value*value for value in values]
@@ -176,7 +209,7 @@ def check_restart(implam, folder, _):
 def trial(kind, implam, folder, *launcher):
     """One of them."""
     checks = {"quarter": check_quarter, "plane": check_plane, "turned": check_turned, "time": check_time,
-              "edges": check_edges, "ranks": check_ranks, "restart": check_restart}
+              "edges": check_edges, "opened": check_opened, "ranks": check_ranks, "restart": check_restart}
     require((DECKS / "enf.nml").exists(), "The decks are missing.")
     checks[kind](implam, Path(folder), launcher)
 

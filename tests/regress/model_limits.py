@@ -31,10 +31,10 @@ MODELS = {
     # .69 mm at most, less than the thickness.
     "or the radius of the impactor": "&impactor mass=0.005  velocity=2  radius=1e-4 /\n"
                                      "&indentation law='hertz'  k=2e6 /\n&time end=0.5e-3  step=5e-6 /\n",
-    "integrators have taken more than 1 %": "&impactor mass=0.005  velocity=10  radius=10e-3 /\n"
+    "integrators have dissipated more than 1 %": "&impactor mass=0.005  velocity=10  radius=10e-3 /\n"
                                  "&time end=2e-3  step=50e-6  rho_inf=0 /\n",
     # Plies that fail in long load steps.
-    "Load steps have taken more than 1 %": "&impactor travel=1e-3 radius=10e-3 /\n&static steps=2 /\n",
+    "Load steps have dissipated more than 1 %": "&impactor travel=1e-3 radius=10e-3 /\n&static steps=2 /\n",
     "reached the border of its zone": ZONE + "&impactor mass=0.5  velocity=3  radius=10e-3 /\n"
                                       "&time end=1e-3  step=10e-6 /\n",
     "failed over an area as large as the contact": "&impactor mass=2  velocity=5  radius=10e-3 /\n"
