@@ -104,7 +104,8 @@ contains
     class(compression_record_t), intent(in) :: self
 
     modulus = 0
-    if (all(self%stresses > 0) .and. self%strain_at_strength >= strains(2)) modulus = (self%stresses(2) - self%stresses(1))/(strains(2) - strains(1))
+    if (all(self%stresses > 0) .and. self%strain_at_strength >= strains(2)) &
+      modulus = (self%stresses(2) - self%stresses(1))/(strains(2) - strains(1))
   end function modulus
 
   !> Saves or loads the record.
