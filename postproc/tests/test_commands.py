@@ -80,6 +80,18 @@ class CommandTest(unittest.TestCase):
             self.assertEqual((code, len(text.splitlines())), (4, 1), text)
             self.assertIn(sentence, text)
 
+    def test_results_of_one_name(self) -> None:
+        """Pictures and pages of one do not replace those of the other; without a common folder they cannot."""
+        for ending, command in (("_history.csv", plot.main), ("_summary.json", report.main)):
+            paths = [self.folder / str(number) / f"case{ending}" for number in (1, 2)]
+            for path in paths:
+                path.parent.mkdir(exist_ok=True)
+                path.write_bytes(self.history.read_bytes())
+            code, text = self.run_quietly(command, *paths, "--output", self.folder)
+            self.assertEqual((code, len(text.splitlines())), (4, 1), text)
+            self.assertIn("have the same name", text)
+        self.assertEqual(self.run_quietly(plot.main, *(self.folder / word / "case_history.csv" for word in "12"))[0], 0)
+
     def test_faulty_expectations(self) -> None:
         """An entry without or with other keys is reported by their names, not by those of the program's insides."""
         path = self.folder / "case.toml"

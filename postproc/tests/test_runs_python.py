@@ -103,6 +103,9 @@ class PythonInterfaceTest(unittest.TestCase):
         with self.assertRaisesRegex(implam.RunError, "the run ended with 2: .*velocty") as caught:
             implam.run_deck(SMALL / "damage.nml", {"impactor%velocty": 3}, self.folder / "x", str(program())).wait(60)
         self.assertEqual(caught.exception.exit_code, 2)
+        # The last line that the program prints is a warning.
+        with self.assertRaisesRegex(implam.RunError, "the run ended with 2: .*is missing"):
+            implam.run_deck(SMALL / "damage.nml", {"delamination[2]%G_c": 3}, self.folder / "x", str(program())).wait()
         with self.assertRaisesRegex(implam.DeckError, "'velocity' is no key"):
             implam.run_deck(SMALL / "damage.nml", {"velocity": 3}, self.folder / "x", str(program()))
         with self.assertRaisesRegex(implam.FileError, "the folder of the deck itself"):
@@ -110,6 +113,15 @@ class PythonInterfaceTest(unittest.TestCase):
         for path in (self.folder, self.folder / "none_summary.json", self.folder / "0" / "damage.log"):
             with self.subTest(path), self.assertRaises(implam.FileError):
                 implam.open_run(path)
+
+    def test_folder_with_another_run(self) -> None:
+        """The results are those of the deck."""
+        folder = self.folder / "two"
+        folder.mkdir()
+        (folder / "other_summary.json").write_text("{}")
+        changes = {"case%name": "short", "time%end": 2e-5}
+        run = implam.run_deck(SMALL / "damage.nml", changes, folder, str(program())).wait(60)
+        self.assertEqual((run.name, run.summary["accepted_steps"]), ("short", 2))
 
     def test_runs_can_be_stopped(self) -> None:
         """After a time limit the run goes on; asked to stop it ends with exit code 75."""

@@ -39,11 +39,11 @@ class Deck:
 
     def has(self, group: str) -> bool:
         """Return whether the deck has a group of this name."""
-        return group in self.groups
+        return group.lower() in self.groups
 
     def values(self, group: str, key: str) -> list[Value]:
         """Return all values of a key; empty if the deck doesn't give it."""
-        found = self.groups.get(group, [])
+        found = self.groups.get(group.lower(), [])
         if len(found) > 1:
             raise self.error(group, "stands in the deck more than once.")
         return found[0].get(key.lower(), []) if found else []

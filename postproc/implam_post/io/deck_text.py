@@ -73,7 +73,7 @@ def deck_value(value: object) -> str:
         return ".true." if value else ".false."
     if isinstance(value, str):
         return value if not value or _reads_as_values(value) else "'" + value.replace("'", "''") + "'"
-    if isinstance(value, (int, float)) and math.isfinite(value):
+    if isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
         return repr(value)
     raise DeckError(f"{value!r} can't stand in a deck.")
 

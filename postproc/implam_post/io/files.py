@@ -2,7 +2,7 @@
 
 import fcntl
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -51,6 +51,15 @@ def read_text(path: Path, what: str) -> str:
 def printable(name: str) -> str:
     """Return a file's name for a line of text: it may hold an end of line, or bytes that are no text."""
     return "".join(letter if letter.isprintable() else "?" for letter in name)
+
+
+def refuse_equal_names(paths: Sequence[Path], folder: Path | None) -> None:
+    """Refuse results of one name if what is made of them goes into one folder, where one would replace the other."""
+    first: dict[str, Path] = {}
+    for path in paths if folder is not None else ():
+        if (other := first.setdefault(path.name, path)) != path:
+            raise FileError(f"{other} and {path} have the same name, so that the files of one would replace those of "
+                            f"the other in {folder}: leave --output out, or give it for each alone.")
 
 
 def try_lock(path: Path) -> int | None:

@@ -57,8 +57,9 @@ def shell_code(code: int) -> int:
 
 
 def last_words(output: str) -> str:
-    """Return the sentence with which a run ended, or its last line."""
-    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    """Return the sentence with which a run ended, or its last line; a warning only if there is nothing else."""
+    printed = [line.strip() for line in output.splitlines() if line.strip()]
+    lines = [line for line in printed if ": warning: " not in line] or printed
     sentences = [line.removeprefix("implam: ") for line in lines if line.startswith("implam: ")]
     return (sentences or lines or ["it printed nothing"])[-1]
 

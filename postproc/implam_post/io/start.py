@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from implam_post.io.deck import read_deck
 from implam_post.io.deck_text import KeyPath, deck_value, key_path, set_keys
 from implam_post.io.errors import EXIT_DONE, DeckError, FileError, ImplamError, reason
 from implam_post.io.files import read_text, write_text
@@ -24,9 +25,9 @@ class RunError(ImplamError):
 class StartedRun:
     """A run in a process of its own; what it prints goes into output.txt beside its results."""
 
-    def __init__(self, folder: Path, process: subprocess.Popen[bytes]) -> None:
-        """Watch over a process that writes into a folder."""
-        self.folder, self.process = folder, process
+    def __init__(self, folder: Path, process: subprocess.Popen[bytes], deck: Path) -> None:
+        """Watch over a process that runs a deck and writes into a folder."""
+        self.folder, self.process, self._deck = folder, process, deck
 
     @property
     def is_running(self) -> bool:
@@ -39,7 +40,7 @@ class StartedRun:
         A run that ends with another exit code than 0 raises RunError. After `timeout` seconds TimeoutError is raised,
         and the run goes on.
         """
-        from implam_post.io.run import open_run
+        from implam_post.io.run import SUMMARY, open_run
 
         try:
             code = shell_code(self.process.wait(timeout))
@@ -50,7 +51,8 @@ class StartedRun:
             error = RunError(f"the run ended with {code}: {last_words(printed)}")
             error.exit_code = code
             raise error
-        return open_run(self.folder)
+        # By its name: the folder may hold other runs.
+        return open_run(self.folder / f"{read_deck(self._deck).name}{SUMMARY}")
 
     def stop(self) -> None:
         """Stop the run after its step, with a checkpoint; `wait` raises RunError with exit code 75 then."""
@@ -87,7 +89,7 @@ def run_deck(deck: Path | str, changes: Mapping[str | KeyPath, object] | None = 
                                        stdin=subprocess.DEVNULL, stdout=printed, stderr=subprocess.STDOUT)
     except OSError as error:
         raise FileError(f"the run cannot be started ({reason(error)}).") from None
-    return StartedRun(folder, process)
+    return StartedRun(folder, process, written)
 
 
 def _key(name: str | KeyPath) -> KeyPath:

@@ -30,6 +30,7 @@ def _command(options: argparse.Namespace) -> int:
 def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
     """Draw what the command line requires."""
     from implam_post.io.fields import read_fields
+    from implam_post.io.files import refuse_equal_names
     from implam_post.io.history import read_history
     from implam_post.plot.pictures import plot_fields, plot_overview
 
@@ -48,6 +49,8 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
         history = options.history or _beside(path)
         if history not in paths and (options.history or history.exists()):
             paths.append(history)
+    for written in (results, paths):
+        refuse_equal_names(written, options.output)
     # All is read before anything is drawn, so that a faulty file leaves no half of the pictures behind.
     curves = _read_curves(paths, options)
     for path, fields in [(path, read_fields(path)) for path in results]:

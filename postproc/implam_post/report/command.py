@@ -10,7 +10,7 @@ from implam_post.io.compression import strength_of
 from implam_post.io.counts import counted
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
-from implam_post.io.files import write_text
+from implam_post.io.files import refuse_equal_names, write_text
 from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
 from implam_post.io.run import FIELDS, SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
@@ -227,7 +227,7 @@ def summaries_at(path: Path) -> list[Path]:
         return [path]
     found = sorted(path.glob(f"*{SUMMARY}"))
     if not found:
-        raise FileError(f"{path} holds no summary of a run ({SUMMARY.removeprefix('_')}).")
+        raise FileError(f"{path} holds no summary of a run (NAME{SUMMARY}).")
     return found
 
 
@@ -248,9 +248,10 @@ def write_report(path: Path, output: Path | None, undamaged: float | None = None
 def _command(options: argparse.Namespace) -> int:
     """Write a page for each run."""
     undamaged = None if options.undamaged is None else strength_of(options.undamaged)
-    for given in options.results:
-        for path in summaries_at(given):
-            print(write_report(path, options.output, undamaged))
+    summaries = [path for given in options.results for path in summaries_at(given)]
+    refuse_equal_names([path.absolute() for path in summaries], options.output)
+    for path in summaries:
+        print(write_report(path, options.output, undamaged))
     return EXIT_DONE
 
 

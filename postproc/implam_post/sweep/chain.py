@@ -85,8 +85,8 @@ def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
     rows = []
     for case in first.plan.cases:
         continuation = by_number.get(case.number)
-        rows.append((_summary(first, case, table.notes),
-                     {} if continuation is None else _summary(second, continuation, table.notes)))
+        rows.append((_summary(first, case, table),
+                     {} if continuation is None else _summary(second, continuation, table)))
     for name, (which, dimension, _) in FIGURES.items():
         missing: object = math.nan if dimension else ""
         table.columns[name] = [_cell(row[which].get(name), missing) for row in rows]
@@ -112,14 +112,14 @@ def remark_of_bounds(table: Table) -> str:
         "strength is a lower bound, and so are means; give the &line of the second deck a larger displacement.")
 
 
-def _summary(sweep: Sweep, case: Case, notes: list[str]) -> Mapping[str, object]:
+def _summary(sweep: Sweep, case: Case, table: Table) -> Mapping[str, object]:
     """Return the summary of a run that has a result; empty if there is none, with a note if it cannot be read."""
     if sweep.failure(case):
         return {}
     try:
         return open_run(sweep.folder(case)).summary
     except ImplamError as error:
-        note = no_figures(error)
-        if note not in notes:
-            notes.append(note)
+        note, table.is_readable = no_figures(error), False
+        if note not in table.notes:
+            table.notes.append(note)
         return {}

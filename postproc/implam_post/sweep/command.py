@@ -97,7 +97,13 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
         _print_scatter(sweep, table.system)
     for note in table.notes:
         print(f"note: {note}")
-    return print_outcomes(sweep)
+    return exit_code(sweep, table)
+
+
+def exit_code(sweep: Sweep, table: "Table") -> int:
+    """List failed and remaining cases, and return the exit code; results that cannot be read are none."""
+    code = print_outcomes(sweep)
+    return code if table.is_readable else EXIT_USAGE
 
 
 def _print_scatter(sweep: Sweep, system: str) -> None:
@@ -205,7 +211,7 @@ def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
         print(remark, file=sys.stderr)
     for note in table.notes[printed:]:
         print(f"note: {note}")
-    return print_outcomes(second)
+    return exit_code(second, table)
 
 
 def _command(options: argparse.Namespace) -> int:

@@ -203,12 +203,13 @@ def flat_table(table: object, name: str) -> dict[str, object]:
     """Return a table with dotted names, whether or not they were written in quotes."""
     if not isinstance(table, dict):
         raise DeckError(f"{name} is a table: [{name}].")
-    flat = {}
+    flat: dict[str, object] = {}
     for key, value in table.items():
-        if isinstance(value, dict) and "distribution" not in value:
-            flat |= {f"{key}.{rest}": item for rest, item in flat_table(value, name).items()}
-        else:
-            flat[key] = value
+        is_nested = isinstance(value, dict) and "distribution" not in value
+        found = {f"{key}.{rest}": item for rest, item in flat_table(value, name).items()} if is_nested else {key: value}
+        for twice in flat.keys() & found:
+            raise DeckError(f"'{twice}' stands in [{name}] twice.")
+        flat |= found
     return flat
 
 
@@ -225,7 +226,7 @@ def check_names(tables: dict[str, dict[str, object]]) -> None:
                                 "nor a free name.")
             if name in (*COLUMNS, VARIANT):
                 raise DeckError(f"[{table}] '{name}' is the name of another column of the table.")
-            same = str(path).lower() if path else name
+            same = str(replace(path, number=1 if path.number is None else path.number)).lower() if path else name
             if same in table_of:
                 raise DeckError(f"'{name}' stands in both [{table_of[same]}] and [{table}]." if table_of[same] != table
                                 else f"'{name}' stands in [{table}] twice.")

@@ -53,13 +53,15 @@ FIGURES = {
 class Table:
     """Columns by name; numbers are NaN and texts empty where a case has none.
 
-    `swept` names the columns that the sweep sets, `derived` those of them that formulas do.
+    `swept` names the columns that the sweep sets, `derived` those of them that formulas do; `is_readable` says whether
+    the results of all runs that ended well could be read.
     """
 
     columns: dict[str, list] = field(default_factory=dict)
     swept: list[str] = field(default_factory=list)
     derived: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    is_readable: bool = True
     decks: list[str] = field(default_factory=list)
     sweep: str = ""
     system: str = ""
@@ -89,7 +91,7 @@ def make_table(sweep: Sweep, known: dict[str, dict[str, object]]) -> Table:
         rows.append({**known[case.key], "folder": str(folder.relative_to(sweep.plan.output))})
     for name in (*FIGURES, "exit_code", "cpu_time", "version", "folder"):
         table.columns[name] = [row[name] for row in rows]
-    table.notes = _notes(rows)
+    table.notes, table.is_readable = _notes(rows), not any(row["fault"] for row in rows)
     table.system = sweep.plan.units or _system(cases[0].deck)
     return table
 

@@ -43,6 +43,11 @@ class DeckTest(unittest.TestCase):
         self.assertEqual(found.groups["material"][0]["e1"], [2])
         self.assertNotIn("nu12", recorded_deck({"deck": text}, Path("a.nml")).groups["material"][0])
 
+    def test_names_in_capitals(self) -> None:
+        """Groups and keys may be written in any case, as in a deck."""
+        self.assertTrue(deck(SUN_CHEN).has("Plate"))
+        self.assertEqual(deck(SUN_CHEN).numbers("PLATE", "Length"), deck(SUN_CHEN).numbers("plate", "length"))
+
     def test_invalid_decks_are_refused(self) -> None:
         """Every deck outside the method ends with a sentence about the reason."""
         ten = "angles=0,90,0,90,0,0,90,0,90,0"

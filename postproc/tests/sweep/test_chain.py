@@ -1,5 +1,7 @@
 """Tests of sweeps with a second deck: what it takes from the first one, its figures, and the picture."""
 
+import contextlib
+import io
 import json
 import tempfile
 import unittest
@@ -10,6 +12,7 @@ import numpy as np
 from implam_post.io.deck_text import copy_groups
 from implam_post.sweep.chain import add_figures, following, remark_of_bounds
 from implam_post.sweep.chain_plots import groups, plot_strength
+from implam_post.sweep.command import exit_code
 from implam_post.sweep.plan import read_plan
 from implam_post.sweep.runs import Sweep
 from implam_post.sweep.table import Table, make_table
@@ -106,6 +109,10 @@ class ChainTest(unittest.TestCase):
         self.assertEqual(sum(str(damaged[1]) in note for note in table.notes), 1)
         self.assertEqual(table.columns["dent_depth"][0], 1e-4)
         self.assertEqual(table.columns["residual_strength"][1], 3e8)
+        with contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual(exit_code(self.sweep, table), 1)
+            # Cases 3 and 4 have not run.
+            self.assertEqual(exit_code(self.sweep, Table()), 75)
 
     def test_groups_are_copied(self) -> None:
         """All groups of a name are replaced, and comments go with neither."""

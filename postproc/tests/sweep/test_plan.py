@@ -99,7 +99,10 @@ class PlanTest(unittest.TestCase):
                   "as text": grid + '[derived]\n"mesh.patch" = 1', "only\\.": "[grid]\n'mesh[3].patch' = [1]",
                   "the most": f"[grid]\na={list(range(400))}\nb={list(range(400))}",
                   "single number": grid + '[derived]\nmesh.patch = "energy*mesh.elements"', "units": "units = 'feet'",
-                  "is a table": "grid = 3", "text, and units": "output = 3"}
+                  "is a table": "grid = 3",
+                  "patch' stands in .grid. twice": f"[grid]\n{patch}mesh.patch = [2]",
+                  "1..patch' stands in .grid. twice": f'[grid]\n{patch}"mesh[1].patch" = [2]',
+                  "text, and units": "output = 3"}
         for expected, text in faults.items():
             with self.subTest(expected), self.assertRaisesRegex(DeckError, f"^{self.folder}/sweep.toml: .*{expected}"):
                 self.plan(text)
