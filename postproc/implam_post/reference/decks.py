@@ -23,6 +23,8 @@ def impactor_of(deck: Deck) -> Impactor:
     """Return the impactor."""
     if not deck.has("impactor"):
         raise DeckError(f"{deck.path.name} has no &impactor: there is no impact to check.")
+    if deck.values("impactor", "travel"):
+        raise deck.error("impactor", "the semi-analytic solution is that of a free impactor, without travel.")
     mass = deck.number("impactor", "mass")
     if mass <= 0:
         raise deck.error("impactor", "the mass must be greater than zero.")

@@ -50,7 +50,7 @@ def impact_case(deck: Deck) -> ImpactCase:
     impactor = impactor_of(deck)
     if set(deck.edges()) != {"simple"}:
         raise deck.error("plate", "the semi-analytic solution needs edges = 'simple' all round.")
-    for group in ("pressure", "static", "line"):
+    for group in ("pressure", "static", "line", "support"):
         if deck.has(group):
             raise deck.error(group, "the semi-analytic solution knows no load but the impactor, no support but the "
                                     "edges.")

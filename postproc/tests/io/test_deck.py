@@ -62,6 +62,8 @@ class DeckTest(unittest.TestCase):
             "alpha_cr": ("law='hertz' k=8.112e8 alpha_cr=80.3e-6", "k=8.112e8"),
             "reload": ("law='hertz' k=8.112e8", "q=1.2"),
             "none of tan_sun": ("law='hertz'", "law='plastic'"),
+            "no support but the edges": ("&time", "&support window=0.1, 0.1 /\n&time"),
+            "free impactor": ("velocity=3", "travel=1e-4"),
             "isn't a number": ("velocity=3", "velocity=NaN"),
             "load but the impactor": ("&time", "&pressure value=1 /\n&time"),
         }
