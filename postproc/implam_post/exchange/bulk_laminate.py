@@ -63,6 +63,10 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     from pyNastran.bdf.cards.properties.shell import PCOMP, PCOMPG
     if len(card.fields) < _FIRST_PLY + 1:
         raise bulk.error(card, "it has no plies: they follow in continuations, from the second field on.")
+    material = _FIRST_PLY if card.name == "PCOMP" else _FIRST_PLY + 1
+    for number, key in ((material, "MID1"), (material + 1, "T1")):
+        if card.fields.field(number) is None:
+            raise bulk.error(card, f"{key} is blank: only plies behind the first one have that of the ply before.")
     laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
     if card.name == "PCOMPG":
         _refuse_repeated(bulk, card, [*laminate.global_ply_ids])

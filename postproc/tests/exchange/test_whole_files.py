@@ -126,6 +126,8 @@ REFUSED = {
     "number": (whole(material=MATERIAL.replace("139000.", "139000")), "8: MAT8", "E11", "with a decimal point"),
     "steps of a range": (whole(supports="SPC1,1,123456,6,THRU,16,BY,5\n"), "54: SPC1", "'BY' isn't an integer"),
     "plies that don't continue": (whole(laminate="PCOMP,1\n1,1,.25,45.,YES\n"), "11: 1", "a continuation has blanks"),
+    "no first material": (whole(laminate="PCOMP,1\n,,.25,45.\n"), "10: PCOMP", "MID1 is blank"),
+    "no first thickness": (whole(laminate="PCOMPG,1\n,1,1,,45.\n"), "10: PCOMPG", "T1 is blank"),
     "no plies": (whole(laminate="PCOMP,1\n"), "10: PCOMP", "it has no plies"),
     "lost continuation": (in_columns(whole()).replace("PCOMP   1" + " " * 55 + "SYM     ", "PCOMP   1" + " " * 55
                           + "SYM     +A").replace("        1       .25     45.", "+B      1       .25     45."),
