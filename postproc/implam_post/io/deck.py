@@ -16,14 +16,15 @@ from implam_post.io.units import SYSTEMS, system_of
 class Deck:
     """The groups of a deck, with its defaults filled in."""
 
-    def __init__(self, text: str, path: Path, adopted: str = "") -> None:
+    def __init__(self, text: str, path: Path, adopted: str | None = None) -> None:
         """Read the groups from `text`; `path` names the deck in messages.
 
-        `adopted` lists values that published materials gave in a run, a line each: &material 1 E1 = 130e9 [source].
+        `adopted` lists values that published materials gave in a run, a line each: &material 1 E1 = 130e9 [source];
+        None: the deck is none of a run.
         """
-        self.path = path
+        self.path, self.has_adopted = path, adopted is not None
         self.groups = read_namelist(text, path.name)
-        for group, place, key, value in re.findall(r"&(\w+) (\d+) (\w+) = (\S+) \[", adopted):
+        for group, place, key, value in re.findall(r"&(\w+) (\d+) (\w+) = (\S+) \[", adopted or ""):
             given = read_namelist(f"&{group} {key}={value} /", path.name)[group][0]
             self.groups[group][int(place) - 1] = given | self.groups[group][int(place) - 1]
 

@@ -64,6 +64,10 @@ def _material(deck: Deck, group: Group) -> Material:
     """Return one ply material, isotropic if the group gives E and nu."""
     def number(key: str, default: float | None = None) -> float:
         where = f"{deck.path.name}: &material {key}"
+        # A missing density of 0 is that of a static deck, which needs none.
+        if key.lower() not in group and "library" in group and not deck.has_adopted and default != 0:
+            raise deck.error("material", f"{key} is left to library = {group['library'][0]!r}, whose values only the "
+                                         "program knows: write it into the deck, or give NAME.h5 of a run.")
         return as_number(deck.single(group.get(key.lower(), []), "material", key, default), where)
 
     moves = deck.has("time") or deck.has("impactor")

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.deck import recorded_deck
+from implam_post.io.deck import Deck, recorded_deck
 from implam_post.io.errors import DeckError
-from implam_post.laminate.decks import section_of_deck
+from implam_post.laminate.decks import plies_of, section_of_deck
 from implam_post.reference.decks import indentation_law_of
 from implam_post.reference.semi_analytic import impact_case
 from tests.decks import KARAS, SUN_CHEN, deck
@@ -42,6 +42,12 @@ class DeckTest(unittest.TestCase):
         self.assertEqual(found.groups["material"][0]["nu12"], [0.3])
         self.assertEqual(found.groups["material"][0]["e1"], [2])
         self.assertNotIn("nu12", recorded_deck({"deck": text}, Path("a.nml")).groups["material"][0])
+        text += "\n&laminate materials='a' angles=0 thicknesses=1 /"
+        with self.assertRaisesRegex(DeckError, "G12 is left to library = 'b'"):
+            plies_of(Deck(text, Path("a.nml")))
+        whole = adopted + "\n&material 1 G12 = 5e9 [b]\n&material 1 G23 = 3e9 [b]\n&material 1 E2 = 9e9 [b]"
+        material = plies_of(recorded_deck({"deck": text.replace("E1=2", "E1=2e11"), "library": whole}, Path("a.nml")))
+        self.assertEqual((material[0].material.e1, material[0].material.g13), (2e11, 5e9))
 
     def test_names_in_capitals(self) -> None:
         """Groups and keys may be written in any case, as in a deck."""
