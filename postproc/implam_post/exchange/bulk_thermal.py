@@ -40,6 +40,7 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
                                     "of stress at one temperature.")
     reference = next(iter(references), 0.0)
     if temperature is not None:
+        _note_blank_laminates(bulk, properties, cards, remarks)
         return Thermal(temperature - reference, reference)
     for card in cards:
         if card.given(_TREF[card.name]):
@@ -51,9 +52,18 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
 def _cards_with_reference(bulk: BulkData, properties: Collection[int], names: Collection[str]) -> list[BulkCard]:
     """Return the cards whose TREF counts: those of the laminate if they give it, else those of its materials."""
     laminates = [card for card in bulk.named("PCOMP", "PCOMPG") if bulk.integer(card, 1) in properties]
-    if any(card.given(_TREF[card.name]) for card in laminates):
+    if any(card.fields.field(_TREF[card.name]) is not None for card in laminates):
         return laminates
     return [card for card in bulk.named("MAT1", "MAT8") if f"{card.name}_{card.fields.field(1)}" in names]
+
+
+def _note_blank_laminates(bulk: BulkData, properties: Collection[int], cards: Iterable[BulkCard], remarks: Remarks
+                          ) -> None:
+    """Say where the TREF of materials counts in place of a laminate's blank one: MSC Nastran takes 0 then."""
+    if any(card.name in ("MAT1", "MAT8") and card.given(_TREF[card.name]) for card in cards):
+        for card in bulk.named("PCOMP", "PCOMPG"):
+            if bulk.integer(card, 1) in properties:
+                remarks.add(card, "TREF is blank: that of the materials is taken, for which MSC Nastran takes 0")
 
 
 def _temperature(bulk: BulkData, cards: Iterable[BulkCard], remarks: Remarks) -> float | None:
