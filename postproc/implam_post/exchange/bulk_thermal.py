@@ -80,7 +80,7 @@ def _temperature(bulk: BulkData, cards: Iterable[BulkCard], remarks: Remarks) ->
         chosen = next(iter(found))
     for number, (card, _) in found.items():
         if number != chosen:
-            remarks.add(card, f"set {number} isn't taken: the case control doesn't take it")
+            remarks.add(card, f"set {number} isn't taken: it isn't TEMPERATURE(LOAD) of the case control")
     if chosen not in found:
         return None
     card, temperature = found[chosen]
