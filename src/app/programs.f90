@@ -175,7 +175,8 @@ contains
     type(line_t), allocatable :: lines(:), columns(:)
 
     call load_deck_table(vocabulary)
-    call explain_column(command%target, columns)
+    call explain_column(command%target, columns, error)
+    if (allocated(error)) return
     if (size(columns) > 0 .and. vocabulary%group_index(command%target) == 0 .and. &
         size(vocabulary%groups_with(command%target)) == 0) then
       call print_lines(communicator, columns)

@@ -1,5 +1,6 @@
 !> Explains the tables of results, for the terminal and the manual.
 module result_explain
+  use errors, only: error_t, exit_usage, fail
   use field_results, only: field_rows
   use result_rows, only: column_rows
   use result_tables, only: cell, column_heading, column_meaning, column_name, column_unit, field_heading, &
@@ -26,27 +27,47 @@ contains
   end function is_result_topic
 
   !> A column of the history or a field by name, also with a number for its N; no lines if there is none.
-  subroutine explain_column(name, lines)
-    !> Such as work_external or area_below_3
-    character(len=*), intent(in) :: name
+  subroutine explain_column(topic, lines, error)
+    !> Such as work_external or area_below_3, also behind the name of its table as `history force`
+    character(len=*), intent(in) :: topic
     !> The explanation
+    type(line_t), allocatable, intent(out) :: lines(:)
+    !> Raised if a table is named and has no such column or field
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: name
+    integer :: mark
+
+    name = lower_case(trim(topic))
+    mark = max(1, scan(name, ' .%'))
+    if (is_result_topic(name(:mark - 1))) name = trim(adjustl(name(mark + 1:)))
+    call find_column(name, lines)
+    if (size(lines) == 0 .and. is_result_topic(lower_case(topic(:mark - 1)))) &
+      call fail(error, exit_usage, 'There is no '//name//' in the results; `implam explain '//topic(:mark - 1)// &
+                '` lists what there is.')
+  end subroutine explain_column
+
+  !> Explains a column of the history or a field.
+  subroutine find_column(name, lines)
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> The explanation; empty: there is none
     type(line_t), allocatable, intent(out) :: lines(:)
     integer :: row
 
     allocate (lines(0))
-    row = field_row(column_rows, lower_case(trim(name)))
+    row = field_row(column_rows, name)
     if (row > 0) then
       call append(lines, 'NAME_history.csv')
       call append(lines, '  '//cell(column_rows(row), column_name)//': '//cell(column_rows(row), column_meaning))
       if (cell(column_rows(row), column_unit) /= '-') &
         call append(lines, '  unit: '//cell(column_rows(row), column_unit))
     end if
-    row = field_row(field_rows, lower_case(trim(name)))
+    row = field_row(field_rows, name)
     if (row == 0) return
     call append(lines, 'NAME.h5')
     call append(lines, '  '//cell(field_rows(row), field_name)//': '//cell(field_rows(row), field_meaning))
     if (cell(field_rows(row), field_unit) /= '-') call append(lines, '  unit: '//cell(field_rows(row), field_unit))
-  end subroutine explain_column
+  end subroutine find_column
 
   !> The columns of the history or the fields over the plate.
   subroutine explain_results(topic, markdown, lines)

@@ -54,7 +54,7 @@ contains
       if (record%compression%failed) &
         call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
     end if
-    if (struck .and. .not. now%force > 0) call add_dent(lines, figures)
+    if (struck .and. .not. now%force > 0) call add_dent(lines, deck, figures)
     if (struck) call add_impact_energy(lines, deck, now)
     call add_energies(lines, now%ledger)
     if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'kinetic energy at most '// &
@@ -111,20 +111,24 @@ contains
     end if
   end subroutine add_impact
 
-  !> Depth of the dent.
-  subroutine add_dent(lines, figures)
+  !> Depth of the dent. Until the plate is at rest its deflection is part of it.
+  subroutine add_dent(lines, deck, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
+    character(len=:), allocatable :: depth
 
     if (figures%dent(1) > figures%dent(2)) then
-      call add_figure(lines, 'dent', rounded_text(figures%dent(1))// &
-                      ' below the surface around it, of that indentation '// &
-                rounded_text(figures%dent(2)))
+      depth = rounded_text(figures%dent(1))//' below the surface around it, of that indentation '// &
+              rounded_text(figures%dent(2))
+      if (.not. deck%stepping%central%settle > 0) depth = depth//'; the plate still vibrates'
     else
-      call add_figure(lines, 'dent', rounded_text(figures%dent(2))//', the indentation''s')
+      depth = rounded_text(figures%dent(2))//', the indentation''s'
     end if
+    call add_figure(lines, 'dent', depth)
   end subroutine add_dent
 
   !> Estimated error of a result.

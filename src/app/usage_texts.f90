@@ -44,7 +44,8 @@ module usage_texts
     '-mat_..., -ksp_..., -log_view', 'these and other options with one dash are passed to PETSc'], [2, 12])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
-    '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step', '4', 'files', '5', 'internal', &
+    '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step, an unstable motion, or with &
+      &strict a limit of the model passed', '4', 'files', '5', 'internal', &
     '75', 'stopped by a signal of the queue or the wall-clock time, with a checkpoint written: resume with &
       &restart'], [2, 7])
   !> Paragraphs on ranks and signals.

@@ -12,7 +12,8 @@ module deck_cross_checks
   use failure_criteria, only: needed_strengths
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_at, key_gravity, key_integrator, key_mass, &
                            key_travel, impactor_key_rise => key_rise, keys_of_motion
-  use indentation_deck, only: indentation_group, key_k
+  use impact_parameters, only: law_hertz
+  use indentation_deck, only: indentation_group, key_k, key_alpha_critical
   use kinds, only: wp
   use line_deck, only: line_group, key_rise
   use line_loads, only: line_load_t
@@ -197,6 +198,7 @@ contains
         call remark(s, problems, mesh_group, key_patch, 'reaches beyond the nose that presses on it: its corners '// &
                     'are '//short_text(deck%mesh%patch/sqrt(2.0_wp))//' from the struck point, and the radius is '// &
                     short_text(deck%impactor%radius)//'; make the patch smaller.')
+      call check_dent(deck, problems)
       if (any([(deck%supports(i)%carries(deck%impactor%at), i=1, size(deck%supports))]) .and. &
           are_clear(s, problems, impactor_group, key_at) .and. .not. problems%concern(support_group)) &
         call remark(s, problems, impactor_group, key_at, 'the struck point lies on the frame of &support, where '// &
@@ -205,7 +207,7 @@ contains
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call report(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
-      if (deck%is_static() .or. deck%impactor%travel > 0) return
+      if (deck%is_static() .or. s%is_given(impactor_group, key_travel)) return
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &
@@ -213,6 +215,22 @@ contains
                   'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
     end associate
   end subroutine check_impact
+
+  !> Remarks on a dent that begins beyond the range of the indentation law, which ends at the laminate's thickness:
+  !> mostly a length in another unit, which makes the contact elastic.
+  subroutine check_dent(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The remark is added
+    type(problems_t), intent(inout) :: problems
+
+    if (deck%indentation%law == law_hertz .or. .not. allocated(deck%laminate%thickness)) return
+    associate (thickness => sum(deck%laminate%thickness))
+      if (thickness > 0 .and. deck%indentation%alpha_critical > thickness) &
+        call remark(deck%settings, problems, indentation_group, key_alpha_critical, 'is larger than the laminate '// &
+                    'is thick, '//short_text(thickness)//': the contact is elastic and leaves no dent.')
+    end associate
+  end subroutine check_dent
 
   !> Checks that interfaces lie within the laminate.
   subroutine check_interfaces(deck, problems)

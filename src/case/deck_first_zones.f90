@@ -9,6 +9,7 @@ module deck_first_zones
   use interface_places, only: delamination_group
   use kinds, only: wp
   use laminate_parameters, only: shear_energy
+  use line_deck, only: line_group, line_key_at => key_at
   use layer_extents, only: cells_at_once, largest_extents, thicknesses_ahead, widened_extent
   use text, only: append
   implicit none
@@ -33,7 +34,7 @@ contains
         call require('a front needs it, and layers follow the damage of law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
         call require(key_strip//' runs across its whole width')
-      else if (.not. all(beside_layers(deck))) then
+      else if (.not. all(beside_layers(deck)) .and. .not. problems%concern(line_group, line_key_at)) then
         call require('a &line acts on layers that are there from the start')
       end if
     end do

@@ -68,11 +68,11 @@ contains
       call put('time steps in the rise time', scales%contact_time/deck%stepping%time%step, bare)
       call put('bending wavelength at first contact', scales%wave_length, length)
       call put('elements in a wavelength', scales%wave_length/o%edge, bare)
-      call put('expected peak force (undamaged plate)', o%force, force)
+      call put('expected peak force (undamaged plate, linear strains)', o%force, force)
       call put('expected indentation', o%indentation, length)
       call put('expected deflection over thickness', o%deflection/scales%thickness, bare)
       call put('expected number of contacts', real(o%contacts, wp), bare)
-      call put('expected end of the last contact', o%last_contact, time)
+      call put('expected end of the last contact', o%last_contact, time, o%is_cut)
       call put('error of the peak force due to the time step', 100*o%step_error(1), percent)
       call put('error of the force history due to the time step', 100*o%step_error(2), percent)
       call put('error of the peak force due to the mesh', 100*o%mesh_error(1), percent)
@@ -82,15 +82,23 @@ contains
   contains
 
     !> Adds a line for a known, non-zero value.
-    subroutine put(name, value, dimension)
+    subroutine put(name, value, dimension, is_bound)
       !> Name of the quantity
       character(len=*), intent(in) :: name
       !> Its size, in the deck's units
       real(wp), intent(in) :: value
       !> Its dimension
       type(dimension_t), intent(in) :: dimension
+      !> True: the value is a lower bound
+      logical, intent(in), optional :: is_bound
+      character(len=:), allocatable :: number
 
-      if (value > 0) call append(lines, table_line(name, read_as(deck, value, dimension), unit_of(deck, dimension)))
+      if (.not. value > 0) return
+      number = read_as(deck, value, dimension)
+      if (present(is_bound)) then
+        if (is_bound) number = '> '//number
+      end if
+      call append(lines, table_line(name, number, unit_of(deck, dimension)))
     end subroutine put
   end function scale_lines
 

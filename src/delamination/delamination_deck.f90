@@ -169,11 +169,11 @@ contains
     !> Receives it
     type(delamination_t), intent(inout) :: delamination
     real(wp) :: weaker(2)
+    integer :: above
 
     weaker = 0
-    associate (below => delamination%below_ply)
-      if (below >= 1 .and. below < size(strengths, 2)) weaker = minval(strengths(:, below:below + 1), dim=2)
-    end associate
+    above = max(1, min(delamination%below_ply, size(strengths, 2) - 1))  ! one outside, which is refused: the nearest
+    if (above < size(strengths, 2)) weaker = minval(strengths(:, above:above + 1), dim=2)
     if (.not. settings%is_given(group, key_law, place)) call settings%derive(group, key_law, &
       trim(merge('cohesive', 'front   ', suits_cohesive(settings, place, weaker))), .true., place)
     delamination%law = code_of(settings%text_of(group, key_law, place), 'front cohesive', [law_front, law_cohesive])

@@ -11,7 +11,7 @@ module layer_extents
   !> an impact changes by .09 to .16 % (doc/studies/interfaces.md).
   real(wp), parameter, public :: onset_of_layers = 0.5_wp
   !> Layered cells required ahead of damage, and additional cells of each extension, so that extensions are few. The
-  !> effect of other numbers is given in doc/manual/delamination.md.
+  !> effect of other numbers is given in doc/studies/interfaces.md.
   integer, parameter, public :: cells_ahead = 3, cells_at_once = 4
   !> Thicknesses of the laminate that the layers reach at least beyond damage, patch and starter: self-equilibrated
   !> shear decays within one (Saint-Venant's principle). More cells ahead change the force of an impact by .09 to .16 %

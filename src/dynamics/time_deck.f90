@@ -7,6 +7,7 @@ module time_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
+  use short_numbers, only: text_at_least
   use stepping_parameters, only: time_t, integrator_newmark, integrator_generalized_alpha, &
                                  integrator_central_difference
   use text, only: to_text
@@ -116,7 +117,7 @@ contains
                   to_text(time%end)//'.')
       else if (time%end > max_steps*time%step) then
         call report(settings, problems, time_group, 'step', 'makes more than '//to_text(max_steps)//' steps; '// &
-                  'allowed: from '//to_text(time%end/max_steps)//'.')
+                  'allowed: from '//text_at_least(time%end/max_steps)//'.')
       end if
     end if
     if (time%integrator == integrator_central_difference) then

@@ -14,7 +14,7 @@ module indentation_deck
   public :: fill_indentation, check_indentation, echo_without_group
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k'
+  character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k', key_alpha_critical = 'alpha_cr'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: indentation_group_row = &
     'indentation | optional | Contact force against indentation; left out: elastic Hertz, k by Sun''s formula.'
@@ -60,7 +60,7 @@ contains
       law%q = settings%real_of(indentation_group, 'q')
       law%reload = settings%real_of(indentation_group, 'reload')
       law%beta = settings%real_of(indentation_group, 'beta')
-      law%alpha_critical = settings%real_of(indentation_group, 'alpha_cr')
+      law%alpha_critical = settings%real_of(indentation_group, key_alpha_critical)
     end if
     law%k = settings%real_of(indentation_group, key_k)
     if (settings%is_given(indentation_group, key_k) .or. struck_compliance <= 0) return
@@ -97,9 +97,9 @@ contains
     if (law%law == law_hertz) then
       call idle('q reload beta alpha_cr dent', 'has no effect with law = ''hertz''.')
     else
-      if (.not. (settings%is_given(indentation_group, 'alpha_cr') .or. &
-                 problems%concern(indentation_group, 'alpha_cr'))) &
-        call report(settings, problems, indentation_group, 'alpha_cr', 'is missing; law = '''// &
+      if (.not. (settings%is_given(indentation_group, key_alpha_critical) .or. &
+                 problems%concern(indentation_group, key_alpha_critical))) &
+        call report(settings, problems, indentation_group, key_alpha_critical, 'is missing; law = '''// &
                   settings%text_of(indentation_group, 'law')//''' needs the '// &
                   'indentation above which a dent remains (law = ''hertz'' leaves none).')
       if (law%law == law_tan_sun) call check_exponents(settings, law, problems)

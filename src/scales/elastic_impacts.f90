@@ -29,6 +29,8 @@ module elastic_impacts
     integer :: contacts = 0
     !> The contact was over before the steps were
     logical :: complete = .false.
+    !> There was contact in the last step, so that `last_contact` is only the end of the calculation
+    logical :: is_cut = .false.
   end type elastic_impact_t
 
   !> Fraction of the largest force that counts as contact: as much as its permitted error, 1 %.
@@ -97,6 +99,7 @@ contains
     elastic%force = force(:min(i, max_steps))
     elastic%indentation = contact%alpha_max
     elastic%last_contact = active*step
+    elastic%is_cut = active > 0 .and. active == size(elastic%force)
     elastic%velocity = ball(2)
   end function run_elastic_impact
 

@@ -35,6 +35,8 @@ module setup_elastic_impacts
     integer :: contacts = 0
     !> End of the last one
     real(wp) :: last_contact = 0
+    !> True: it is later, as the run ends in contact
+    logical :: is_cut = .false.
     !> Side of the elements near the struck point
     real(wp) :: edge = 0
     !> Relative errors of the force's peak and history, by the step and by the mesh; negative: not known
@@ -166,6 +168,7 @@ contains
     expected%deflection = fine%deflection
     expected%contacts = fine%contacts
     expected%last_contact = fine%last_contact
+    expected%is_cut = fine%is_cut
     expected%contact_side = contact_side(setup, fine%indentation)
     if (.not. setup%mesh%patch > expected%contact_side) return
     elastic%setup%mesh%patch = expected%contact_side

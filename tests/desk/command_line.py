@@ -51,6 +51,10 @@ def check_explain(implam):
     require("did you mean length" in slip, "No help with a slip.")
     three = output_of(implam, "explain", "plate", "length", "edges", code=EXIT_USAGE)
     require("one deck" in three, "Three topics pass.")
+    column = output_of(implam, "explain", "impactor_velocity")
+    require(column == output_of(implam, "explain", "history", "impactor_velocity"), "A column with its table differs.")
+    slip = output_of(implam, "explain", "history", "vorce", code=EXIT_USAGE)
+    require("There is no vorce in the results; `implam explain history` lists" in slip, slip)
     print("explain: done")
 
 
