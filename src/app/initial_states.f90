@@ -1,7 +1,7 @@
 !> Initial state from the end of another run: it is read from that run's checkpoint, compared with the deck, and
 !> transferred to the model.
 module initial_states
-  use checkpoints, only: checkpoint_archive_t
+  use checkpoints, only: checkpoint_archive_t, checkpoint_ending
   use cell_grids, only: cell_edges
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
@@ -57,6 +57,12 @@ contains
 
     if (present(lacks)) lacks = .false.
     if (.not. deck%initial%is_inherited) return
+    if (.not. present(lacks) .and. without_dot(deck%initial%from) == &
+        without_dot(deck%output%directory//'/'//deck%name//checkpoint_ending)) then
+      call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; allowed: '// &
+                  'another &case name or &output directory', error)
+      return
+    end if
     if (present(lacks)) then
       if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
       call communicator%broadcast(lacks)
@@ -75,7 +81,8 @@ contains
     end if
     do i = 1, size(deck%delaminations)
       if (.not. deck%delaminations(i)%is_adaptive) cycle
-      if (is_mapped(deck, old)) old%delaminations(i)%zone = covering_extents(deck, old, i)
+      if (is_mapped(deck, old) .or. any(abs(deck%mesh%struck - old%mesh%struck) > 0)) &
+        old%delaminations(i)%zone = covering_extents(deck, old, i)
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
     if (time < merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())) then
@@ -83,6 +90,17 @@ contains
       call print_lines(communicator, [remark])
     end if
   end subroutine fit_initial_state
+
+  !> A path without a leading ./ .
+  pure function without_dot(path) result(rest)
+    !> The path
+    character(len=*), intent(in) :: path
+    !> What follows
+    character(len=:), allocatable :: rest
+
+    rest = path
+    if (index(path, './') == 1) rest = path(3:)
+  end function without_dot
 
   !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
   subroutine remark_stopped(deck, at, remark)

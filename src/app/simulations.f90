@@ -211,8 +211,9 @@ contains
     if (allocated(error)) return
     if (self%history%rows /= rows) &
       call self%log%warning('The history before the checkpoint is missing; it continues from here.')
+    ! Without an interval the only fields are those of the end, which are written again.
     call self%fields%resume(communicator, self%base, self%provenance, part_of(self%deck), &
-                            shown_time(self%stepper%now%time), error)
+                            merge(shown_time(self%stepper%now%time), -1.0_wp, self%fields_clock%interval > 0), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
     call start_progress(self%progress, self%stepper, end_of(self))

@@ -4,8 +4,8 @@ module deck_initial_states
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, remark_idle, report
-  use delamination_deck, only: key_zone
-  use delamination_parameters, only: law_names, law_of
+  use delamination_deck, only: key_starter, key_zone
+  use delamination_parameters, only: delamination_t, law_names, law_of
   use impactor_deck, only: impactor_group
   use initial_state_deck, only: initial_state_group
   use interface_places, only: delamination_group
@@ -15,6 +15,7 @@ module deck_initial_states
   use material_parameters, only: constant_names, constants_of, constants
   use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
   use plate_deck, only: key_symmetry
+  use plate_options, only: kinematics_linear
   use ply_damage_parameters, only: damage_names, numbers_of
   use roundings, only: rounding
   use static_deck, only: static_group
@@ -76,7 +77,9 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
-    if (any(differ(deck%plate%length, old%plate%length))) then
+    if (deck%kinematics /= old%kinematics) then
+      objection = both('&case kinematics', strains_name(deck%kinematics), strains_name(old%kinematics))
+    else if (any(differ(deck%plate%length, old%plate%length))) then
       objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))
     else if (differ(deck%plate%imperfection, old%plate%imperfection)) then
       objection = both('&plate imperfection', to_text(deck%plate%imperfection), to_text(old%plate%imperfection))
@@ -215,14 +218,85 @@ contains
         if (k > 0) then
           objection = both('&delamination '//trim(law_names(k))//' below ply '//to_text(mine(i)%below_ply), &
                            to_text(here(k)), to_text(there(k)))
-        else if (.not. mine(i)%is_adaptive .and. any(mine(i)%zone < its(i)%zone*(1 - rounding))) then
-          objection = both('&delamination '//key_zone//' below ply '//to_text(mine(i)%below_ply), &
-                           short_list(mine(i)%zone), short_list(its(i)%zone))//'; allowed: as large or larger'
+        else if (has_other_starter(mine(i), its(i))) then
+          objection = both('&delamination '//key_starter//' below ply '//to_text(mine(i)%below_ply), &
+                           starter_list(mine(i)), starter_list(its(i)))//'; allowed: the same, or none'
+        else if (.not. mine(i)%is_adaptive) then
+          objection = zone_objection(deck, old, mine(i), its(i))
         end if
         if (objection /= '') return
       end do
     end associate
   end function interface_objection
+
+  !> Objection to a fixed zone that does not contain that of the other run; each is centred on the point that is struck
+  !> in its run.
+  function zone_objection(deck, old, mine, its) result(objection)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> The interface, and that of the other run
+    type(delamination_t), intent(in) :: mine, its
+    !> One clause; empty: none
+    character(len=:), allocatable :: objection
+    real(wp) :: needed(2)
+
+    objection = ''
+    needed = min(its%zone + 2*abs(deck%mesh%struck - old%mesh%struck), max(its%zone, deck%plate%length))
+    if (.not. any(mine%zone < needed*(1 - rounding))) return
+    objection = both('&delamination '//key_zone//' below ply '//to_text(mine%below_ply), short_list(mine%zone), &
+                     short_list(its%zone))
+    if (any(differ(deck%mesh%struck, old%mesh%struck))) objection = objection//', centred on '// &
+                                                                short_list(deck%mesh%struck)//' and '// &
+                                                                short_list(old%mesh%struck)
+    objection = objection//'; allowed: '//short_list(needed)//' or larger'
+  end function zone_objection
+
+  !> True for a starter that the other run did not have: damage is inherited, so that it would have no effect.
+  pure logical function has_other_starter(mine, its)
+    !> The interface, and that of the other run
+    type(delamination_t), intent(in) :: mine, its
+
+    has_other_starter = .false.
+    if (.not. (mine%starter > 0 .or. mine%starter_strip(1) < mine%starter_strip(2))) return
+    has_other_starter = (mine%starter_round .neqv. its%starter_round) .or. &
+                        any(differ(starter_of(mine), starter_of(its)))
+  end function has_other_starter
+
+  !> Size of a starter, its centre, and its strip.
+  pure function starter_of(delamination) result(numbers)
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Side or diameter, centre along x and y, first and last x of a strip
+    real(wp) :: numbers(5)
+
+    numbers = [delamination%starter, delamination%starter_at, delamination%starter_strip]
+  end function starter_of
+
+  !> A starter as text.
+  pure function starter_list(delamination) result(list)
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Its numbers and shape, or none
+    character(len=:), allocatable :: list
+
+    list = 'none'
+    if (delamination%starter_strip(1) < delamination%starter_strip(2)) then
+      list = short_list(delamination%starter_strip)
+    else if (delamination%starter > 0) then
+      list = short_list([delamination%starter])//trim(merge(' round ', ' square', delamination%starter_round))// &
+             ' at '//short_list(delamination%starter_at)
+    end if
+  end function starter_list
+
+  !> Name of the strains.
+  pure function strains_name(kinematics) result(name)
+    !> kinematics_von_karman or kinematics_linear
+    integer, intent(in) :: kinematics
+    !> As the deck has it
+    character(len=:), allocatable :: name
+
+    name = trim(merge('''linear''    ', '''von_karman''', kinematics == kinematics_linear))
+  end function strains_name
 
   !> True if the mesh has the same lines along one direction.
   pure logical function has_same_lines(deck, old, direction) result(same)

@@ -98,7 +98,7 @@ contains
         plane = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
         call scaled%add(plane)
         plane = m(4)*v(3)**2/2 + plane + method%steps%now/2*dot_product(method%force(:, i), v) &
-                - (dot_product(method%stacks%history%forces(:, i), method%stacks%history%change(:, i)) &
+                - (dot_product(method%stacks%history%forces(:, i), method%stacks%history%last_change(i)) &
                    + method%rigs%reaction(i)*method%rigs%approach(i))/2
         if (allocated(method%inertia%springs)) plane = plane - method%steps%now/2* &
           sum(method%inertia%springs(:, i)*now%motion%displacement(:, i)*now%motion%velocity(:, i))

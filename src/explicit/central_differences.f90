@@ -204,6 +204,7 @@ contains
       call move_single(self, model, u, v)
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
                        self%force, now%interfaces%cohesive, u, v)
+      self%stacks%history%kept = 1
       if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, rates, v)
       call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)

@@ -95,7 +95,7 @@ contains
       if (.not. damage > work%points(j)%damage) cycle
       grows = .true.
       energy = surfaces%work(work%start(:, j), jumps(:, j), work%points(j), damage)
-      call correct_force(work, j, jumps(:, j), stacks%history%change(:, p + j), &
+      call correct_force(work, j, jumps(:, j), stacks%history%last_change(p + j), &
                          (stacks%area(p + j)*energy + stacks%history%work(p + j))/2)
     end do
     if (.not. grows) return

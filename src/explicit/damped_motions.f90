@@ -15,8 +15,8 @@ module damped_motions
 
 contains
 
-  !> Reduces the velocities at the start of a step. Stored changes of coordinates, over half of which forces act in the
-  !> kinetic energy (central_difference_energies), are reduced by the same factor. Collective.
+  !> Reduces the velocities at the start of a step. Changes of coordinates in the last step, over half of which forces
+  !> act in the kinetic energy (central_difference_energies), are reduced by the same factor there. Collective.
   subroutine damp_motion(method, model, now, duration)
     !> Central differences, after a step
     type(central_difference_t), intent(inout) :: method
@@ -31,7 +31,7 @@ contains
     ratio = exp(2*log(final_ratio)*method%steps%now/duration)
     before = kinetic_energy(method, model, now)
     now%motion%velocity = ratio*now%motion%velocity
-    call method%stacks%history%scale_changes(ratio)
+    call method%stacks%history%damp(ratio)
     method%rigs%approach = ratio*method%rigs%approach
     method%lines%dofs%change = ratio*method%lines%dofs%change
     now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now)

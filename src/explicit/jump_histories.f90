@@ -22,6 +22,8 @@ module jump_histories
     real(wp), allocatable :: forces(:, :)
     !> Change of the jumps in the last step, and in the one before, (3, points)
     real(wp), allocatable :: change(:, :), earlier(:, :)
+    !> Part of the last step's velocities that damping has left; 1 at the end of a step
+    real(wp) :: kept = 1
     !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before, (4, points)
     real(wp), allocatable :: sticking(:, :)
     !> Friction, (points)
@@ -33,8 +35,10 @@ module jump_histories
   contains
     !> Takes over force and change of a step.
     procedure :: record
-    !> Multiplies the changes and the work done in them.
-    procedure :: scale_changes
+    !> Reduces the velocities of the last step, and the work done in it.
+    procedure :: damp
+    !> Change of a jump in the last step by the velocity that damping has left.
+    procedure :: last_change
     !> Checkpoint.
     procedure :: visit
   end type jump_history_t
@@ -67,19 +71,30 @@ contains
     self%change(:, p) = change
   end subroutine record
 
-  !> Multiplies the changes, and the work done in them, by the ratio of velocities.
-  pure subroutine scale_changes(self, ratio)
+  !> Reduces the velocities of the last step, and the work done in it. Changes stay those of the motion: their weighted
+  !> mean is stable for springs of any stiffness, and with reduced changes it is not.
+  pure subroutine damp(self, ratio)
     !> The history
     class(jump_history_t), intent(inout) :: self
-    !> The ratio
+    !> Part that is left
     real(wp), intent(in) :: ratio
 
-    self%change = ratio*self%change
-    self%earlier = ratio*self%earlier
-    self%sticking = ratio*self%sticking
+    self%kept = ratio
     self%work = ratio*self%work
     self%friction%stored = ratio*self%friction%stored
-  end subroutine scale_changes
+  end subroutine damp
+
+  !> Change of a jump in the last step by the velocity that damping has left, for the kinetic energy and works.
+  pure function last_change(self, p) result(change)
+    !> The history
+    class(jump_history_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: p
+    !> The change
+    real(wp) :: change(3)
+
+    change = self%kept*self%change(:, p)
+  end function last_change
 
   !> Writes or reads the history.
   subroutine visit(self, archive, owned, points)

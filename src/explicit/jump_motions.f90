@@ -89,13 +89,14 @@ contains
     real(wp), intent(inout) :: u(:, :), v(:, :)
     type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: old
-    real(wp) :: change(3), before(3), traction(3), work, in_contact, growth
+    real(wp) :: change(3), last(3), before(3), traction(3), work, in_contact, growth
     integer :: j, p
 
     do j = 1, size(forces, 2)
       p = stacks%first(i) + j
       surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
       change = steps%now*v(1:3, p)
+      last = stacks%history%last_change(p)
       before = u(1:3, p)
       u(1:3, p) = before + change
       work = work_of(stacks, p, steps, forces(:, j), change)
@@ -109,7 +110,7 @@ contains
           call slip_surfaces(friction(j), u(1:2, p), old%sliding, new%sliding, stacks%history%sticking(:, p), &
                              change(1:2))
           call add_heat(surfaces%law%stiffness_shear, before(1:2), u(1:2, p), &
-            sum(friction(j)%force*(change(1:2) + stacks%history%change(1:2, p)))/(2*area), old%sliding, new%sliding, &
+            sum(friction(j)%force*(change(1:2) + last(1:2)))/(2*area), old%sliding, new%sliding, &
             stacks%history%friction(p))
         end if
         growth = new%dissipated - old%dissipated
@@ -133,9 +134,10 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Force, and change of the jump in this step
     real(wp), intent(in) :: force(3), change(3)
+    real(wp) :: last(3)
 
-    work_of = sum(force*(change + steps%shift(stacks%history%change(:, p), change)) &
-                  + (force - stacks%history%forces(:, p))*stacks%history%change(:, p)/2)
+    last = stacks%history%last_change(p)
+    work_of = sum(force*(change + steps%shift(last, change)) + (force - stacks%history%forces(:, p))*last/2)
   end function work_of
 
   !> The same for the pressure of closed surfaces, a spring at the end of each step, beyond what it stores.
@@ -148,12 +150,13 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Opening at the start of the step, and its change
     real(wp), intent(in) :: before, change
-    real(wp) :: from, to
+    real(wp) :: from, to, last(3)
 
+    last = stacks%history%last_change(p)
     from = min(before, 0.0_wp)
     to = min(before + change, 0.0_wp)
-    lost = stacks%stiffness(2, p)*(to*(change + steps%shift(stacks%history%change(3, p), change)) &
-                                   + (to - from)*stacks%history%change(3, p)/2 - (to**2 - from**2)/2)
+    lost = stacks%stiffness(2, p)*(to*(change + steps%shift(last(3), change)) + (to - from)*last(3)/2 &
+                                   - (to**2 - from**2)/2)
   end function lost_in_contact
 
   !> Slip of surfaces, and the change of their elastic jumps.

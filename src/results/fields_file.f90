@@ -149,7 +149,7 @@ contains
     type(provenance_t), intent(in) :: provenance
     !> Modelled part of the plate: whole, quarter, half_x, half_y or point
     character(len=*), intent(in) :: part
-    !> Time of the checkpoint
+    !> Time of the last fields to keep, that of the checkpoint
     real(wp), intent(in) :: last_time
     !> Raised if the file can't be used
     type(error_t), allocatable, intent(inout) :: error
@@ -374,11 +374,11 @@ contains
       'Trouble with the field file '//self%base//'.h5: '//self%file%failure//'.')
   end subroutine report
 
-  !> Removes the times after a checkpoint and describes the others.
+  !> Removes the times after the last to keep and describes the others.
   subroutine drop_times_after(self, last_time)
     !> The fields
     class(fields_file_t), intent(inout) :: self
-    !> Time of the checkpoint
+    !> Time of the last fields to keep
     real(wp), intent(in) :: last_time
     type(line_t), allocatable :: names(:)
     character(len=:), allocatable :: grid

@@ -243,6 +243,8 @@ def check_refused(implam, folder, _):
         (["plate%imperfection=1e-4"], ["imperfection", "0.0001", "0 there"], EXIT_DECK),
         (["plate%length=60e-3, 41e-3"], ["0.06 0.041", "0.06 0.04 there"], EXIT_DECK),
         (["mesh%elements=14,22", "ply_damage%crack_closure=.true."], ["crack_closure", "1 here", "0 there"], EXIT_DECK),
+        (["case%kinematics='linear'"], ["kinematics", "'linear' here", "'von_karman' there"], EXIT_DECK),
+        (["delamination%starter=12e-3"], ["starter", "0.012 square", "none there"], EXIT_DECK),
         (["support%unilateral=.true."], ["both faces"], EXIT_DECK),
         (["time%settle=1e-3"], ["leaves no time"], EXIT_DECK),
         (["time%integrator='newmark'", "time%step=1e-6"], ["central_difference"], EXIT_DECK),
@@ -251,11 +253,14 @@ def check_refused(implam, folder, _):
         (["initial_state%from='damaged.h5'"], ["damaged"], EXIT_FILES),
         (["initial_state%from='newer.h5'"], ["another version"], EXIT_FILES),
     ]
+    cases.append(([f"case%name='{IMPACT}'"], ["writes its own end"], EXIT_DECK))
+    before = (folder / CHECKPOINT).read_bytes()
     for settings, words, code in cases:
         said = run([implam, deck_of(folder, COMPRESSION, settings)], code, folder)
         lines = [line for line in said.splitlines() if "warning:" not in line]
         require(len(lines) == 1 and all(word in lines[0] for word in words), f"{settings}: {said}")
-        require(not list(folder.glob(f"{COMPRESSION}_*")), f"{settings}: something was written.")
+        require(not list(folder.glob(f"{COMPRESSION}_*")) and (folder / CHECKPOINT).read_bytes() == before,
+                f"{settings}: something was written.")
     check = [implam, "check", deck_of(folder, COMPRESSION)]
     require("was stopped at" not in run(check, folder=folder), "A complete impact is called stopped.")
     run([implam, f"{IMPACT}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)

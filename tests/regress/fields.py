@@ -8,7 +8,7 @@ import h5py
 import meshio
 import numpy as np
 from restart import run_split
-from solver_runs import exit_code_of, read_history, require
+from solver_runs import checkpoint_of, exit_code_of, read_history, require, run, run_deck, write_deck
 
 SIDE = 8
 SETTINGS = [f"mesh%elements={SIDE},{SIDE}", "time%end=60e-6", "output%fields_every=10e-6",
@@ -39,10 +39,21 @@ def check_fields(history_path):
             require(abs(found - deflection) <= 1e-12 * deflection, f"At {time}: {found} instead of {deflection}.")
 
 
+def check_ended(implam, folder):
+    """The fields of the end, without others, are there once, also after a restart of the ended run."""
+    deck = write_deck(folder, "sun_chen_tan_sun.nml", [*SETTINGS[:2], "output%fields_every=0"])
+    base = str(run_deck(implam, deck)).removesuffix("_history.csv")
+    run([implam, "restart", checkpoint_of(folder)])
+    with h5py.File(base + ".h5") as file:
+        stored = [file["times"][name]["time"][()] for name in file["times"]]
+    require(len(stored) == 1 and abs(stored[0] - TIMES[-1]) < 1e-12 * TIMES[-1], f"{base}.h5 has the times {stored}.")
+
+
 def check_both(implam, folder):
     """Run, restart and read."""
     for history in run_split(implam, folder / "run", "sun_chen_tan_sun.nml", SETTINGS):
         check_fields(history)
+    check_ended(implam, folder / "ended")
     print(f"{len(TIMES)} times, the deflection of the history in each")
 
 
