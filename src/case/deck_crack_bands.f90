@@ -1,14 +1,15 @@
 !> Checks of softening plies: are all fracture energies given, which keys have no effect, are elements short enough?
 module deck_crack_bands
   use cell_grids, only: cell_edges
-  use crack_bands, only: create_crack_band, longest_element
+  use crack_band_limits, only: longest_element
+  use crack_bands, only: create_crack_band
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, remark_idle, are_clear
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use material_deck, only: material_group, key_shear_strain, toughness_keys
-  use material_parameters, only: material_t
+  use material_parameters, only: first_alike, material_t
   use mesh_parameters, only: is_halved
   use plies, only: ply_t
   use ply_blocks, only: block_of
@@ -186,12 +187,14 @@ contains
     !> The lengths in the order of the modes
     real(wp) :: longest(size(toughness_keys))
     type(ply_t), allocatable :: plies(:)
-    integer :: ply
+    integer :: ply, alike
 
     plies = stacked_plies(deck%laminate, deck%materials)
+    ! Plies have the first of equal materials.
+    alike = first_alike(deck%materials, place)
     longest = longest_element(create_crack_band(deck%materials(place), deck%ply_damage))
     do ply = 1, size(plies)
-      if (plies(ply)%material == place) longest = min(longest, longest_element(create_crack_band( &
+      if (plies(ply)%material == alike) longest = min(longest, longest_element(create_crack_band( &
         material_in_place(plies, ply, deck%materials, deck%ply_damage), deck%ply_damage)))
     end do
   end function longest_elements

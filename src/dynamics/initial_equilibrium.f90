@@ -49,23 +49,23 @@ contains
     if (model%setup%has_thermal) then
       call equilibrate(model, operator, .false., state, error)
       if (allocated(error)) return
-      energy = stored_and_dissipated(state)
+      energy = energy_of(state)
       state%ledger%initial = state%ledger%initial + energy
       state%ledger%residual = energy
     end if
     if (.not. lines_precede(model)) return
     call equilibrate(model, operator, .true., state, error)
     if (allocated(error)) return
-    state%ledger%external_work = stored_and_dissipated(state) - energy
+    state%ledger%external_work = energy_of(state) - energy
   end subroutine find_initial_equilibrium
 
-  !> Energy stored in a plate at rest, and dissipated by its damage.
-  pure real(wp) function stored_and_dissipated(state) result(energy)
+  !> Energy stored and dissipated in a plate at rest.
+  pure real(wp) function energy_of(state) result(energy)
     !> The state
     type(state_t), intent(in) :: state
 
     energy = state%ledger%strain + state%ledger%ply_damage + state%ledger%delamination
-  end function stored_and_dissipated
+  end function energy_of
 
   !> True: residual stresses or lines deform the plate before a run in time.
   pure logical function has_initial_motion(model)
@@ -101,7 +101,7 @@ contains
 
     allocate (residual, correction, mold=state%motion%displacement)
     before = state
-    if (moved) call prescribe_lines(model, state%interfaces, 0.0_wp, line_displacement, state%motion%displacement)
+    if (moved) call guess_motion(model, state)
     largest = 0
     force_square = square_of_forces(model)
     do iteration = 0, max_iterations
@@ -122,12 +122,16 @@ contains
       state%motion%displacement = state%motion%displacement + correction
     end do
     call state%plies%book(model, damage)
-    if (allocated(state%plies%bands)) call state%plies%bands%commit()
+    if (allocated(state%plies%bands)) then
+      call state%plies%bands%commit()
+      call state%plies%total_dissipation(model)
+      damage = damage + state%plies%permanent_shear - before%plies%permanent_shear
+    end if
     call model%communicator%sum(energy)
     state%ledger%strain = energy*model%mesh%multiplicity
     state%ledger%ply_damage = state%ledger%ply_damage + damage
-    state%ledger%delamination = state%ledger%delamination + &
-                                state%interfaces%cohesive%dissipation(model, before%interfaces%cohesive)
+    state%ledger%delamination = state%ledger%delamination &
+                                + state%interfaces%cohesive%dissipation(model, before%interfaces%cohesive)
     state%deflection = model%deflection(state%motion%displacement)
     ! The impactor starts at first contact with the deflected plate.
     if (model%setup%has_impactor) &
@@ -135,6 +139,33 @@ contains
     state%patch_mean = state%contact_deflection(model)
     operator%ready = .false.
   end subroutine equilibrate
+
+  !> Moves the nodes of prescribed lines to their displacement of time 0, the first guess of the equilibrium. Where a
+  !> line moves a lower layer, the layers above move with it: from a guess with open interfaces the iteration would find
+  !> a torn plate, or none.
+  subroutine guess_motion(model, state)
+    type(model_t), intent(in) :: model
+    !> The state; receives the displacement
+    type(state_t), intent(inout) :: state
+    real(wp), allocatable :: change(:, :)
+    integer :: i
+
+    associate (displacement => state%motion%displacement, cohesive => state%interfaces%cohesive)
+      change = displacement
+      call prescribe_lines(model, state%interfaces, 0.0_wp, line_displacement, displacement)
+      if (.not. allocated(cohesive%cohesive)) return
+      change = displacement - change
+      do i = model%distribution%owned, 1, -1
+        if (.not. cohesive%cohesive(i) .or. cohesive%points(i)%damage >= 1) cycle
+        displacement(1:3, i) = displacement(1:3, i) - change(1:3, i)
+        associate (above => model%map%above(i))
+          change(1:3, above) = change(1:3, above) + change(1:3, i)
+          displacement(1:3, above) = displacement(1:3, above) + change(1:3, i)
+        end associate
+      end do
+      call model%halo%update(displacement)
+    end associate
+  end subroutine guess_motion
 
   !> Residual of a plate at rest.
   subroutine find_residual(model, moved, before, state, energy, residual)

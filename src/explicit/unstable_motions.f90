@@ -28,7 +28,7 @@ contains
 
     created = now%ledger%error()
     energy = max(now%ledger%initial, now%ledger%external_work, now%ledger%initial + now%ledger%external_work)
-    if (created <= max_energy_error*energy .or. .not. (energy > 0 .or. abs(created) > 0)) return
+    if (created <= max_energy_error*energy) return
     amount = 'the energy has become infinite'
     if (abs(created) <= huge(created)) &
       amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)

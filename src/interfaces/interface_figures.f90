@@ -25,7 +25,7 @@ module interface_figures
     real(wp) :: area = 0
     !> Fracture energy
     real(wp) :: energy = 0
-    !> Smallest and largest x, then y, of the delamination, from the struck point; all 0 without delamination
+    !> Smallest and largest x, then y, of the delamination, from the plate's centre; all 0 without delamination
     real(wp) :: bounds(2, 2) = 0
   end type interface_figures_t
 

@@ -5,6 +5,7 @@ module interface_ties
   use delamination_parameters, only: contact_none, law_cohesive, tie_penalty, unloading_glued
   use delaminated_regions, only: delaminated_region_t, create_region
   use models, only: model_t
+  use text, only: to_text
   implicit none
   private
   public :: interface_ties_t, create_interface_ties, tie_stiffness
@@ -191,7 +192,7 @@ contains
     do zone = 1, size(self%regions)
       ! The region of a cohesive interface remains its starter.
       if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      call self%regions(zone)%visit(archive, 'zone'//achar(iachar('0') + zone))
+      call self%regions(zone)%visit(archive, 'zone'//to_text(zone))
     end do
     if (.not. model%map%layered) return
     call archive%item('faces/fracture', self%fracture)

@@ -13,17 +13,16 @@ module crack_bands
                             compressed_share, find_recovered
   use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
-  use mathematical_constants, only: pi
   use material_parameters, only: material_t
   use matrix_exposures, only: matrix_strengths_t, matrix_strengths, matrix_exposure
   use plies, only: elasticity_t, elasticity_of
   use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
-  use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by, min_ratio
+  use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by
   implicit none
   private
-  public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, strain_band, degraded_elasticity, &
-            onset_strain, longest_element, energy_of_shear, is_damaged, stiffness_lost
+  public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, flow_band, soften_band, &
+            degraded_elasticity, energy_of_shear, is_damaged, stiffness_lost
 
   !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
   !> iterations are usual.
@@ -87,33 +86,41 @@ contains
     band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0
   end function create_crack_band
 
-  !> History variables of a ply under trial strains.
-  pure subroutine strain_band(band, lengths, total, old, new)
+  !> Permanent shear strain of a ply under trial strains, which is removed from these. The opening of a crack is no
+  !> strain of the ply: after cracking the permanent strain is constant.
+  pure subroutine flow_band(band, strains, state)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Strains of the ply; receive the elastic ones
+    type(band_strains_t), intent(inout) :: strains
+    !> The ply in the last accepted state; receives its permanent strain
+    type(band_state_t), intent(inout) :: state
+    real(wp) :: total
+
+    if (.not. band%permanent_shear) return
+    total = strains%shear_mean
+    if (.not. state%damage(2) > 0) &
+      call shear_flow(band%elasticity%g12, band%shear_beta, total, state%permanent, state%accumulated)
+    strains%shear_mean = total - state%permanent
+    strains%shear_square = max(0.0_wp, strains%shear_square - state%permanent*(total + strains%shear_mean))
+  end subroutine flow_band
+
+  !> Damage of a ply under trial strains.
+  pure subroutine soften_band(band, lengths, strains, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)
-    !> Strains of the ply
-    type(band_strains_t), intent(in) :: total
+    !> Strains of the ply without permanent ones
+    type(band_strains_t), intent(in) :: strains
     !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
-    !> The ply with these strains
-    type(band_state_t), intent(out) :: new
-    type(band_strains_t) :: strains
+    !> The same with its present permanent strain; receives the damage
+    type(band_state_t), intent(inout) :: new
 
-    new = old
-    strains = total
-    if (band%permanent_shear) then
-      ! The opening of a crack is no strain of the ply: after cracking the permanent strain is constant.
-      if (.not. old%damage(2) > 0) &
-        call shear_flow(band%elasticity%g12, band%shear_beta, total%shear_mean, new%permanent, new%accumulated)
-      strains%shear_mean = total%shear_mean - new%permanent
-      strains%shear_square = max(0.0_wp, total%shear_square - new%permanent*(total%shear_mean + strains%shear_mean))
-    else
-      call shear_band(band, strains, old, new)
-    end if
+    if (.not. band%permanent_shear) call shear_band(band, strains, old, new)
     call find_damage(sheared_law(band, new%shear_damage), lengths, strains, old, new)
-  end subroutine strain_band
+  end subroutine soften_band
 
   !> Damage of fibres and matrix under trial strains, both found together, and the energy that it dissipates.
   pure subroutine find_damage(band, lengths, strains, old, new)
@@ -357,44 +364,4 @@ contains
                          length, matrix_compression)
     end associate
   end function matrix_softening
-
-  !> A strain below which a ply can't be damaged, for any direction: in-plane strains are measured by the root of e1**2
-  !> + e2**2 + g12**2/2, which is invariant under rotation. Nonlinear shear acts from zero on.
-  pure real(wp) function onset_strain(band)
-    !> The law
-    type(crack_band_t), intent(in) :: band
-    integer, parameter :: directions = 180
-    real(wp) :: exposure, angle, nu12, nu21
-    integer :: i
-
-    nu12 = abs(band%elasticity%nu12)
-    nu21 = nu12*band%elasticity%e2/band%elasticity%e1
-    exposure = band%elasticity%e1*sqrt(1 + nu21**2)/minval(band%along)
-    do i = 1, directions
-      angle = pi*(i - 0.5_wp)/directions
-      exposure = max(exposure, matrix_exposure(band%matrix, cos(angle)*band%elasticity%e2*sqrt(1 + nu12**2), &
-                                               sin(angle)*band%elasticity%g12*sqrt(2.0_wp)))
-    end do
-    ! Between two directions the exposure is larger by less than 2 %.
-    onset_strain = (1 - nu12*nu21)/(1.02_wp*exposure)
-    if (band%shear_beta > 0) onset_strain = 0
-  end function onset_strain
-
-  !> Longest element across the crack that dissipates no more than the fracture energy, in each mode; shear counts as
-  !> transverse compression.
-  pure function longest_element(band) result(lengths)
-    !> The law
-    type(crack_band_t), intent(in) :: band
-    !> The lengths in the order of the modes
-    real(wp) :: lengths(energy_modes)
-    real(wp) :: energies(energy_modes)
-
-    associate (c => band%elasticity, m => band%matrix)
-      energies(:2) = band%along**2/(2*c%e1)
-      energies(matrix_tension) = m%tension**2/(2*c%e2)
-      energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12) + &
-                                                                    band%shear_beta*m%shear**4/2)
-    end associate
-    lengths = band%toughness/(min_ratio*energies)
-  end function longest_element
 end module crack_bands

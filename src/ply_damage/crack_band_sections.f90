@@ -1,13 +1,13 @@
 !> Softening plies in every element: one state per ply and element, driven by the mean square of the strains over the
-!> ply's volume there. Elements beside the lines of the struck point share their state with those beyond. Energy and
-!> force then derive from one potential, and the energy lost by damage is that of the law, for any variation of the
-!> strains within the element.
+!> ply's volume there. Elements beside the lines of the struck point share their damage. Energy and force then derive
+!> from one potential, and the energy lost by damage is that of the law, for any strains within the element.
 module crack_band_sections
   use archives, only: archive_t
   use band_archives, only: visit_bands
   use crack_closures, only: closing_resultants
-  use crack_bands, only: crack_band_t, band_state_t, create_crack_band, strain_band, degraded_elasticity, &
-                         onset_strain, energy_of_shear, is_damaged, stiffness_lost
+  use crack_bands, only: crack_band_t, band_state_t, band_strains_t, create_crack_band, soften_band, &
+                         degraded_elasticity, energy_of_shear, is_damaged, stiffness_lost
+  use crack_band_limits, only: onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
@@ -17,7 +17,7 @@ module crack_band_sections
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
-  use ply_strains, only: strain_moments_t, strain_moments, strains_of_ply
+  use ply_strains, only: strain_moments_t, strain_moments
   use section_laws, only: section_law_t
   use stacking, only: in_plane_section
   use strain_bounds, only: largest_strains
@@ -138,8 +138,8 @@ contains
     bounds = largest_strains(self%plies, weight, strains)
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
-      if (self%joined%shares(element)) &
-        call self%joined%accumulate_strains(element, strain_moments(weight(lane, :), strains(lane, :, :)), bounds(lane))
+      if (self%joined%shares(element)) call self%joined%accumulate_strains(element, strain_moments(weight(lane, :), &
+        strains(lane, :, :)), bounds(lane), self%plies, self%bands, self%accepted(:, element))
     end do
   end subroutine accumulate_strains
 
@@ -165,7 +165,6 @@ contains
     real(wp), intent(inout) :: stiffness(lanes, 21)
     !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
-    type(strain_moments_t) :: moments
     real(wp) :: bounds(lanes)
     integer :: lane, element
 
@@ -174,12 +173,7 @@ contains
       element = first_element(b) + lane - 1
       if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
       if (.not. self%touched(element) .and. bounds(lane) < self%onset) cycle
-      if (self%joined%shares(element)) then
-        moments = self%joined%strains_of(element)
-      else
-        moments = strain_moments(weight(lane, :), strains(lane, :, :))
-      end if
-      call soften_element(self, element, moments, stiffness(lane, :))
+      call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
       if (present(free)) free(lane, :) = self%free_resultants_of(element)
     end do
     if (present(free)) self%free(:, :, b) = free
@@ -196,21 +190,27 @@ contains
     type(strain_moments_t), intent(in) :: moments
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(21)
+    type(strain_moments_t) :: both(2)
+    type(band_strains_t) :: strains
     type(elasticity_t) :: elasticity(size(self%plies))
     real(wp) :: before(3), normal(2)
     logical :: changed
     integer :: ply
 
     changed = .false.
+    both = moments
+    if (self%joined%shares(element)) both(2) = self%joined%strains_of(element)
     associate (first => self%range(1, element), last => self%range(2, element))
       do ply = first, last
         before = stiffness_lost(self%trial(ply, element))
         normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
+        self%trial(ply, element) = self%accepted(ply, element)
+        call self%joined%find_elastic_strains(element, ply, self%plies(ply), self%bands(ply), both, &
+                                              self%trial(ply, element), strains)
         ! Mean width of the elements normal to a straight crack.
-        call strain_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
+        call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                            dot_product(normal, self%sides([2, 1], element))], &
-                         strains_of_ply(self%plies(ply), moments), self%accepted(ply, element), &
-                         self%trial(ply, element))
+                         strains, self%accepted(ply, element), self%trial(ply, element))
         changed = changed .or. any(abs(stiffness_lost(self%trial(ply, element)) - before) > 0)
         elasticity(ply) = degraded_elasticity(self%bands(ply), self%trial(ply, element))
       end do

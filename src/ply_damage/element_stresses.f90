@@ -77,6 +77,7 @@ contains
     strained = failures%strained_plies(model, ply, ply, element)
     stress = middle_stress(strained(1), elasticity, strains(:6, element), &
                            shear_of_ply(model, strains, ply, element))
+    stress(1:2) = stress(1:2) + failures%carried_by_cracks(ply, element)
   end function stress_of_ply
 
   !> Transverse shear stress of one ply of one element.

@@ -1,15 +1,20 @@
 !> Elements on both sides of a line through the struck point or of a symmetry line. Their strains are equal, so that
 !> plies would fail in both at once, with two crack bands instead of one. For damage they are one element with the width
-!> of both and one state per ply, computed from the strains of both. With mirror symmetry an element and its image have
-!> one state in any case. With point symmetry the element beyond the cut is the image of one on the other side of the
+!> of both and one damage per ply, computed from the strains of both. With mirror symmetry an element and its image have
+!> one damage in any case. With point symmetry the element beyond the cut is the image of one on the other side of the
 !> centre.
+!>
+!> Permanent shear strains are not localised, and mirror images have opposite ones: each element has its own, and the
+!> common damage depends on the mean square of the elastic strains.
 module joined_elements
   use column_exchanges, only: column_exchange_t, new_column_exchange
+  use crack_bands, only: band_state_t, band_strains_t, crack_band_t, flow_band
   use element_batches, only: batch_of
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use models, only: model_t
-  use ply_strains, only: strain_moments_t, moment_values, values_of, moments_from
+  use plies, only: ply_t
+  use ply_strains, only: strain_moments_t, moment_values, strains_of_ply, values_of, moments_from
   implicit none
   private
   public :: joined_elements_t, find_joined_elements
@@ -29,7 +34,8 @@ module joined_elements
     integer, allocatable, private :: parts(:, :)
     !> Area of each, (numbers)
     real(wp), allocatable, private :: area(:)
-    !> Moments of the strains of each, then a bound of its strains, (moment_values + 1, numbers)
+    !> Moments of the strains of each, a bound of its strains, and, where shear strains may be permanent, mean squares
+    !> of the elastic shear strains of its plies, (moment_values + 1 + plies, numbers)
     real(wp), allocatable, private :: moments(:, :)
     !> Sends the strains of elements joined across ranks
     type(column_exchange_t), private :: across
@@ -39,8 +45,9 @@ module joined_elements
     !> Stores an element's strains; sends them to the ranks that need them.
     procedure :: accumulate_strains
     procedure :: exchange
-    !> Strains of an element with those joined with it, and their largest bound.
+    !> Strains of an element with those joined with it, elastic ones of a ply, and their largest bound.
     procedure :: strains_of
+    procedure :: find_elastic_strains
     procedure :: bound_of
   end type joined_elements_t
 
@@ -71,7 +78,8 @@ contains
         self%area(numbers(element)) = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
       end do
     end associate
-    allocate (self%moments(moment_values + 1, size(self%area)), source=0.0_wp)
+    allocate (self%moments(moment_values + 1 + merge(size(model%plies), 0, model%setup%ply_damage%permanent_shear), &
+                           size(self%area)), source=0.0_wp)
     allocate (self%concerned(model%elements%batches), source=.false.)
     do element = 1, size(self%number)
       if (self%number(element) > 0) self%concerned(batch_of(element)) = .true.
@@ -175,7 +183,7 @@ contains
   end function shares
 
   !> Stores an element's strains.
-  pure subroutine accumulate_strains(self, element, moments, bound)
+  pure subroutine accumulate_strains(self, element, moments, bound, plies, bands, states)
     !> The elements
     class(joined_elements_t), intent(inout) :: self
     !> Element of this rank that shares its state
@@ -184,8 +192,25 @@ contains
     type(strain_moments_t), intent(in) :: moments
     !> Upper bound of the strains of its plies
     real(wp), intent(in) :: bound
+    !> All plies
+    type(ply_t), intent(in) :: plies(:)
+    !> Their laws
+    type(crack_band_t), intent(in) :: bands(:)
+    !> Their last accepted states in this element
+    type(band_state_t), intent(in) :: states(:)
+    type(band_strains_t) :: strains
+    type(band_state_t) :: state
+    integer :: ply
 
-    self%moments(:, self%number(element)) = [values_of(moments), bound]
+    associate (column => self%moments(:, self%number(element)))
+      column(:moment_values + 1) = [values_of(moments), bound]
+      do ply = 1, size(column) - moment_values - 1
+        strains = strains_of_ply(plies(ply), moments)
+        state = states(ply)
+        call flow_band(bands(ply), strains, state)
+        column(moment_values + 1 + ply) = strains%shear_square
+      end do
+    end associate
   end subroutine accumulate_strains
 
   !> Sends the strains of elements joined across ranks. Collective.
@@ -203,11 +228,50 @@ contains
     integer, intent(in) :: element
     !> The means
     type(strain_moments_t) :: moments
+
+    moments = moments_from(means_of(self, element, 1, moment_values))
+  end function strains_of
+
+  !> Elastic strains of a ply of an element with those joined with it, and the permanent shear strain of this element.
+  pure subroutine find_elastic_strains(self, element, number, ply, band, moments, state, strains)
+    class(joined_elements_t), intent(in) :: self
+    !> Element of this rank, and number of the ply
+    integer, intent(in) :: element, number
+    !> The ply
+    type(ply_t), intent(in) :: ply
+    !> Its law
+    type(crack_band_t), intent(in) :: band
+    !> Strains of the element, and of all joined ones
+    type(strain_moments_t), intent(in) :: moments(2)
+    !> The ply in the last accepted state; receives its permanent strain
+    type(band_state_t), intent(inout) :: state
+    !> The elastic strains
+    type(band_strains_t), intent(out) :: strains
+    real(wp) :: mean(1)
+
+    strains = strains_of_ply(ply, moments(1))
+    call flow_band(band, strains, state)
+    if (.not. self%shares(element)) return
+    strains = strains_of_ply(ply, moments(2))
+    if (.not. band%permanent_shear) return
+    mean = means_of(self, element, moment_values + 1 + number, moment_values + 1 + number)
+    strains%shear_square = mean(1)
+  end subroutine find_elastic_strains
+
+  !> Means of stored values of an element and those joined with it, over their total area.
+  pure function means_of(self, element, first, last) result(means)
+    type(joined_elements_t), intent(in) :: self
+    !> Element of this rank that shares its state
+    integer, intent(in) :: element
+    !> The values
+    integer, intent(in) :: first, last
+    !> The means
+    real(wp) :: means(last - first + 1)
     integer, allocatable :: its(:)
 
     its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
-    moments = moments_from(matmul(self%moments(:moment_values, its), self%area(its))/sum(self%area(its)))
-  end function strains_of
+    means = matmul(self%moments(first:last, its), self%area(its))/sum(self%area(its))
+  end function means_of
 
   !> Upper bound of the strains of all plies of an element and those joined with it.
   pure real(wp) function bound_of(self, element) result(bound)

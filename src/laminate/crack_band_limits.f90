@@ -1,0 +1,55 @@
+!> Limits of softening plies: the strain below which none is damaged, and the longest elements that keep the fracture
+!> energies.
+module crack_band_limits
+  use crack_bands, only: crack_band_t
+  use kinds, only: wp
+  use linear_softening, only: min_ratio
+  use mathematical_constants, only: pi
+  use matrix_exposures, only: matrix_exposure
+  use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
+  implicit none
+  private
+  public :: onset_strain, longest_element
+
+contains
+
+  !> A strain below which a ply can't be damaged, for any direction: in-plane strains are measured by the root of e1**2
+  !> + e2**2 + g12**2/2, which is invariant under rotation. Nonlinear shear acts from zero on.
+  pure real(wp) function onset_strain(band)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    integer, parameter :: directions = 180
+    real(wp) :: exposure, angle, nu12, nu21
+    integer :: i
+
+    nu12 = abs(band%elasticity%nu12)
+    nu21 = nu12*band%elasticity%e2/band%elasticity%e1
+    exposure = band%elasticity%e1*sqrt(1 + nu21**2)/minval(band%along)
+    do i = 1, directions
+      angle = pi*(i - 0.5_wp)/directions
+      exposure = max(exposure, matrix_exposure(band%matrix, cos(angle)*band%elasticity%e2*sqrt(1 + nu12**2), &
+                                               sin(angle)*band%elasticity%g12*sqrt(2.0_wp)))
+    end do
+    ! Between two directions the exposure is larger by less than 2 %.
+    onset_strain = (1 - nu12*nu21)/(1.02_wp*exposure)
+    if (band%shear_beta > 0) onset_strain = 0
+  end function onset_strain
+
+  !> Longest element across the crack that dissipates no more than the fracture energy, in each mode; shear counts as
+  !> transverse compression.
+  pure function longest_element(band) result(lengths)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> The lengths in the order of the modes
+    real(wp) :: lengths(energy_modes)
+    real(wp) :: energies(energy_modes)
+
+    associate (c => band%elasticity, m => band%matrix)
+      energies(:2) = band%along**2/(2*c%e1)
+      energies(matrix_tension) = m%tension**2/(2*c%e2)
+      energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12) + &
+                                                                    band%shear_beta*m%shear**4/2)
+    end associate
+    lengths = band%toughness/(min_ratio*energies)
+  end function longest_element
+end module crack_band_limits
