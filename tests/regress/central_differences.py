@@ -306,7 +306,7 @@ YIELDED = """&case name='yielded' /
 """
 
 
-PARTED = """&case name='parted' /
+DELAMINATED = """&case name='delaminated' /
 &plate length=60e-3, 40e-3 edges='free' /
 &support clamps=0,-15e-3, 0,15e-3, 20e-3,0 /
 &mesh elements=8, 8 patch=8e-3 /
@@ -325,8 +325,8 @@ def check_softened(implam, folder, _):
     explicit, implicit = EXPLICIT[5:], "integrator='generalized_alpha' step=1e-6"
     for name, text, mode, steps in (("softened", SOFTENED, "matrix_cracking", explicit),
                                     ("yielded", YIELDED, "permanent_shear", explicit),
-                                    ("parted", PARTED, "delamination", explicit),
-                                    ("parted_implicit", PARTED, "delamination", implicit)):
+                                    ("delaminated", DELAMINATED, "delamination", explicit),
+                                    ("delaminated_implicit", DELAMINATED, "delamination", implicit)):
         deck = write_deck(folder / name, "karas.nml")
         deck.write_text(f"{text}&time {steps} end=2e-6 /\n", encoding="utf-8")
         history = read_history(run_deck(implam, deck))
