@@ -153,7 +153,7 @@ contains
     if (.not. allocated(error)) call continue_run(finer, communicator, profile, error)
     if (allocated(error)) then
       if (error%code == exit_stopped) &
-        error%message = error%message//', or repeat this command, which completes both runs.'
+        error%message = error%message//', or complete both runs with the same command.'
       return
     end if
     call print_changes(deck, finer, communicator, error)
