@@ -50,8 +50,8 @@ contains
     ratio = 1
     if (deck%kinematics /= kinematics_von_karman) return
     slope = pi*deck%stepping%expected%deflection/minval(free_span(deck%setup_t))
-    steep = smallest_element_step(deck, deck%stepping%central%mass_scaling, slope)
-    if (steep > 0) ratio = smallest_element_step(deck, deck%stepping%central%mass_scaling)/steep
+    steep = smallest_element_step(deck, slope)
+    if (steep > 0) ratio = smallest_element_step(deck)/steep
   end function shortened
 
   !> Seconds of one processor for an element of one layer in a step.

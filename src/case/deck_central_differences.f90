@@ -119,7 +119,7 @@ contains
 
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    step = deck%stepping%central%step_factor*smallest_element_step(deck, deck%stepping%central%mass_scaling)
+    step = deck%stepping%central%step_factor*smallest_element_step(deck)
     if (.not. step > 0) return
     call limit_by_contact(deck, step)
     if (deck%stepping%time%end > max_steps*step) then

@@ -15,6 +15,8 @@ module deck_slow_motion
   !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below some per cent
   !> of the work, doc/manual/slow_motion.md.
   integer, parameter :: periods = 20
+  !> Factor of rotary inertia in such a motion, whose waves are as long as the plate: doc/manual/slow_motion.md.
+  real(wp), parameter :: slow_scaling = 10
 
 contains
 
@@ -66,8 +68,8 @@ contains
 
     clause = ': press in slow motion, with &time integrator=''central_difference'''
     period = deck%expected%scales%first_period
-    if (period > 0) clause = clause//' end='//short_text(periods*period)//' in place of &static ('// &
-                             short_text(period)//' is the period of the first bending mode)'
+    if (period > 0) clause = clause//' end='//short_text(periods*period)//' mass_scaling='//short_text(slow_scaling)// &
+                             ' in place of &static ('//short_text(period)//' is the period of the first bending mode)'
     if (.not. period > 0) &
       clause = clause//', an end of some periods of the plate and densities in place of &static'
   end function slow_motion

@@ -8,6 +8,7 @@ module element_steps
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
   use errors, only: error_t
+  use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
   use kinds, only: wp
   use mesh_parameters, only: edge_free, mesh_t, symmetry_none
   use model_building, only: create_model
@@ -22,16 +23,15 @@ module element_steps
 contains
 
   !> Longest stable step; 0: not found.
-  real(wp) function smallest_element_step(deck, scaling, slope) result(step)
+  real(wp) function smallest_element_step(deck, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
-    !> Factor of in-plane and rotary inertia
-    real(wp), intent(in) :: scaling
     !> Slope of the plate; its membrane strain is the mean of half the squared slope of half a sine; 0 if absent
     real(wp), intent(in), optional :: slope
     type(model_t) :: model
     type(ply_failure_t) :: plies
     type(communicator_t) :: alone
+    type(inertia_scaling_t) :: scaling
     type(error_t), allocatable :: error
     real(wp), allocatable :: of_elements(:, :)
     real(wp) :: frequency
@@ -41,6 +41,7 @@ contains
     call create_model(small_setup(deck), alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
+    scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
     call highest_element_frequency(model, plies%stiffness, scaling, frequency, element, of_elements)
     if (present(slope)) then
       do direction = 1, 2

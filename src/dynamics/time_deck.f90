@@ -46,7 +46,7 @@ module time_deck
     'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
       &Part of the stable step that central differences take.', &
     'time | mass_scaling | real | 1 | - | = up to 10, as the waves allow | >= 1, <= 1000 | &
-      &Factor of in-plane and rotary inertia for central differences, never of the inertia of w; 1: none.', &
+      &Mean factor of rotary inertia for central differences, more in short elements, never of w; 1: none.', &
     'time | settle | real | 1 | time | 0 | >= 0 | &
     &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 

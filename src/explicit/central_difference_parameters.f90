@@ -9,7 +9,7 @@ module central_difference_parameters
   type :: central_difference_parameters_t
     !> Step over the stable step
     real(wp) :: step_factor = 0.9_wp
-    !> Factor of in-plane and rotary inertia
+    !> Mean factor of rotary inertia
     real(wp) :: mass_scaling = 1
     !> Largest step requested; 0: the stable step
     real(wp) :: longest = 0

@@ -10,6 +10,7 @@ module central_differences
   use central_difference_parameters, only: central_difference_parameters_t
   use circle_frames, only: circle_frames_t, create_circle_frames
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
+  use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
   use interface_stacks, only: interface_stacks_t, create_interface_stacks
   use kinds, only: wp
   use line_steps, only: line_steps_t, create_line_steps
@@ -111,13 +112,15 @@ contains
     type(central_difference_parameters_t), intent(in) :: parameters
     !> The state; receives the forces
     type(state_t), intent(inout) :: now
+    type(inertia_scaling_t) :: scaling
     integer :: points
 
     points = size(model%distribution%points)
     self%parameters = parameters
-    self%inertia = create_nodal_inertia(model, parameters%mass_scaling)
+    scaling = create_inertia_scaling(model%setup, parameters%mass_scaling)
+    self%inertia = create_nodal_inertia(model, scaling)
     call self%inertia%invert(0.0_wp)
-    call highest_element_frequency(model, now%plies%stiffness, parameters%mass_scaling, self%frequency, self%element, &
+    call highest_element_frequency(model, now%plies%stiffness, scaling, self%frequency, self%element, &
                                    self%of_elements)
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)

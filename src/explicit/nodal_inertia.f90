@@ -2,12 +2,14 @@
 !>
 !> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
 !> where the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which
-!> lengthens the stable step (L. Olovsson, K. Simonsson, M. Unosson, International Journal for Numerical Methods in
-!> Engineering 63 (2005) 1436-1445); the mass of w is never scaled. The inertia of dependent points is added to that of
+!> lengthens the stable step (`inertia_scaling`; L. Olovsson, K. Simonsson, M. Unosson, International Journal for
+!> Numerical Methods in Engineering 63 (2005) 1436-1445); the mass of w is never scaled. The inertia of dependent points is added to that of
 !> the points that determine their motion.
 module nodal_inertia
   use kinds, only: wp
   use dependent_points, only: find_masters
+  use inertia_forces, only: add_lumped_mass
+  use inertia_scaling, only: inertia_scaling_t
   use models, only: model_t
   implicit none
   private
@@ -45,15 +47,19 @@ contains
   !> Inertia of the points of a model with a lumped mass.
   function create_nodal_inertia(model, scaling) result(self)
     type(model_t), intent(in) :: model
-    !> Factor of in-plane and rotary inertia, at least 1
-    real(wp), intent(in) :: scaling
+    !> Scaling of in-plane and rotary inertia
+    type(inertia_scaling_t), intent(in) :: scaling
     !> The inertia
     type(nodal_inertia_t) :: self
+    real(wp), allocatable :: scaled(:, :)
     integer :: points
 
     points = size(model%distribution%points)
     allocate (self%mass(4, points), self%inverse(7, points))
-    self%mass(1:3, :) = scaling*model%lumped
+    allocate (scaled(3, model%borders%columns), source=0.0_wp)
+    call add_lumped_mass(model%elements, scaling%sections(model), scaled)
+    call model%borders%add(scaled)
+    self%mass(1:3, :) = scaled(:, :points)
     self%mass(4, :) = model%lumped(1, :)
     call find_dependents(model, self)
     call fold_mass(self, self%mass)

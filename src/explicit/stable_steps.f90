@@ -8,6 +8,7 @@ module stable_steps
   use batch_resultants, only: in_plane_resultants
   use batch_strains, only: strains_of_batch
   use element_batches, only: lanes
+  use inertia_scaling, only: inertia_scaling_t
   use internal_forces, only: batch_force
   use kinds, only: long, wp
   use lagrange9, only: gauss_shapes
@@ -50,22 +51,24 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Factor of in-plane and rotary inertia
-    real(wp), intent(in) :: scaling
+    !> Scaling of in-plane and rotary inertia
+    type(inertia_scaling_t), intent(in) :: scaling
     !> The frequency
     real(wp), intent(out) :: omega
     !> The element
     integer, intent(out) :: element
     !> Square of the highest frequency of each element, (lanes, batches)
     real(wp), allocatable, intent(out), optional :: of_elements(:, :)
+    real(wp), allocatable :: sections(:, :, :)
     real(wp) :: squares(lanes), largest
     integer :: b, lane
 
     largest = 0
     element = 0
+    sections = scaling%sections(model)
     if (present(of_elements)) allocate (of_elements(lanes, model%elements%batches), source=0.0_wp)
     do b = 1, model%elements%batches
-      squares = batch_frequencies(model, b, stiffness(:, :, b), scaling)
+      squares = batch_frequencies(model, b, stiffness(:, :, b), sections(:, :, b))
       if (present(of_elements)) of_elements(:model%elements%lanes_used(b), b) = squares(:model%elements%lanes_used(b))
       do lane = 1, model%elements%lanes_used(b)
         if (.not. squares(lane) > largest) cycle
@@ -143,21 +146,21 @@ contains
   end function geometric_stiffness
 
   !> Squares of the highest frequencies of the elements of a batch: largest eigenvalue of K M^-1 by Lanczos iteration.
-  function batch_frequencies(model, b, stiffness, scaling) result(squares)
+  function batch_frequencies(model, b, stiffness, section) result(squares)
     type(model_t), intent(in) :: model
     !> Number of the batch
     integer, intent(in) :: b
     !> Section stiffness
     real(wp), intent(in) :: stiffness(lanes, 21)
-    !> Factor of in-plane and rotary inertia
-    real(wp), intent(in) :: scaling
+    !> Scaled I0, I1, I2
+    real(wp), intent(in) :: section(lanes, 3)
     !> (lane)
     real(wp) :: squares(lanes)
     real(wp) :: inverse(lanes, 9, 4), r(lanes, 9, 5), before(lanes, 9, 5), force(lanes, 9, 5), response(lanes, 9, 5)
     real(wp) :: diagonal(lanes, lanczos_steps), off_diagonal(lanes, 0:lanczos_steps)
     integer :: lanczos_step
 
-    inverse = inverse_inertia(model, b, scaling)
+    inverse = inverse_inertia(model, b, section)
     force = start_vector(inverse)
     call batch_force(model%elements, b, stiffness, force)
     before = 0
@@ -198,27 +201,25 @@ contains
   end function times_factors
 
   !> Inverse inertia of the nodes of a batch: of displacement, both, rotation, and w.
-  function inverse_inertia(model, b, scaling) result(inverse)
+  function inverse_inertia(model, b, section) result(inverse)
     type(model_t), intent(in) :: model
     !> Number of the batch
     integer, intent(in) :: b
-    !> Factor of in-plane and rotary inertia
-    real(wp), intent(in) :: scaling
+    !> Scaled I0, I1, I2
+    real(wp), intent(in) :: section(lanes, 3)
     !> (lane, node, kind)
     real(wp) :: inverse(lanes, 9, 4)
-    real(wp) :: share(lanes), length(lanes)
+    real(wp) :: share(lanes), determinant(lanes)
     integer :: a
 
-    associate (mass => model%elements%mass(:, :, b), weight => model%elements%weight(:, :, b))
-      do a = 1, 9
-        share = max(smallest_divisor, matmul(weight, gauss_shapes(a, :)))
-        length = scaling*share*max(smallest_divisor, mass(:, 1)*mass(:, 3) - mass(:, 2)**2)
-        inverse(:, a, 1) = mass(:, 3)/length
-        inverse(:, a, 2) = -mass(:, 2)/length
-        inverse(:, a, 3) = mass(:, 1)/length
-        inverse(:, a, 4) = 1/(share*max(smallest_divisor, mass(:, 1)))
-      end do
-    end associate
+    do a = 1, 9
+      share = max(smallest_divisor, matmul(model%elements%weight(:, :, b), gauss_shapes(a, :)))
+      determinant = share*max(smallest_divisor, section(:, 1)*section(:, 3) - section(:, 2)**2)
+      inverse(:, a, 1) = section(:, 3)/determinant
+      inverse(:, a, 2) = -section(:, 2)/determinant
+      inverse(:, a, 3) = section(:, 1)/determinant
+      inverse(:, a, 4) = 1/(share*max(smallest_divisor, model%elements%mass(:, 1, b)))
+    end do
   end function inverse_inertia
 
   !> Start vector with components of all modes.

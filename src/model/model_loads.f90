@@ -58,7 +58,7 @@ contains
     if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
-      call add_lumped_mass(self%elements, mass)
+      call add_lumped_mass(self%elements, self%elements%mass, mass)
       call self%borders%add(mass)
       self%lumped = mass(:, :self%halo%points)
     end if

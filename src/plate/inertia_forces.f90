@@ -67,9 +67,11 @@ contains
 
   !> Adds the mass of all elements lumped at their nodes by summing the rows of the consistent mass; for this element
   !> this is Simpson's nodal quadrature, so that every nodal mass is positive.
-  subroutine add_lumped_mass(batches, mass)
+  subroutine add_lumped_mass(batches, sections, mass)
     !> The elements
     type(element_batches_t), intent(in) :: batches
+    !> I0, I1, I2 of their sections, (lanes, 3, batches)
+    real(wp), intent(in) :: sections(:, :, :)
     !> Integrals of I0, I1, I2 that belong to each point (3, columns)
     real(wp), intent(inout) :: mass(:, :)
     real(wp) :: share
@@ -80,7 +82,7 @@ contains
         do a = 1, 9
           target = batches%targets(lane, a, b)
           share = dot_product(gauss_shapes(a, :), batches%weight(lane, :, b))
-          mass(:, target) = mass(:, target) + share*batches%mass(lane, :, b)
+          mass(:, target) = mass(:, target) + share*sections(lane, :, b)
         end do
       end do
     end do

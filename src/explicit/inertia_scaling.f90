@@ -1,0 +1,157 @@
+!> Scaling of in-plane and rotary inertia, more in short elements and thin layers, so that all have about the same stable
+!> step.
+!>
+!> In-plane waves of speed c limit the step of an element of shorter side L to L/c/sqrt(6), and to sqrt(f) times that
+!> with the inertia times f: L sqrt(f) is the side of an unscaled element with the same step. So one such side tau for
+!> all elements means the factors max(1, tau**2/L**2). Rotations against the transverse shear stiffness limit the step
+!> of layers much thinner than long, whose rotary inertia is raised until they have that step, too (T. J. R. Hughes,
+!> M. Cohen, M. Haroun, Nuclear Engineering and Design 46 (1978) 203-222). The deck gives the mean factor of the
+!> laminate's rotary inertia, from which tau follows: waves much longer than elements are slowed by this mean.
+module inertia_scaling
+  use cell_grids, only: cell_edges
+  use element_batches, only: batch_of, lane_of
+  use kinds, only: wp
+  use models, only: model_t
+  use setups, only: setup_t
+  use stacking, only: section_mass, stacked_plies
+  implicit none
+  private
+  public :: inertia_scaling_t, create_inertia_scaling
+
+  !> Square of the highest frequency of an element over (c/L)**2, with three nodes on a line and Simpson's masses.
+  real(wp), parameter :: of_waves = 24
+  !> Bisections for tau, to round-off.
+  integer, parameter :: bisections = digits(1.0_wp)
+
+  !> Factors of in-plane and rotary inertia.
+  type :: inertia_scaling_t
+    !> Square of tau; 0: no scaling
+    real(wp) :: side_square = 0
+    !> Square of the radius of gyration by which the rotary inertia of every layer is raised besides
+    real(wp) :: radius_square = 0
+  contains
+    !> Scaled masses of the sections of a model.
+    procedure :: sections
+    !> Factor of an element.
+    procedure :: factor
+  end type inertia_scaling_t
+
+contains
+
+  !> Scaling with a mean factor of the laminate's rotary inertia over the core, or over the plate without one.
+  pure function create_inertia_scaling(setup, mean) result(self)
+    !> Plate, mesh and laminate
+    class(setup_t), intent(in) :: setup
+    !> The mean factor, at least 1
+    real(wp), intent(in) :: mean
+    !> The scaling
+    type(inertia_scaling_t) :: self
+    real(wp), allocatable :: x(:), y(:)
+
+    if (.not. mean > 1) return
+    x = core_sides(setup, 1)
+    y = core_sides(setup, 2)
+    self = scaling_of_mean(x, y, mean, ratio_of_moduli(setup)/of_waves, laminate_radius_square(setup))
+  end function create_inertia_scaling
+
+  !> Scaling with a mean factor, by bisection: the mean grows with tau.
+  pure function scaling_of_mean(x, y, mean, ratio, radius_square) result(self)
+    !> Sides of the core's cells along x and y
+    real(wp), intent(in) :: x(:), y(:)
+    !> The mean factor
+    real(wp), intent(in) :: mean
+    !> Added square of the radius of gyration over that of tau
+    real(wp), intent(in) :: ratio
+    !> That of the laminate
+    real(wp), intent(in) :: radius_square
+    !> The scaling
+    type(inertia_scaling_t) :: self
+    real(wp) :: shortest, low, high, found
+    integer :: bisection, i, j
+
+    shortest = min(minval(x), minval(y))**2
+    low = shortest
+    high = mean*max(maxval(x), maxval(y))**2
+    do bisection = 1, bisections
+      self%side_square = low + (high - low)/2
+      self%radius_square = ratio*(self%side_square - shortest)
+      found = sum([((self%factor([x(i), y(j)])*x(i)*y(j), i=1, size(x)), j=1, size(y))]) &
+              /(sum(x)*sum(y)) + self%radius_square/radius_square
+      if (found > mean) then
+        high = self%side_square
+      else
+        low = self%side_square
+      end if
+    end do
+  end function scaling_of_mean
+
+  !> Sides of the cells of the core, or of all cells without a core.
+  pure function core_sides(setup, direction) result(sides)
+    !> Plate and mesh
+    class(setup_t), intent(in) :: setup
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> The sides
+    real(wp), allocatable :: sides(:)
+    real(wp), allocatable :: edges(:), middles(:)
+
+    edges = [cell_edges(setup%plate, setup%mesh, direction)]
+    sides = edges(2:) - edges(:size(edges) - 1)
+    if (.not. setup%mesh%cell > 0) return
+    middles = edges(2:) - sides/2
+    sides = pack(sides, abs(middles - setup%mesh%struck(direction)) &
+                 < max(setup%mesh%core(direction), setup%mesh%patch)/2)
+  end function core_sides
+
+  !> Largest transverse shear modulus over the largest in-plane modulus. A radius of gyration r limits rotations to the
+  !> step 2 r sqrt(rho/G), elements of side tau in-plane waves to 2 tau sqrt(rho/(24 E)).
+  pure real(wp) function ratio_of_moduli(setup) result(ratio)
+    !> Laminate and materials
+    class(setup_t), intent(in) :: setup
+
+    associate (used => setup%materials(setup%laminate%material))
+      ratio = maxval([used%g13, used%g23])/maxval([used%e1, used%e2])
+    end associate
+  end function ratio_of_moduli
+
+  !> Square of the laminate's radius of gyration about its centre of mass.
+  pure real(wp) function laminate_radius_square(setup) result(square)
+    !> Laminate and materials
+    class(setup_t), intent(in) :: setup
+    real(wp) :: mass(3)
+
+    mass = section_mass(stacked_plies(setup%laminate, setup%materials))
+    square = mass(3)/mass(1) - (mass(2)/mass(1))**2
+  end function laminate_radius_square
+
+  !> Scaled masses of the sections of a model: the factor times I0, I1, I2, and the raised rotary inertia. The sum over
+  !> layers is that of the joined layers, so that the insertion of layers keeps the kinetic energy.
+  function sections(self, model) result(masses)
+    !> The scaling
+    class(inertia_scaling_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> I0, I1, I2, (lanes, 3, batches)
+    real(wp), allocatable :: masses(:, :, :)
+    real(wp) :: sides(2)
+    integer :: i
+
+    masses = model%elements%mass
+    do i = 1, model%elements%elements
+      sides = model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
+      associate (mass => masses(lane_of(i), :, batch_of(i)))
+        mass = self%factor(sides)*mass
+        mass(3) = mass(3) + self%radius_square*model%elements%mass(lane_of(i), 1, batch_of(i))
+      end associate
+    end do
+  end function sections
+
+  !> Factor of in-plane and rotary inertia of an element.
+  pure real(wp) function factor(self, sides)
+    !> The scaling
+    class(inertia_scaling_t), intent(in) :: self
+    !> Sides of the element along x and y
+    real(wp), intent(in) :: sides(2)
+
+    factor = max(1.0_wp, self%side_square/minval(sides)**2)
+  end function factor
+end module inertia_scaling
