@@ -120,8 +120,7 @@ contains
     scaling = create_inertia_scaling(model%setup, parameters%mass_scaling)
     self%inertia = create_nodal_inertia(model, scaling)
     call self%inertia%invert(0.0_wp)
-    call highest_element_frequency(model, now%plies%stiffness, scaling, self%frequency, self%element, &
-                                   self%of_elements)
+    call highest_element_frequency(model, now%plies%stiffness, scaling, self%frequency, self%element, self%of_elements)
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)

@@ -1,5 +1,5 @@
-!> Scaling of in-plane and rotary inertia, more in short elements and thin layers, so that all have about the same stable
-!> step.
+!> Scaling of in-plane and rotary inertia, more in short elements and thin layers, so that all have about the same
+!> stable step.
 !>
 !> In-plane waves of speed c limit the step of an element of shorter side L to L/c/sqrt(6), and to sqrt(f) times that
 !> with the inertia times f: L sqrt(f) is the side of an unscaled element with the same step. So one such side tau for
