@@ -73,7 +73,7 @@ def check_clamps_between_nodes(implam, folder):
     largest = max(map(abs, reactions[0]))
     difference = max(abs(one - image) for one, image in zip(*reactions, strict=True)) / largest
     print(f"a clamp between nodes: mirror images differ by {difference:.1e}")
-    require(0 < largest and difference <= SAME, "The clamp of the mirror image is at another node.")
+    require(largest > 0 and difference <= SAME, "The clamp of the mirror image is at another node.")
 
 
 def try_frames(implam, folder):
