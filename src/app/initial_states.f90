@@ -209,8 +209,11 @@ contains
         return
       end if
     end if
-    call log%note('The energy ledger starts with '//rounded_text(stepper%now%ledger%initial)// &
-                  ', most of it dissipated by that run.')
+    associate (ledger => stepper%now%ledger)
+      call log%note('The energy ledger starts with '//rounded_text(ledger%initial)//': dissipated by that run '// &
+                    rounded_text(ledger%delamination + ledger%ply_damage + ledger%friction)//', strain '// &
+                    rounded_text(ledger%strain)//', kinetic '//rounded_text(ledger%kinetic)//'.')
+    end associate
   end subroutine take_initial_state
 
   !> Loads the state of the other run, on its mesh, and transfers it to this one's. Collective.

@@ -109,23 +109,24 @@ contains
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
+    ! From here on the results of an earlier run are replaced, whose summary must not be taken for that of this run.
+    call remove_summary(self)
     call self%history%create(communicator, self%base//'_history.csv', &
                              column_names(deck), column_whole(deck), error)
     if (allocated(error)) return
     call self%fields%create(communicator, self%base, self%provenance, part_of(self%deck), error)
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
-    if (.not. allocated(error)) call make_ready(self)
+    self%is_ready = .not. allocated(error)
   end subroutine initialize
 
-  !> Marks the run as set up; the summary of an earlier run is removed.
-  subroutine make_ready(self)
+  !> Removes the summary of an earlier run.
+  subroutine remove_summary(self)
     !> The run
-    class(simulation_t), intent(inout) :: self
+    class(simulation_t), intent(in) :: self
 
-    self%is_ready = .true.
     if (self%communicator%is_root()) call remove_file(self%base//summary_ending)
-  end subroutine make_ready
+  end subroutine remove_summary
 
   !> Common part of initialise and resume: log, model, state at rest.
   subroutine prepare(self, deck, communicator, profile, append, error)
@@ -217,7 +218,9 @@ contains
     if (allocated(error)) return
     call write_mesh(self%model, self%fields, error)
     call start_progress(self%progress, self%stepper, end_of(self))
-    if (.not. allocated(error)) call make_ready(self)
+    if (allocated(error)) return
+    call remove_summary(self)
+    self%is_ready = .true.
   end subroutine resume
 
   !> Saves or loads the evolving state.

@@ -7,6 +7,7 @@ module rigs
   use kinds, only: wp
   use cell_grids, only: cell_grid_t
   use mesh_parameters, only: plate_t, symmetry_point
+  use roundings, only: rounding
   use support_parameters, only: support_t, bearing_edge, window_rectangle, window_circle
   implicit none
   private
@@ -111,7 +112,8 @@ contains
     end associate
   end subroutine add_crossings
 
-  !> Nodes at the clamps of a rig; clamps in parts that are not modelled are represented by their images.
+  !> Nodes at the clamps of a rig; clamps in parts that are not modelled are represented by their images. Of nodes at
+  !> the same distance that next to the plate's centre is taken, so that symmetric clamps have symmetric nodes.
   pure function clamp_nodes(grid, plate, support) result(nodes)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
@@ -121,17 +123,18 @@ contains
     type(support_t), intent(in) :: support
     !> A node a clamp
     integer, allocatable :: nodes(:)
-    real(wp) :: point(2), distances(grid%nodes())
+    real(wp) :: point(2), distances(grid%nodes()), radii(grid%nodes())
     integer :: i, node
 
     allocate (nodes(0))
     if (.not. allocated(support%clamps)) return
+    radii = [(norm2(grid%node_coordinates(:, node)), node=1, size(radii))]
     do i = 1, size(support%clamps, 2)
       point = support%clamps(:, i)
       if (plate%symmetry == symmetry_point .and. point(1) < 0) point = -point
       where (grid%mirrored) point = abs(point)
       distances = [(norm2(grid%node_coordinates(:, node) - point), node=1, size(distances))]
-      nodes = [nodes, minloc(distances, dim=1)]
+      nodes = [nodes, minloc(radii, dim=1, mask=distances <= minval(distances) + rounding*maxval(radii))]
     end do
   end function clamp_nodes
 

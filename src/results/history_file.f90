@@ -43,6 +43,7 @@ module history_file
     procedure :: flush
     procedure :: close
     procedure, private :: check
+    procedure, private :: check_presence
   end type history_file_t
 
 contains
@@ -158,6 +159,7 @@ contains
     if (self%file%is_open()) call self%file%flush()
     call system_clock(self%flushed)
     call self%check(error)
+    call self%check_presence(error)
   end subroutine flush
 
   !> Ends the history.
@@ -169,7 +171,22 @@ contains
 
     call self%file%close()
     call self%check(error)
+    call self%check_presence(error)
   end subroutine close
+
+  !> Raises an error on all ranks if the file has been removed, to which rows could still be written without trace.
+  subroutine check_presence(self, error)
+    !> The history
+    class(history_file_t), intent(in) :: self
+    !> Set if so
+    type(error_t), allocatable, intent(inout) :: error
+
+    if (self%communicator%is_root() .and. .not. self%file%failed) then
+      if (.not. file_exists(self%path)) &
+        call fail(error, exit_files, 'The history '//self%path//' has been removed since this run began to write it.')
+    end if
+    call self%communicator%agree(error)
+  end subroutine check_presence
 
   !> Raises an error on all ranks if the first one could not write.
   subroutine check(self, error)

@@ -78,6 +78,17 @@ def press(implam, folder, settings=(), launcher=()):
     return folder / f"{COMPRESSION}_history.csv"
 
 
+def check_start_of_ledger(log, impact):
+    """The log says what the impact has dissipated and what the plate, which starts at rest, still stores."""
+    found = re.search(r"ledger starts with (\S+): dissipated by that run (\S+), strain (\S+), kinetic (\S+)\.", log)
+    require(found, "The log does not say with what the ledger starts.")
+    total, dissipated, strain, kinetic = map(float, found.groups())
+    before = sum(impact[f"energy_{name}"][-1] for name in ("delamination", "ply_damage", "friction"))
+    require(abs(dissipated - before) < 1e-3 * before, f"The impact has dissipated {before}, not {dissipated}.")
+    require(abs(kinetic) < 0.02 * total and abs(dissipated + strain - total) < 0.1 * total,
+            f"{total} is not {dissipated} and {strain}.")
+
+
 def check_chain(implam, folder, _):
     """From the impact to the failure."""
     impact = strike(implam, folder)
@@ -85,6 +96,7 @@ def check_chain(implam, folder, _):
     for name in ("energy_delamination", "energy_ply_damage", "energy_friction"):
         require(rows[name][0] >= impact[name][-1] > 0 and rows[name][0] < 1.01 * impact[name][-1],
                 f"{name} is {rows[name][0]} at the start after {impact[name][-1]}.")
+    check_start_of_ledger((folder / f"{COMPRESSION}.log").read_text(encoding="utf-8"), impact)
     start = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
     strongest = max(range(len(rows["time"])), key=lambda i: rows["far_field_stress"][i])
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))

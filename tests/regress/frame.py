@@ -33,6 +33,19 @@ TRIALS = {
                "clamps=50e-3,44e-3, -50e-3,44e-3, 50e-3,-44e-3, -50e-3,-44e-3", PANEL, False, 2775.0, 0.02),
 }
 CLOSEST = 1e-3  # of the reaction to the force
+# Clamps halfway between two nodes along y.
+BETWEEN = """&case name='between' kinematics='linear' /
+&plate length=0.05,0.04 edges='free' /
+&support window=0.04,0.03 bearing='edge' unilateral=.true. /
+&support clamps=0.016,{sign}0.011 clamp_stiffness=1e6 /
+&mesh elements=8,6 grading=1 patch=4e-3 /
+&material name='ply' density=1600 E=70e9 nu=0.3 /
+&laminate materials='ply' angles=0 thicknesses=2e-3 /
+&impactor mass=0.1 velocity=2 radius=8e-3 at=4e-3,{other}3e-3 /
+&indentation law='hertz' /
+&time end=1.2e-4 step=1e-5 integrator='generalized_alpha' /
+"""
+SAME = 1e-6  # relative
 
 
 def stiffness_of(implam, folder, support, plate, thin):
@@ -49,8 +62,23 @@ def stiffness_of(implam, folder, support, plate, thin):
     return force / deflection / 1e3, abs(reaction / force - 1)
 
 
+def check_clamps_between_nodes(implam, folder):
+    """A plate, its clamp halfway between nodes, and their mirror image have the same reactions."""
+    reactions = []
+    for sign, other in ("+-", "-+"):
+        path = folder / f"clamp{sign}" / "deck.nml"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(BETWEEN.format(sign=sign, other=other), encoding="utf-8")
+        reactions.append(read_history(run_deck(implam, path))["reaction_2"])
+    largest = max(map(abs, reactions[0]))
+    difference = max(abs(one - image) for one, image in zip(*reactions, strict=True)) / largest
+    print(f"a clamp between nodes: mirror images differ by {difference:.1e}")
+    require(largest > 0 and difference <= SAME, "The clamp of the mirror image is at another node.")
+
+
 def try_frames(implam, folder):
     """Run all trials."""
+    check_clamps_between_nodes(implam, Path(folder) / "between")
     passed = True
     for name, (support, plate, thin, expected, tolerance) in TRIALS.items():
         stiffness, missing = stiffness_of(implam, Path(folder) / name, support, plate, thin)

@@ -57,12 +57,35 @@ def check_invalid_files(implam, folder):
     for name, named in (("ply_damage.h5", "ply_damage.h5"), ("ply_damage_restart.h5.tmp", "ply_damage_restart.h5")):
         deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
         (folder / name).symlink_to("/dev/full")
+        summary = folder / "ply_damage_summary.json"
+        summary.write_text('"kind": "done"', encoding="utf-8")
         ended = subprocess.run([implam, deck, "--output", folder], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.PIPE, text=True, timeout=60, check=False)
         require(ended.returncode == EXIT_FILES, f"A full {name} ended with {ended.returncode}: {ended.stderr}")
         printed = [line for line in ended.stderr.splitlines() if line.startswith("implam: ")]
         require(len(printed) == 1 and named in printed[0], f"A full {name} printed {printed}.")
         require((folder / "ply_damage_history.csv").stat().st_size > 0, "The history was lost.")
+        require(not summary.exists() or '"kind": "failed"' in summary.read_text(encoding="utf-8"),
+                "Beside the new history is the summary of an earlier run.")
+
+
+def check_removed_history(implam, folder):
+    """A history that is removed during a run ends it at the next checkpoint, not without a word."""
+    deck = write_deck(folder, DECK, ["time%end=1", "time%step=1e-6", "output%history_every=1e-5",
+                                     "output%checkpoint_every=1e-5"])
+    history = folder / "ply_damage_history.csv"
+    with subprocess.Popen([implam, str(deck), "--output", str(folder)], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, text=True) as process:
+        try:
+            deadline = time.monotonic() + 60
+            while not history.exists() and time.monotonic() < deadline:
+                time.sleep(0.05)
+            history.unlink()
+            printed = process.communicate(timeout=60)[1]
+        finally:
+            process.kill()
+    require(process.returncode == EXIT_FILES and "history" in printed and "removed" in printed,
+            f"It ended with {process.returncode}: {printed}")
 
 
 def check_limit_load(implam, folder):
@@ -96,6 +119,7 @@ def main(implam, folder):
     check_limit_load(implam, folder / "limit")
     check_one_writer(implam, folder / "writer")
     check_invalid_files(implam, folder / "invalid")
+    check_removed_history(implam, folder / "removed")
 
 
 if __name__ == "__main__":
