@@ -138,23 +138,23 @@ contains
       return
     end if
     text = failure%code//' by ASTM D7137'
-    if (any(failure%interfaces)) text = text//', delaminated across the width below plies'// &
-      numbers_of(pack(below_plies, failure%interfaces))
-    if (any(failure%plies)) text = text//', fibres failed across the width in plies'// &
-      numbers_of(pack([(i, i=1, size(failure%plies))], failure%plies))
+    if (any(failure%interfaces)) text = text//'; delaminated across the width below '// &
+      listed(pack(below_plies, failure%interfaces))
+    if (any(failure%plies)) text = text//'; fibres failed across the width in '// &
+      listed(pack([(i, i=1, size(failure%plies))], failure%plies))
   end function collapse_text
 
-  !> Numbers, each after a blank.
-  pure function numbers_of(numbers) result(text)
-    !> The numbers
+  !> Plies in a sentence.
+  pure function listed(numbers) result(text)
+    !> Their numbers, at least one
     integer, intent(in) :: numbers(:)
-    !> Such as 2 4 6
+    !> Such as `ply 2` or `plies 2, 4, 6`
     character(len=:), allocatable :: text
     integer :: i
 
-    text = ''
-    do i = 1, size(numbers)
-      text = text//' '//to_text(numbers(i))
+    text = trim(merge('plies', 'ply  ', size(numbers) > 1))//' '//to_text(numbers(1))
+    do i = 2, size(numbers)
+      text = text//', '//to_text(numbers(i))
     end do
-  end function numbers_of
+  end function listed
 end module compression_summary

@@ -1,12 +1,14 @@
 !> Checks the energy balance of a run by one rule: energy created or dissipated by integrators or load steps, and the
 !> energy error, must stay below 1 % of the energy.
 module energy_checks
-  use kinds, only: wp
   use archives, only: archive_t
+  use contact_loading, only: loading_indentation
+  use deck_contents, only: deck_t
   use energy_ledgers, only: ledger_t
+  use kinds, only: wp
   implicit none
   private
-  public :: energy_check_t
+  public :: energy_check_t, new_energy_check
 
   !> Permitted fraction of energy created, dissipated or unaccounted for. Energies go by the square of forces: 1 % of
   !> energy is half the error of the force that accuracy='standard' permits.
@@ -32,6 +34,28 @@ module energy_checks
   end type energy_check_t
 
 contains
+
+  !> The check before the first step.
+  pure function new_energy_check(deck) result(self)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The check
+    type(energy_check_t) :: self
+
+    self%largest = energy_of_weight(deck)
+  end function new_energy_check
+
+  !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
+  !> of an impactor that is laid on a plate begins with zero, and its first steps are compared with this energy.
+  pure real(wp) function energy_of_weight(deck) result(energy)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    real(wp) :: weight
+
+    energy = 0
+    weight = deck%impactor%mass*deck%impactor%gravity
+    if (deck%has_impactor .and. weight > 0) energy = weight*loading_indentation(deck%indentation, weight)
+  end function energy_of_weight
 
   !> Energies above 1 %: created by the integrators or by the indentation, whose work cannot be negative; dissipated;
   !> energy error. An integrator creates energy in the first step of a sudden load and removes it in the next, so that

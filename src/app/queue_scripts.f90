@@ -140,12 +140,16 @@ contains
     character(len=*), intent(in) :: path
     !> The deck
     type(deck_t), intent(out) :: deck
-    !> Raised if it has faults
+    !> Raised if it can't be read or has faults
     type(error_t), allocatable, intent(inout) :: error
     type(problems_t) :: problems
+    type(line_t), allocatable :: faults(:)
 
     call read_deck(path, deck, problems)
-    if (problems%errors() > 0) call fail(error, exit_deck, path//' has faults, which `implam check` lists.')
+    if (problems%errors() == 0) return
+    faults = problems%lines()
+    if (problems%errors() > 1) faults(1)%text = faults(1)%text//' `implam check` lists all faults.'
+    call fail(error, exit_deck, faults(1)%text)
   end subroutine read_valid_deck
 
   !> Resources requested from Slurm. It may send the signal up to a minute early.

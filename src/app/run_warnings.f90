@@ -2,7 +2,6 @@
 !> the end.
 module run_warnings
   use failed_plies_areas, only: failed_areas
-  use contact_loading, only: loading_indentation
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use energy_checks, only: energy_check_t, energy_created, energy_taken, energy_unaccounted
@@ -27,7 +26,7 @@ module run_warnings
   use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled
   implicit none
   private
-  public :: give_warnings, give_last_warnings, warnings_given, energy_of_weight
+  public :: give_warnings, give_last_warnings, warnings_given
 
   !> Fraction of the run after which slow motion is checked: the default rise of a travel, after which the velocity is
   !> constant.
@@ -160,18 +159,6 @@ contains
       call add_warning(deck, kind, zone, now%time, record, warnings)
     end subroutine add
   end subroutine find_warnings
-
-  !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
-  !> of an impactor that is laid on a plate begins with zero, and its first steps are compared with this energy.
-  pure real(wp) function energy_of_weight(deck) result(energy)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    real(wp) :: weight
-
-    energy = 0
-    weight = deck%impactor%mass*deck%impactor%gravity
-    if (deck%has_impactor .and. weight > 0) energy = weight*loading_indentation(deck%indentation, weight)
-  end function energy_of_weight
 
   !> Adds warnings of energies.
   subroutine add_energy_warnings(deck, exceeded, time, record, warnings)

@@ -21,7 +21,7 @@ module simulations
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
   use run_steps, only: advance_to_output, row_is_due
-  use run_warnings, only: energy_of_weight, give_last_warnings, give_warnings
+  use run_warnings, only: give_last_warnings, give_warnings
   use stepping_parameters, only: end_of_run
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
@@ -31,7 +31,7 @@ module simulations
   use wall_limits, only: wall_limit_t
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
-  use energy_checks, only: energy_check_t
+  use energy_checks, only: energy_check_t, new_energy_check
   use initial_states, only: take_initial_state
   use adaptive_zones, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
@@ -172,7 +172,7 @@ contains
     if (allocated(error)) return
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
-    self%energy_check%largest = energy_of_weight(deck)
+    self%energy_check = new_energy_check(deck)
     call log_model(self%model, self%stepper, self%log)
     call start_progress(self%progress, self%stepper, end_of(self))
   end subroutine prepare

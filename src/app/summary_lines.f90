@@ -111,7 +111,7 @@ contains
     end if
   end subroutine add_impact
 
-  !> Depth of the dent. Until the plate is at rest its deflection is part of it.
+  !> Depth of the dent. In a plate that has not been damped to rest the deflection of its vibration is part of it.
   subroutine add_dent(lines, deck, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -124,7 +124,7 @@ contains
     if (figures%dent(1) > figures%dent(2)) then
       depth = rounded_text(figures%dent(1))//' below the surface around it, of that indentation '// &
               rounded_text(figures%dent(2))
-      if (.not. deck%stepping%central%settle > 0) depth = depth//'; the plate still vibrates'
+      if (.not. deck%stepping%central%settle > 0) depth = depth//'; with what is left of the vibration'
     else
       depth = rounded_text(figures%dent(2))//', the indentation''s'
     end if

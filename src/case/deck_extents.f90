@@ -1,25 +1,23 @@
-!> Checks of sizes of plate, laminate, mesh and interfaces. Zones and starters consist of entire cells, so that their
+!> Checks of sizes of plate, laminate and interfaces. Zones and starters consist of entire cells, so that their
 !> sizes may differ from those of the deck.
 module deck_extents
-  use cell_grids, only: cell_edges, has_enough_elements
+  use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_line_conflicts, only: check_line_conflicts
   use deck_mesh_lines, only: check_window_lines
+  use deck_patches, only: check_core, check_patch
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, are_clear
   use delaminated_regions, only: cells_within, extent_of_cells
   use delamination_deck, only: key_smoothing, key_starter, key_zone
   use interface_places, only: delamination_group
   use delamination_parameters, only: delamination_t, law_front, release_vcct, default_smoothing, min_smoothed_cells
-  use gradings, only: core_elements
-  use impactor_deck, only: impactor_group, key_at
   use kinds, only: wp
   use line_deck, only: line_group, line_key_at => key_at
   use line_loads, only: along_x
   use nodal_lines, only: node_line, place_of_node
   use laminate_deck, only: laminate_group, key_thicknesses
-  use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
-  use mesh_parameters, only: is_halved, is_mirrored
+  use mesh_parameters, only: is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
   use roundings, only: rounding
   use short_numbers, only: short_text
@@ -32,9 +30,6 @@ module deck_extents
   !> shear and bending differ by the square of the first, 1e10, which leaves six of sixteen digits. At four thicknesses
   !> the deflection of a cross-ply is 12 % too small (N. J. Pagano, S. J. Hatfield, AIAA J. 10 (1972) 931-933).
   real(wp), parameter :: max_slenderness = 1.0e5_wp, min_slenderness = 5
-  !> Smallest patch, fraction of the plate's shorter side: the elements that it requires are as slender as those of the
-  !> thinnest plate.
-  real(wp), parameter :: min_patch = 1.0e-5_wp
   !> Side of a starter over the loaded patch's below which growth may never start: of two starters under the same force,
   !> that of the patch's size had an eighth of the energy release rate of one twice as wide. It decides on a warning.
   real(wp), parameter :: min_starter = 1.5_wp
@@ -136,81 +131,6 @@ contains
                   to_text(min_slenderness)//' thicknesses wide; plate theory is inaccurate there.')
     end if
   end subroutine check_thickness
-
-  !> Loaded patch: not larger than the plate, not too small, and with elements left for the rest.
-  subroutine check_patch(deck, problems)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
-    real(wp) :: shorter
-    integer :: i
-
-    shorter = minval(deck%plate%length)
-    associate (s => deck%settings, patch => deck%mesh%patch)
-      if (patch <= 0) return
-      if (any(abs(deck%mesh%struck) > 0 .and. meets_border(deck, [patch, patch])) .and. patch <= shorter) then
-        if (are_clear(s, problems, impactor_group, key_at)) call report(s, problems, impactor_group, key_at, 'the '// &
-          'loaded patch reaches the border of the plate; strike further inside.')
-      else if (patch > shorter) then
-        call report(s, problems, mesh_group, key_patch, 'is larger than the plate; allowed: up to '// &
-                  to_text(shorter)//'.')
-      else if (patch < min_patch*shorter) then
-        call report(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
-                  to_text(min_patch*shorter)//'.')
-      else if (.not. (deck%mesh%cell > 0 .or. all([(has_enough_elements(deck%plate, deck%mesh, i), i=1, 2)])) .and. &
-               are_clear(s, problems, mesh_group, key_elements) .and. &
-               are_clear(s, problems, plate_group, key_symmetry)) then
-        call report(s, problems, mesh_group, key_elements, 'are too few for the loaded patch and the plate around '// &
-                    'it; give more.')
-      end if
-    end associate
-  end subroutine check_patch
-
-  !> Core of equal elements: in the plate, and with elements left for the rest.
-  subroutine check_core(deck, problems)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Faults found are added
-    type(problems_t), intent(inout) :: problems
-    integer :: direction, parts, least
-    logical :: halved(2)
-
-    associate (s => deck%settings, mesh => deck%mesh)
-      if (minval(mesh%core) <= 0 .or. mesh%cell <= 0) return
-      if (any(meets_border(deck, mesh%core))) then
-        call report(s, problems, mesh_group, key_core, &
-                  'reaches the border of the plate; give it smaller or leave it out.')
-      else if (any(mesh%core/mesh%cell > max_elements)) then
-        call report(s, problems, mesh_group, key_cell, 'is too small for the core.')
-      else if (are_clear(s, problems, mesh_group, key_elements//' '//key_patch) .and. &
-               are_clear(s, problems, plate_group, key_symmetry)) then
-        halved = is_halved(deck%plate%symmetry)
-        do direction = 1, 2
-          parts = merge(1, 2, halved(direction))
-          least = parts*(sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + 1)
-          if (has_enough_elements(deck%plate, mesh, direction)) cycle
-          if (abs(mesh%struck(direction)) > 0) parts = 1
-          call report(s, problems, mesh_group, key_elements, 'the core needs at least '//to_text(least)//' along '// &
-                    merge('x', 'y', direction == 1)//trim(merge(', and an even number.', '.                    ', &
-                                                                parts == 2)))
-          return
-        end do
-      end if
-    end associate
-  end subroutine check_core
-
-  !> Whether a rectangle about the struck point meets or crosses the border, with no room for elements on that side.
-  pure function meets_border(deck, extents) result(meets)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Extents of the rectangle along x and y
-    real(wp), intent(in) :: extents(2)
-    !> Along x and y
-    logical :: meets(2)
-
-    meets = extents/2 + abs(deck%mesh%struck) >= deck%plate%length/2*(1 - rounding)
-  end function meets_border
 
   !> Zones against the plate, and starters against the loaded patch.
   subroutine check_zones(deck, problems)

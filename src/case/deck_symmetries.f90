@@ -47,7 +47,7 @@ contains
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
         coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
         'A45 isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
-      if (impact_is_eccentric(deck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
+      if (is_eccentric(deck%mesh%struck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
@@ -79,7 +79,7 @@ contains
       if (i > 1) then
         if (deck%delaminations(i)%group == deck%delaminations(i - 1)%group) cycle
       end if
-      if (starter_is_eccentric(deck%delaminations(i), deck%plate%symmetry) .and. &
+      if (is_eccentric(deck%delaminations(i)%starter_at, deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_starter_at, &
                     'the starter is not on the lines '// &
@@ -93,7 +93,7 @@ contains
   end subroutine check_starters
 
   !> True if a starter across the width of its zone has an image beside it.
-  pure logical function strip_is_eccentric(delamination, symmetry) result(is_eccentric)
+  pure logical function strip_is_eccentric(delamination, symmetry) result(eccentric)
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> The symmetry
@@ -101,20 +101,19 @@ contains
     logical :: halved(2)
 
     halved = is_halved(symmetry)
-    is_eccentric = halved(1) .and. abs(sum(delamination%starter_strip)) > &
-                   same_place*maxval(abs(delamination%starter_strip))
+    eccentric = halved(1) .and. abs(sum(delamination%starter_strip)) > &
+                same_place*maxval(abs(delamination%starter_strip))
   end function strip_is_eccentric
 
-  !> True if the centre of a starter is not on a line of symmetry.
-  pure logical function starter_is_eccentric(delamination, symmetry)
-    !> The interface
-    type(delamination_t), intent(in) :: delamination
+  !> True if a point is not on a line of symmetry.
+  pure logical function is_eccentric(point, symmetry)
+    !> Its place, from the middle of the plate
+    real(wp), intent(in) :: point(2)
     !> The symmetry
     integer, intent(in) :: symmetry
 
-    starter_is_eccentric = any(abs(delamination%starter_at) > 0 .and. &
-                        (is_halved(symmetry) .or. symmetry == symmetry_point))
-  end function starter_is_eccentric
+    is_eccentric = any(abs(point) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
+  end function is_eccentric
 
   !> Sentence on the smallest part of the plate that suffices; empty if the deck has it already.
   function symmetry_sentence(deck) result(sentence)
@@ -167,9 +166,10 @@ contains
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
     ! Lines and strips need not have images.
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
-            .not. any([(starter_is_eccentric(deck%delaminations(i), symmetry), i=1, size(deck%delaminations))]) .and. &
+            .not. any([(is_eccentric(deck%delaminations(i)%starter_at, symmetry), &
+                        i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
-            .not. impact_is_eccentric(deck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
+            .not. is_eccentric(deck%mesh%struck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
             has_symmetric_imperfection(deck%plate, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
@@ -196,16 +196,6 @@ contains
     any_strip = any([(deck%delaminations(i)%starter_strip(1) < deck%delaminations(i)%starter_strip(2), &
                       i=1, size(deck%delaminations))])
   end function any_strip
-
-  !> True if the struck point is not on a line of symmetry.
-  pure logical function impact_is_eccentric(deck, symmetry)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> The part
-    integer, intent(in) :: symmetry
-
-    impact_is_eccentric = any(abs(deck%mesh%struck) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
-  end function impact_is_eccentric
 
   !> True if each clamp has its images in the rig; windows lie at the centre.
   pure logical function supports_are_symmetric(deck, symmetry) result(alike)

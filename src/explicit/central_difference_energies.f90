@@ -28,7 +28,7 @@ contains
     real(wp) :: totals(8)
     integer :: i, b
 
-    call add_kinetic(method, model, now, sums(1), sums(2))
+    call add_kinetic(method, model, now, 1.0_wp, sums(1), sums(2))
     do b = 1, size(method%strain, 2)
       call sums(3)%add(method%strain(:, b))
     end do
@@ -67,25 +67,29 @@ contains
   end subroutine book_energies
 
   !> Kinetic energy of the plate at the end of the last step. Collective.
-  real(wp) function kinetic_energy(method, model, now) result(energy)
+  real(wp) function kinetic_energy(method, model, now, kept) result(energy)
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
+    !> Part of its velocities that damping has left
+    real(wp), intent(in) :: kept
     type(exact_sum_t) :: kinetic, scaled
 
-    call add_kinetic(method, model, now, kinetic, scaled)
+    call add_kinetic(method, model, now, kept, kinetic, scaled)
     energy = total_of(model%communicator, kinetic)*model%mesh%multiplicity
   end function kinetic_energy
 
   !> Adds the kinetic energy of this rank's points, and the part of it in motions whose inertia is scaled.
-  subroutine add_kinetic(method, model, now, kinetic, scaled)
+  subroutine add_kinetic(method, model, now, kept, kinetic, scaled)
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
+    !> Part of its velocities that damping has left
+    real(wp), intent(in) :: kept
     !> Total kinetic energy, and that of in-plane motion and rotation
     type(exact_sum_t), intent(inout) :: kinetic, scaled
     real(wp), allocatable :: layer(:, :)
@@ -98,7 +102,7 @@ contains
         plane = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
         call scaled%add(plane)
         plane = m(4)*v(3)**2/2 + plane + method%steps%now/2*dot_product(method%force(:, i), v) &
-                - (dot_product(method%stacks%history%forces(:, i), method%stacks%history%last_change(i)) &
+                - (dot_product(method%stacks%history%forces(:, i), method%stacks%history%last_change(i, kept)) &
                    + method%rigs%reaction(i)*method%rigs%approach(i))/2
         if (allocated(method%inertia%springs)) plane = plane - method%steps%now/2* &
           sum(method%inertia%springs(:, i)*now%motion%displacement(:, i)*now%motion%velocity(:, i))

@@ -176,12 +176,12 @@ contains
   !> Takes one step. Its length changes only where the stable step requires it, as alternating lengths excite the
   !> highest modes (R. D. Skeel, BIT 33 (1993) 172-175); so events are met by the first step that reaches them.
   !> Collective.
-  subroutine advance(self, model, event, now)
+  subroutine advance(self, model, event, kept, now)
     !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time not to be passed
-    real(wp), intent(in) :: event
+    !> Time not to be passed, and part of the velocities that damping has left before the step
+    real(wp), intent(in) :: event, kept
     !> The state
     type(state_t), intent(inout) :: now
     real(wp), allocatable :: rates(:, :)
@@ -191,7 +191,7 @@ contains
     longest = self%longest_step(model, now)
     if (.not. (step <= longest .and. step > lengthening_ratio*longest)) &
       step = commensurate_step(model%setup%ramp_time, longest)
-    self%steps = step_lengths_t(now=step, last=self%steps%now)
+    self%steps = step_lengths_t(now=step, last=self%steps%now, kept=kept)
     call prepare(self, model)
     load_factors = [now%load_factor, model%setup%load_factor_at(now%time + step)]
     call self%lines%find_rates(model, self%steps, load_factors(2), model%setup%offset_left(now%time + step), &
@@ -206,7 +206,6 @@ contains
       call move_single(self, model, u, v)
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
                        self%force, now%interfaces%cohesive, u, v)
-      self%stacks%history%kept = 1
       if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, rates, v)
       call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)

@@ -12,6 +12,7 @@ module damaged_stacks
   use kinds, only: wp
   use models, only: model_t
   use stack_solutions, only: jumps_of, solve_openings, solve_shears, stack_t
+  use step_lengths, only: step_lengths_t
   use weighted_jumps, only: newest, past_jumps, past_openings
   implicit none
   private
@@ -63,12 +64,14 @@ contains
   end subroutine load_stack
 
   !> Forces of a damaged stack, with corrections where damage grows.
-  pure subroutine solve_damaged(stacks, work, model, cohesive, p)
+  pure subroutine solve_damaged(stacks, work, model, steps, cohesive, p)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> The stack; receives the forces
     type(stack_t), intent(inout) :: work
     type(model_t), intent(in) :: model
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
     !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> First point of the stack
@@ -95,7 +98,7 @@ contains
       if (.not. damage > work%points(j)%damage) cycle
       grows = .true.
       energy = surfaces%work(work%start(:, j), jumps(:, j), work%points(j), damage)
-      call correct_force(work, j, jumps(:, j), stacks%history%last_change(p + j), &
+      call correct_force(work, j, jumps(:, j), stacks%history%last_change(p + j, steps%kept), &
                          (stacks%area(p + j)*energy + stacks%history%work(p + j))/2)
     end do
     if (.not. grows) return

@@ -17,7 +17,7 @@ contains
 
   !> Reduces the velocities at the start of a step. Changes of coordinates in the last step, over half of which forces
   !> act in the kinetic energy (central_difference_energies), are reduced by the same factor there. Collective.
-  subroutine damp_motion(method, model, now, duration)
+  subroutine damp_motion(method, model, now, duration, kept)
     !> Central differences, after a step
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
@@ -25,15 +25,18 @@ contains
     type(state_t), intent(inout) :: now
     !> Duration of the damping; motions with a longer period are damped less
     real(wp), intent(in) :: duration
-    real(wp) :: ratio, before
+    !> Part of the velocities that is left, for the next step
+    real(wp), intent(out) :: kept
+    real(wp) :: before
 
+    kept = 1
     if (.not. method%steps%now > 0) return
-    ratio = exp(2*log(final_ratio)*method%steps%now/duration)
-    before = kinetic_energy(method, model, now)
-    now%motion%velocity = ratio*now%motion%velocity
-    call method%stacks%history%damp(ratio)
-    method%rigs%approach = ratio*method%rigs%approach
-    method%lines%dofs%change = ratio*method%lines%dofs%change
-    now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now)
+    kept = exp(2*log(final_ratio)*method%steps%now/duration)
+    before = kinetic_energy(method, model, now, 1.0_wp)
+    now%motion%velocity = kept*now%motion%velocity
+    call method%stacks%history%damp(kept)
+    method%rigs%approach = kept*method%rigs%approach
+    method%lines%dofs%change = kept*method%lines%dofs%change
+    now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now, kept)
   end subroutine damp_motion
 end module damped_motions

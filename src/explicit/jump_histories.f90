@@ -22,8 +22,6 @@ module jump_histories
     real(wp), allocatable :: forces(:, :)
     !> Change of the jumps in the last step, and in the one before, (3, points)
     real(wp), allocatable :: change(:, :), earlier(:, :)
-    !> Part of the last step's velocities that damping has left; 1 at the end of a step
-    real(wp) :: kept = 1
     !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before, (4, points)
     real(wp), allocatable :: sticking(:, :)
     !> Friction, (points)
@@ -35,7 +33,7 @@ module jump_histories
   contains
     !> Takes over force and change of a step.
     procedure :: record
-    !> Reduces the velocities of the last step, and the work done in it.
+    !> Reduces the work done in the last step.
     procedure :: damp
     !> Change of a jump in the last step by the velocity that damping has left.
     procedure :: last_change
@@ -71,29 +69,30 @@ contains
     self%change(:, p) = change
   end subroutine record
 
-  !> Reduces the velocities of the last step, and the work done in it. Changes stay those of the motion: their weighted
-  !> mean is stable for springs of any stiffness, and with reduced changes it is not.
+  !> Reduces the work done in the last step. Changes stay those of the motion: their weighted mean is stable for springs
+  !> of any stiffness, and with reduced changes it is not.
   pure subroutine damp(self, ratio)
     !> The history
     class(jump_history_t), intent(inout) :: self
     !> Part that is left
     real(wp), intent(in) :: ratio
 
-    self%kept = ratio
     self%work = ratio*self%work
     self%friction%stored = ratio*self%friction%stored
   end subroutine damp
 
   !> Change of a jump in the last step by the velocity that damping has left, for the kinetic energy and works.
-  pure function last_change(self, p) result(change)
+  pure function last_change(self, p, kept) result(change)
     !> The history
     class(jump_history_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
+    !> Part of the velocity that is left
+    real(wp), intent(in) :: kept
     !> The change
     real(wp) :: change(3)
 
-    change = self%kept*self%change(:, p)
+    change = kept*self%change(:, p)
   end function last_change
 
   !> Writes or reads the history.

@@ -96,7 +96,7 @@ contains
       p = stacks%first(i) + j
       surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
       change = steps%now*v(1:3, p)
-      last = stacks%history%last_change(p)
+      last = stacks%history%last_change(p, steps%kept)
       before = u(1:3, p)
       u(1:3, p) = before + change
       work = work_of(stacks, p, steps, forces(:, j), change)
@@ -136,7 +136,7 @@ contains
     real(wp), intent(in) :: force(3), change(3)
     real(wp) :: last(3)
 
-    last = stacks%history%last_change(p)
+    last = stacks%history%last_change(p, steps%kept)
     work_of = sum(force*(change + steps%shift(last, change)) + (force - stacks%history%forces(:, p))*last/2)
   end function work_of
 
@@ -152,7 +152,7 @@ contains
     real(wp), intent(in) :: before, change
     real(wp) :: from, to, last(3)
 
-    last = stacks%history%last_change(p)
+    last = stacks%history%last_change(p, steps%kept)
     from = min(before, 0.0_wp)
     to = min(before + change, 0.0_wp)
     lost = stacks%stiffness(2, p)*(to*(change + steps%shift(last(3), change)) + (to - from)*last(3)/2 &

@@ -108,7 +108,7 @@ contains
     trial = u(1:3, p + 1:q) + steps%now*trial
     if (stacks%damaged(i)) then
       call load_stack(stacks, work, model, cohesive, p, u, trial)
-      call solve_damaged(stacks, work, model, cohesive, p)
+      call solve_damaged(stacks, work, model, steps, cohesive, p)
       forces = work%forces
     else
       past = past_jumps(u(1:3, p + 1:q), stacks%history%change(:, p + 1:q), stacks%history%earlier(:, p + 1:q))

@@ -1,4 +1,4 @@
-!> Lengths of the present and the previous step.
+!> Lengths of the present and the previous step, and the damping between them.
 module step_lengths
   use kinds, only: wp
   implicit none
@@ -9,6 +9,8 @@ module step_lengths
   type :: step_lengths_t
     !> Length of the step, and of the one before; 0: there was none
     real(wp) :: now = 0, last = 0
+    !> Part of the velocities of the step before that damping has left
+    real(wp) :: kept = 1
   contains
     !> Time between the mid-step velocities of both steps.
     procedure :: mean

@@ -30,9 +30,9 @@ contains
       exposure = max(exposure, matrix_exposure(band%matrix, cos(angle)*band%elasticity%e2*sqrt(1 + nu12**2), &
                                                sin(angle)*band%elasticity%g12*sqrt(2.0_wp)))
     end do
-    ! Between two directions, a degree apart, the exposure is larger by at most 1/cos(0.5 degrees) - 1 = 4e-5, as
-    ! failure envelopes are convex. A lower bound than needed costs only the evaluation of a few more plies.
-    onset_strain = (1 - nu12*nu21)/(1.02_wp*exposure)
+    ! On each side of pure shear envelopes of failure are convex, and pure shear lies midway between two directions. So
+    ! from one direction to the next the exposure is at most the larger of theirs over the cosine of half the angle.
+    onset_strain = (1 - nu12*nu21)*cos(pi/(2*directions))/exposure
     if (band%shear_beta > 0) onset_strain = 0
   end function onset_strain
 

@@ -6,7 +6,7 @@ module cell_grids
   use nine_node_grids, only: nine_node_grid_t, last_line
   implicit none
   private
-  public :: cell_grid_t, create_grid, cell_edges, has_enough_elements
+  public :: cell_grid_t, create_grid, cell_edges, has_enough_elements, fewest_elements, needs_even_elements
 
   !> Cells and their nodes.
   type, extends(nine_node_grid_t) :: cell_grid_t
@@ -93,8 +93,7 @@ contains
     if (direction == 2 .and. allocated(mesh%y_lines)) call move_to_lines(edges, kept, mesh%y_lines)
   end function cell_edges
 
-  !> True if the elements along x or y suffice for the loaded patch, the core and the plate around them. The mesh around
-  !> a struck point has at least one element outside of them on each side, and a core at the centre as many on both.
+  !> True if the elements along x or y suffice for the loaded patch, the core and the plate around them.
   pure logical function has_enough_elements(plate, mesh, direction) result(enough)
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
@@ -102,23 +101,52 @@ contains
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    logical :: halved(2), is_aside
-    integer :: parts
 
-    associate (number => mesh%elements(direction), patch => mesh%patch, length => plate%length(direction))
-      halved = is_halved(plate%symmetry)
-      is_aside = abs(mesh%struck(direction)) > 0
-      parts = merge(1, 2, halved(direction))
-      if (mesh%cell > 0) then
-        enough = number >= parts*(1 + sum(core_elements(patch/2, mesh%core(direction)/2, mesh%cell))) .and. &
-                 (is_aside .or. modulo(number, parts) == 0)
-      else if (is_aside) then
-        enough = number >= parts*(1 + sum(core_elements(patch/2, 0.0_wp, length/max(number, 1))))
-      else
-        enough = number > 2 .or. halved(direction) .or. patch <= 0 .or. .not. patch < length
-      end if
+    associate (number => mesh%elements(direction))
+      enough = number >= fewest_elements(plate, mesh, direction)
+      if (needs_even_elements(plate, mesh, direction)) enough = enough .and. modulo(number, 2) == 0
     end associate
   end function has_enough_elements
+
+  !> Smallest number of elements along x or y for the loaded patch, the core and the plate around them: the mesh around
+  !> a struck point has at least one element outside of them on each side. Beside the middle and without a core the
+  !> elements on the patch are as long as those of the mesh.
+  pure integer function fewest_elements(plate, mesh, direction) result(fewest)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    logical :: halved(2)
+    integer :: parts
+
+    halved = is_halved(plate%symmetry)
+    parts = merge(1, 2, halved(direction))
+    associate (number => mesh%elements(direction), patch => mesh%patch, length => plate%length(direction))
+      if (mesh%cell > 0) then
+        fewest = parts*(1 + sum(core_elements(patch/2, mesh%core(direction)/2, mesh%cell)))
+      else if (abs(mesh%struck(direction)) > 0) then
+        fewest = parts*(1 + sum(core_elements(patch/2, 0.0_wp, length/max(number, 1))))
+      else
+        fewest = merge(3, 1, parts == 2 .and. patch > 0 .and. patch < length)
+      end if
+    end associate
+  end function fewest_elements
+
+  !> True: the core is in the middle, with as many elements on both sides.
+  pure logical function needs_even_elements(plate, mesh, direction) result(even)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    logical :: halved(2)
+
+    halved = is_halved(plate%symmetry)
+    even = mesh%cell > 0 .and. .not. abs(mesh%struck(direction)) > 0 .and. .not. halved(direction)
+  end function needs_even_elements
 
   !> Nodes at the edges and centres of the cells. The struck node is on the line next to the struck point, which has a
   !> line on every valid mesh.

@@ -12,7 +12,7 @@ module crack_band_sections
   use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
   use in_situ_strengths, only: material_in_place
-  use joined_elements, only: joined_elements_t, find_joined_elements
+  use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
@@ -190,23 +190,22 @@ contains
     type(strain_moments_t), intent(in) :: moments
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(21)
-    type(strain_moments_t) :: both(2)
     type(band_strains_t) :: strains
     type(elasticity_t) :: elasticity(size(self%plies))
+    real(wp), allocatable :: means(:)
     real(wp) :: before(3), normal(2)
     logical :: changed
     integer :: ply
 
     changed = .false.
-    both = moments
-    if (self%joined%shares(element)) both(2) = self%joined%strains_of(element)
+    means = self%joined%means_of(element)
     associate (first => self%range(1, element), last => self%range(2, element))
       do ply = first, last
         before = stiffness_lost(self%trial(ply, element))
         normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
         self%trial(ply, element) = self%accepted(ply, element)
-        call self%joined%find_elastic_strains(element, ply, self%plies(ply), self%bands(ply), both, &
-                                              self%trial(ply, element), strains)
+        call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, means, self%trial(ply, element), &
+                                  strains)
         ! Mean width of the elements normal to a straight crack.
         call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                            dot_product(normal, self%sides([2, 1], element))], &

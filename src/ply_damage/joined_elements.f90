@@ -17,7 +17,7 @@ module joined_elements
   use ply_strains, only: strain_moments_t, moment_values, strains_of_ply, values_of, moments_from
   implicit none
   private
-  public :: joined_elements_t, find_joined_elements
+  public :: joined_elements_t, find_joined_elements, find_elastic_strains
 
   !> Largest number of elements with a common state
   integer, parameter :: most = 4
@@ -45,9 +45,8 @@ module joined_elements
     !> Stores an element's strains; sends them to the ranks that need them.
     procedure :: accumulate_strains
     procedure :: exchange
-    !> Strains of an element with those joined with it, elastic ones of a ply, and their largest bound.
-    procedure :: strains_of
-    procedure :: find_elastic_strains
+    !> Means of an element with those joined with it, and the largest bound of their strains.
+    procedure :: means_of
     procedure :: bound_of
   end type joined_elements_t
 
@@ -221,57 +220,45 @@ contains
     call self%across%update(self%moments)
   end subroutine exchange
 
-  !> Strains of an element with those joined with it: means over their total area.
-  pure function strains_of(self, element) result(moments)
+  !> Means of an element and those joined with it, over their total area, for the elastic strains of its plies.
+  pure function means_of(self, element) result(means)
     class(joined_elements_t), intent(in) :: self
-    !> Element of this rank that shares its state
+    !> Element of this rank
     integer, intent(in) :: element
-    !> The means
-    type(strain_moments_t) :: moments
+    !> The means, without the bound of strains; none where it shares no state
+    real(wp), allocatable :: means(:)
+    integer, allocatable :: its(:)
 
-    moments = moments_from(means_of(self, element, 1, moment_values))
-  end function strains_of
+    allocate (means(0))
+    if (.not. self%shares(element)) return
+    its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
+    means = matmul(self%moments(:, its), self%area(its))/sum(self%area(its))
+    means = [means(:moment_values), means(moment_values + 2:)]
+  end function means_of
 
   !> Elastic strains of a ply of an element with those joined with it, and the permanent shear strain of this element.
-  pure subroutine find_elastic_strains(self, element, number, ply, band, moments, state, strains)
-    class(joined_elements_t), intent(in) :: self
-    !> Element of this rank, and number of the ply
-    integer, intent(in) :: element, number
+  pure subroutine find_elastic_strains(number, ply, band, moments, means, state, strains)
+    !> Number of the ply
+    integer, intent(in) :: number
     !> The ply
     type(ply_t), intent(in) :: ply
     !> Its law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the element, and of all joined ones
-    type(strain_moments_t), intent(in) :: moments(2)
+    !> Strains of the element
+    type(strain_moments_t), intent(in) :: moments
+    !> Means of it and those joined with it
+    real(wp), intent(in) :: means(:)
     !> The ply in the last accepted state; receives its permanent strain
     type(band_state_t), intent(inout) :: state
     !> The elastic strains
     type(band_strains_t), intent(out) :: strains
-    real(wp) :: mean(1)
 
-    strains = strains_of_ply(ply, moments(1))
+    strains = strains_of_ply(ply, moments)
     call flow_band(band, strains, state)
-    if (.not. self%shares(element)) return
-    strains = strains_of_ply(ply, moments(2))
-    if (.not. band%permanent_shear) return
-    mean = means_of(self, element, moment_values + 1 + number, moment_values + 1 + number)
-    strains%shear_square = mean(1)
+    if (size(means) == 0) return
+    strains = strains_of_ply(ply, moments_from(means(:moment_values)))
+    if (band%permanent_shear) strains%shear_square = means(moment_values + number)
   end subroutine find_elastic_strains
-
-  !> Means of stored values of an element and those joined with it, over their total area.
-  pure function means_of(self, element, first, last) result(means)
-    type(joined_elements_t), intent(in) :: self
-    !> Element of this rank that shares its state
-    integer, intent(in) :: element
-    !> The values
-    integer, intent(in) :: first, last
-    !> The means
-    real(wp) :: means(last - first + 1)
-    integer, allocatable :: its(:)
-
-    its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
-    means = matmul(self%moments(first:last, its), self%area(its))/sum(self%area(its))
-  end function means_of
 
   !> Upper bound of the strains of all plies of an element and those joined with it.
   pure real(wp) function bound_of(self, element) result(bound)

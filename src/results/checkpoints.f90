@@ -5,7 +5,7 @@ module checkpoints
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
-  use files, only: file_exists, rename_file
+  use files, only: file_exists, remove_file, rename_file
   use folder_listings, only: file_by_age
   use hdf5_data, only: read_integers, read_real_columns, read_reals, write_integers, write_real_columns, write_reals
   use hdf5_file, only: hdf5_file_t
@@ -163,23 +163,18 @@ contains
   subroutine put_in_place(path, error)
     !> Final path of the file
     character(len=*), intent(in) :: path
-    !> Raised if one of these steps failed
+    !> Raised if one of these steps failed; a file that can't have the name is removed
     type(error_t), allocatable, intent(inout) :: error
 
     call seal(aside(path), error)
     if (.not. allocated(error)) call rename_file(aside(path), path, error)
-    if (.not. allocated(error)) call synchronise_folder(folder(path), error)
+    if (allocated(error)) then
+      call remove_file(aside(path))
+      error%message = error%message(:len(error%message) - 1)//'; the new checkpoint has been removed.'
+    else
+      call synchronise_folder(folder(path), error)
+    end if
   end subroutine put_in_place
-
-  !> Removes an incomplete file, if it exists.
-  subroutine remove_file(path)
-    !> Path of the file
-    character(len=*), intent(in) :: path
-    integer :: unit, status
-
-    open (newunit=unit, file=path, status='old', iostat=status)
-    if (status == 0) close (unit, status='delete', iostat=status)
-  end subroutine remove_file
 
   !> Path of the file until it is complete.
   pure function aside(path)

@@ -53,9 +53,11 @@ contains
     real(wp), intent(in) :: event
     !> The state
     type(state_t), intent(inout) :: now
+    real(wp) :: kept
 
-    if (is_damped(method, model, now)) call damp_motion(method, model, now, method%parameters%settle)
-    call method%advance(model, event, now)
+    kept = 1
+    if (is_damped(method, model, now)) call damp_motion(method, model, now, method%parameters%settle, kept)
+    call method%advance(model, event, kept, now)
     if (model%setup%has_ply_damage .and. .not. allocated(now%plies%bands)) then
       call model%profile%enter('ply criteria')
       call now%plies%grow(model, now%motion%displacement)

@@ -42,6 +42,8 @@ def check_requests(implam, folder):
                         (["slurm", "deck.nml", "--time", "90"], EXIT_USAGE),
                         (["slurm", "deck.nml", "--ranks", "0"], EXIT_USAGE), (["slurm", "array.txt"], EXIT_FILES)):
         run([implam, "queue", *words], code, folder)
+    printed = run([implam, "queue", "slurm", "none.nml"], EXIT_DECK, folder)
+    require("none.nml: there is no such file." in printed, printed)
     print("requests: done")
 
 

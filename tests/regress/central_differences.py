@@ -9,7 +9,8 @@ travel   an impactor moved slowly has the force of load steps, and a faster one 
 lines    prescribed lines are held exactly; moved smoothly, with the force of load steps
 steep    where slopes stiffen the plate, steps with scaled inertia create no energy
 fracture the fracture energy is the toughness times the area, to 1e-6
-dent     after the impact the plate comes to rest, with a dent where shear strains of plies are permanent
+dent     after the impact the plate comes to rest, with a dent where shear strains of plies are permanent; without
+         damping the summary says that vibration is part of the dent
 softened residual stresses that crack plies, shear them permanently or delaminate edges before the impact: the energy
          balances within 1e-4 of the impact, also in implicit steps
 """
@@ -276,6 +277,11 @@ def check_dent(implam, folder, _):
         require(abs(last["energy_error"]) < 1e-3*impact, "The ledger is not closed.")
         require((last["energy_permanent_shear"] > 1e-3*impact) == (name == "stays"), "Permanent strains took that?")
     require(depths["stays"] > 5*abs(depths["goes"]), "Permanent strains leave no dent.")
+    run_deck(implam, write_deck(folder / "vibrates", "../small/dent.nml", ["time%settle=0"]))
+    for name, vibrates in (("stays", False), ("vibrates", True)):
+        lines = [line for line in (folder / name / "dent.log").read_text(encoding="utf-8").splitlines()
+                 if line.lstrip().startswith("dent  ")]
+        require(len(lines) == 1 and lines[0].endswith("; with what is left of the vibration") == vibrates, lines)
 
 
 SOFTENED = """&case name='softened' /

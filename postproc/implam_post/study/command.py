@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -41,8 +42,8 @@ class _Tables:
         self._written = time.monotonic()
         return rows
 
-    def write(self) -> None:
-        """Write tables and plot, and print the tables."""
+    def write(self) -> int:
+        """Write tables and plot, print the tables, and return how many trials have no errors as a file is faulty."""
         from implam_post.study.plots import plot_study
         from implam_post.study.table import means, text_means, text_table
         rows, output = self._rows(), self._study.output
@@ -57,6 +58,7 @@ class _Tables:
         print(output / "table.csv", output / "table.txt", *([drawn] if drawn else []), sep="\n")
         for note in dict.fromkeys(row.note for row in rows if row.note):
             print(f"note: {note}")
+        return sum(bool(row.note) for row in rows)
 
 
 def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
@@ -70,8 +72,12 @@ def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
         print(f"{counted(len(study.trials), 'trial')} of {counted(len(study.problems), 'problem')}, "
               f"{counted(len(runs), 'run')} to do", flush=True)
         finished = run_cases(sweep, runs, options.jobs, tables.write_now_and_then)
-    tables.write()
+    unread = tables.write()
     code = print_outcomes(sweep)
+    if unread:
+        print(f"{unread} of {counted(len(study.trials), 'trial')} cannot be evaluated, as the notes say.",
+              file=sys.stderr)
+        code = EXIT_USAGE
     return code if finished or code == EXIT_USAGE else EXIT_STOPPED
 
 
@@ -95,7 +101,7 @@ def _command(options: argparse.Namespace) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; the exit code is 1 if a run failed, 75 if the study was stopped."""
+    """Run the command; the exit code is 1 if a run failed or cannot be evaluated, 75 if the study was stopped."""
     parser = CommandParser(
         "implam-study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
         description="Run problems by several methods (meshes, steps, integrators, rules ...), compare each with a\n"

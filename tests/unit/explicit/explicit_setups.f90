@@ -83,20 +83,24 @@ contains
   end subroutine count_from
 
   !> Takes steps of the length that the method chooses.
-  subroutine go(self, steps, end)
+  subroutine go(self, steps, end, kept)
     !> The run
     class(explicit_run_t), intent(inout) :: self
     !> Number of steps
     integer, intent(in) :: steps
     !> Time that no step passes; left out: far away
     real(wp), intent(in), optional :: end
-    real(wp) :: event
+    !> Part of the velocities that damping leaves before each step; left out: there is none
+    real(wp), intent(in), optional :: kept
+    real(wp) :: event, left
     integer :: i
 
+    left = 1
+    if (present(kept)) left = kept
     do i = 1, steps
       event = self%now%time + 1.0e6_wp*self%method%longest_step(self%model, self%now)
       if (present(end)) event = end
-      call self%method%advance(self%model, event, self%now)
+      call self%method%advance(self%model, event, left, self%now)
     end do
   end subroutine go
 
