@@ -26,8 +26,10 @@ function(implam_share_cores)
 endfunction()
 
 # implam_add_unit_tests(<layer>...): one test program a layer from tests/unit/<layer>/*.pf and the helpers
-# beside them (*.f90); it sees this layer and those left of it. From linalg on, PETSc is started first.
+# beside them (*.f90); it sees this layer and those left of it. From linalg on, PETSc is started first. The target
+# unit_tests builds all of them.
 function(implam_add_unit_tests)
+  add_custom_target(unit_tests)
   set(lower "")
   foreach(layer IN LISTS ARGN)
     list(APPEND lower ${layer})
@@ -66,6 +68,7 @@ function(implam_add_unit_tests)
     implam_link_layers(tested_${layer} ${lower})
     add_pfunit_ctest(unit_${layer} TEST_SOURCES ${tests} OTHER_SOURCES ${helpers}
                      LINK_LIBRARIES tested_${layer} ${arguments})
+    add_dependencies(unit_tests unit_${layer})
     implam_follow_layers(unit_${layer} ${lower})
     implam_settle_test(unit_${layer} unit)
     if(processes) # on two cores one such program at a time

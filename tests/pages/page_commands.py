@@ -1,8 +1,9 @@
 """Commands and files of pages, as the tests of this folder read them.
 
 A block of code marked `sh` holds commands that a test runs, in the order of the page. `sh long` holds commands that
-take longer than about 20 s, `sh elsewhere` those that need a queue, a screen, a network or files of the reader's own:
-they are checked without being run. A block after <!-- file PATH --> is the content of a file that the reader saves.
+take longer than about 20 s, `sh elsewhere` those that another page runs or that need a queue, a screen, a network or
+files of the reader's own: they are checked without being run. A block after <!-- file PATH --> is the content of a
+file that the reader saves.
 """
 
 import re

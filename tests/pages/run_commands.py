@@ -82,13 +82,16 @@ def main(arguments):
     if not (root / ".venv" / "bin" / "implam-plot").exists():
         print("skipped: the Python commands are not installed")
         return SKIPPED
-    wrong, begun = [], processor_time()
+    wrong, begun, count = [], processor_time(), 0
     for page in sorted((root / "doc" / "manual").glob("*.md")):
         if arguments[3:] and page.stem not in arguments[3:]:
             continue
         if any(isinstance(part, Command) and part.is_run for part in parts_of(page.read_text(encoding="utf-8"))):
             wrong += run_page(page, Clone(implam, root, folder / page.stem))
-    print("\n".join(wrong) or f"All commands of the manual run, in {processor_time() - begun:.0f} s of one processor.")
+            count += 1
+    if not count:
+        wrong = ["No page has commands to run."]
+    print("\n".join(wrong) or f"The commands of {count} pages run, in {processor_time() - begun:.0f} s of a processor.")
     return 1 if wrong else 0
 
 

