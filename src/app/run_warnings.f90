@@ -124,7 +124,7 @@ contains
     thickness = deck%expected%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
       if (now%interfaces%border_reached(zone)) call add(warning_border, zone)
-      if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, zone)
+      if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, 0)
     end do
     if (now%indentation%alpha > deepest_indentation(deck)) call add(warning_indentation, 0)
     if (step_errs) call add(warning_steps, 0)

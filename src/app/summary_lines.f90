@@ -7,6 +7,7 @@ module summary_lines
   use kinds, only: wp
   use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
+  use roundings, only: rounding
   use run_moments, only: moment
   use run_records, only: run_record_t
   use run_warnings, only: warnings_given
@@ -175,7 +176,9 @@ contains
     clause = ', absorbed '
     if (now%force > 0) clause = ', contact lasts, transferred so far '
     clause = rounded_text(energy_input)//clause//rounded_text(lost)
-    if (energy_input > 0) clause = clause//' ('//rounded_text(100*lost/energy_input, 3)//' %)'
+    ! Of an impact with next to no energy the weight of the impactor may transfer more.
+    if (energy_input > 0 .and. lost <= energy_input*(1 + rounding)) &
+      clause = clause//' ('//rounded_text(100*lost/energy_input, 3)//' %)'
     call add_figure(lines, 'impact energy', clause)
   end subroutine add_impact_energy
 

@@ -36,6 +36,8 @@ contains
       if (.not. (deck%stepping%adapt%on .or. deck%is_static() .or. is_explicit(deck%stepping)) .and. deck%has_time) &
         call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
                          ', as every step has the length of step.')
+      if (s%has_group(adapt_group) .and. .not. deck%stepping%adapt%on) &
+        call remark_idle(s, problems, adapt_group, 'rule tolerance stress_change', 'has no effect with on = .false.')
       if (deck%kinematics == kinematics_linear) &
         call remark_idle(s, problems, plate_group, key_imperfection, 'has no effect with kinematics = ''linear''.')
       if (deck%is_static()) then

@@ -143,17 +143,34 @@ contains
         call report(settings, problems, laminate_group, key_stacking, fault//'.')
         return
       end if
-      i = maxloc(abs(angles), 1)
-      if (abs(angles(i)) > usual_degrees) call remark(settings, problems, laminate_group, key_stacking, 'the angle '// &
-        to_text(angles(i))//' is beyond 180 degrees; '//count_hint//'.')
+      call remark_large(key_stacking, angles, '; '//count_hint)
       call settings%derive_numbers(laminate_group, key_angles, angles)
       call settings%derive_numbers(laminate_group, key_thicknesses, &
                                    settings%reals_of(laminate_group, key_ply_thickness))
     else
       call require(listed)
+      if (are_clear(settings, problems, laminate_group, key_angles) .and. &
+          settings%is_given(laminate_group, key_angles)) &
+        call remark_large(key_angles, settings%reals_of(laminate_group, key_angles), '')
     end if
 
   contains
+
+    !> Remarks on the largest angle beyond 180 degrees.
+    subroutine remark_large(key, values, hint)
+      !> The key
+      character(len=*), intent(in) :: key
+      !> Its angles, degrees
+      real(wp), intent(in) :: values(:)
+      !> Ends the sentence
+      character(len=*), intent(in) :: hint
+      integer :: largest
+
+      largest = maxloc(abs(values), 1)
+      if (abs(values(largest)) > usual_degrees) &
+        call remark(settings, problems, laminate_group, key, 'the angle '//to_text(values(largest))// &
+                    ' is beyond 180 degrees'//hint//'.')
+    end subroutine remark_large
 
     !> Reports those of some keys that are missing.
     subroutine require(keys)
