@@ -48,8 +48,8 @@ contains
              ' has reached the border of its zone at '//at// &
              ' and cannot grow further: make the zone larger.'
     case (warning_core)
-      text = 'Layers grow with the damage beyond the core of the mesh since '//at//', where its cells grow: make the '// &
-             'core larger.'
+      text = 'Layers grow with the damage beyond the core of the mesh since '//at// &
+             ', where its cells grow: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')
