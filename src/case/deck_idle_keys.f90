@@ -1,6 +1,6 @@
 !> Reports keys without effect because the group that uses them is missing.
 module deck_idle_keys
-  use adapt_deck, only: adapt_group
+  use adapt_deck, only: adapt_group, keys_of_lengths
   use controls_deck, only: controls_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -37,7 +37,7 @@ contains
         call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
                          ', as every step has the length of step.')
       if (s%has_group(adapt_group) .and. .not. deck%stepping%adapt%on) &
-        call remark_idle(s, problems, adapt_group, 'rule tolerance stress_change', 'has no effect with on = .false.')
+        call remark_idle(s, problems, adapt_group, keys_of_lengths, 'has no effect with on = .false.')
       if (deck%kinematics == kinematics_linear) &
         call remark_idle(s, problems, plate_group, key_imperfection, 'has no effect with kinematics = ''linear''.')
       if (deck%is_static()) then

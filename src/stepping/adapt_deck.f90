@@ -10,6 +10,8 @@ module adapt_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: adapt_group = 'adapt', key_growth_step = 'growth_step'
+  !> Keys that determine the length of adaptive steps.
+  character(len=*), parameter, public :: keys_of_lengths = 'rule tolerance stress_change'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: adapt_group_row = &
     'adapt | settings | Adaptive time step and the rule for renewing the factored stiffness.'
