@@ -23,7 +23,7 @@ from solver_runs import run as run_program
 ALL = bool(os.environ.get("IMPLAM_EVERY_DECK"))
 DECKS = sorted((ROOT / "input" / ("" if ALL else "small")).rglob("*.nml"), key=lambda deck: deck.stat().st_size)
 # Coarse cells and an early end of the large decks, by the beginning of their names, the first that fits.
-COARSE = {"t700_m21_cai": ["mesh%elements=20,30", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=1e-3"],
+COARSE = {"t700_m21_cai": ["mesh%elements=20,30", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=2e-3"],
           "t700_m21_25J": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=1e-3"],
           "t700_m21": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3"],
           "im7_8552": ["mesh%elements=10,12", "mesh%core=36e-3,36e-3", "mesh%cell=9e-3", "mesh%patch=9e-3",
