@@ -18,7 +18,9 @@ def open_share(summary):
     def of(name):
         return summary.get(name) or 0.0
 
-    limit = max(of("energy_impact"), of("work_external"), of("energy_kinetic") + of("energy_strain"))
+    # What the impactor has transferred counts, too: of one laid on the plate it is all there is.
+    limit = max(of("energy_impact"), of("energy_impact") - of("energy_impactor"), of("work_external"),
+                of("energy_kinetic") + of("energy_strain"))
     if limit <= 0:
         return 0.0
     fronts = sum(entry["energy"] for entry in summary.get("interfaces", []) if not entry["is_cohesive"])
