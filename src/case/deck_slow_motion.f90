@@ -15,7 +15,8 @@ module deck_slow_motion
   !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below some per cent
   !> of the work, doc/manual/slow_motion.md.
   integer, parameter :: periods = 20
-  !> Factor of rotary inertia in such a motion, whose waves are as long as the plate: doc/manual/slow_motion.md.
+  !> Factor s of rotary inertia in such a motion. It slows the first bending, of a wave number k = pi/L over the span L,
+  !> by the share (s - 1) (k h)**2/24 (theory of explicit steps): 3.7 (h/L)**2, below 1 % from 20 thicknesses on.
   real(wp), parameter :: slow_scaling = 10
 
 contains

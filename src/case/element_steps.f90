@@ -1,8 +1,8 @@
 !> Stable step of central differences before there is a model: that of the smallest element with all its layers.
 !>
 !> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both;
-!> with equal sections it has the highest frequency. Before layers are inserted the step of a run is longer; contact
-!> stiffness makes it shorter.
+!> with equal sections it has the highest frequency; with scaled inertia longer ones have about the same. Before layers
+!> are inserted the step of a run is longer; contact stiffness makes it shorter.
 module element_steps
   use cell_grids, only: cell_edges
   use communicators, only: communicator_t
