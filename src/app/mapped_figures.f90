@@ -70,6 +70,7 @@ contains
     !> Of fibres and of the matrix
     real(wp) :: areas(2)
     type(exact_sum_t) :: sums(2)
+    real(wp) :: damage(2)
     integer :: i, ply, part
 
     do i = 1, model%elements%elements
@@ -77,8 +78,9 @@ contains
         associate (range => model%mesh%element_plies(:, element), &
                    area => model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(element))))
           do ply = range(1), range(2)
+            damage = state%plies%bands%states%accepted_damage(ply, i)
             do part = 1, 2
-              call sums(part)%add(area*state%plies%bands%accepted(ply, i)%damage(part))
+              call sums(part)%add(area*damage(part))
             end do
           end do
         end associate

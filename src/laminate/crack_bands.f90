@@ -241,7 +241,7 @@ contains
   end function stiffness_lost
 
   !> True: not the undamaged state.
-  pure logical function is_damaged(state)
+  elemental logical function is_damaged(state)
     !> The ply
     type(band_state_t), intent(in) :: state
 

@@ -27,7 +27,7 @@ contains
     real(wp), intent(out) :: energy
     !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
     real(wp), contiguous, intent(out), optional :: energies(:, :)
-    real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(lanes, batches%shear_points, 2), stored(lanes)
+    real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(lanes*9*2), stored(lanes)
     integer :: b
 
     stored = 0.0_wp

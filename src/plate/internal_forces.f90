@@ -125,7 +125,8 @@ contains
     real(wp), intent(inout) :: energies(lanes)
     !> Resultants of strains that go without stress, and their energy per area
     real(wp), intent(in), optional :: free(lanes, 7)
-    real(wp) :: shear(lanes, batches%shear_points, 2)
+    ! Transverse shear (lane, point, component), of at most 9 points: an array of constant size is not on the heap.
+    real(wp) :: shear(lanes*9*2)
 
     call shear_strains(batches, b, r, shear)
     if (present(free)) call add_free_energy(free, batches%weight(:, :, b), strains, energies)

@@ -84,7 +84,7 @@ contains
     real(wp), intent(inout) :: strains(lanes, 9, 6)
     !> Motion of the nodes on entry, forces on them on return
     real(wp), intent(inout) :: r(lanes, 9, 5)
-    real(wp) :: shear(lanes, batches%shear_points, 2), unused(lanes)
+    real(wp) :: shear(lanes*9*2), unused(lanes)
 
     unused = 0
     call shear_strains(batches, b, r, shear)

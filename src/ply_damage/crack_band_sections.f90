@@ -3,9 +3,9 @@
 !> from one potential, and the energy lost by damage is that of the law, for any strains within the element.
 module crack_band_sections
   use archives, only: archive_t
-  use band_archives, only: visit_bands
+  use band_states, only: band_states_t, new_band_states
   use crack_closures, only: closing_resultants
-  use crack_bands, only: crack_band_t, band_state_t, band_strains_t, create_crack_band, soften_band, &
+  use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, &
                          degraded_elasticity, energy_of_shear, is_damaged, stiffness_lost
   use crack_band_limits, only: onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
@@ -27,8 +27,8 @@ module crack_band_sections
 
   !> The plies of this rank's elements.
   type, extends(section_law_t) :: crack_band_sections_t
-    !> Damage and energies in the last accepted state and in the trial, (plies, elements)
-    type(band_state_t), allocatable :: accepted(:, :), trial(:, :)
+    !> Damage and energies of the plies
+    type(band_states_t) :: states
     !> Section stiffness in the trial, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> Resultants of stress-free strains in the trial, (lanes, 7, batches); unallocated: there are none
@@ -37,8 +37,6 @@ module crack_band_sections
     type(ply_t), allocatable, private :: plies(:)
     !> Their laws
     type(crack_band_t), allocatable, private :: bands(:)
-    !> First and last ply of each element, (2, elements)
-    integer, allocatable, private :: range(:, :)
     !> Sides along x and y of each element with those that share its state, (2, elements)
     real(wp), allocatable, private :: sides(:, :)
     !> Area of each element, (elements)
@@ -63,9 +61,6 @@ module crack_band_sections
     procedure :: dissipation_sums
     !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
-    !> Elements with failed fibres or matrix of a ply, and with matrix failure mostly in compression.
-    procedure :: failed_parts
-    procedure :: mostly_compressed
     !> Reduced elastic constants of a ply of an element.
     procedure :: elasticity
     !> Adjacent plies of an element with their permanent strains; resultants of stress-free strains.
@@ -97,10 +92,8 @@ contains
     end if
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
                  - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
-    allocate (self%accepted(size(model%plies), model%elements%elements))
-    self%trial = self%accepted
+    self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
     self%stiffness = model%elements%stiffness
-    self%range = model%mesh%element_plies(:, model%distribution%elements)
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
     allocate (self%touched(model%elements%elements), source=.false.)
     self%joined = find_joined_elements(model)
@@ -138,8 +131,12 @@ contains
     bounds = largest_strains(self%plies, weight, strains)
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
-      if (self%joined%shares(element)) call self%joined%accumulate_strains(element, strain_moments(weight(lane, :), &
-        strains(lane, :, :)), bounds(lane), self%plies, self%bands, self%accepted(:, element))
+      if (.not. self%joined%shares(element)) cycle
+      associate (first => self%states%range(1, element), last => self%states%range(2, element))
+        call self%joined%accumulate_strains(element, strain_moments(weight(lane, :), strains(lane, :, :)), &
+                                            bounds(lane), first, self%plies(first:last), self%bands(first:last), &
+                                            self%states%of_element(element))
+      end associate
     end do
   end subroutine accumulate_strains
 
@@ -198,22 +195,24 @@ contains
     integer :: ply
 
     changed = .false.
+    self%touched(element) = .false.
     means = self%joined%means_of(element)
-    associate (first => self%range(1, element), last => self%range(2, element))
+    associate (first => self%states%range(1, element), last => self%states%range(2, element))
       do ply = first, last
-        before = stiffness_lost(self%trial(ply, element))
-        normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
-        self%trial(ply, element) = self%accepted(ply, element)
-        call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, means, self%trial(ply, element), &
-                                  strains)
-        ! Mean width of the elements normal to a straight crack.
-        call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
-                                           dot_product(normal, self%sides([2, 1], element))], &
-                         strains, self%accepted(ply, element), self%trial(ply, element))
-        changed = changed .or. any(abs(stiffness_lost(self%trial(ply, element)) - before) > 0)
-        elasticity(ply) = degraded_elasticity(self%bands(ply), self%trial(ply, element))
+        associate (old => self%states%accepted(self%states%offset(element) + ply), &
+                   new => self%states%trial(self%states%offset(element) + ply))
+          before = stiffness_lost(new)
+          normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
+          new = old
+          call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, means, new, strains)
+          ! Mean width of the elements normal to a straight crack.
+          call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
+                                             dot_product(normal, self%sides([2, 1], element))], strains, old, new)
+          changed = changed .or. any(abs(stiffness_lost(new) - before) > 0)
+          elasticity(ply) = degraded_elasticity(self%bands(ply), new)
+          self%touched(element) = self%touched(element) .or. is_damaged(new)
+        end associate
       end do
-      self%touched(element) = any([(is_damaged(self%trial(ply, element)), ply=first, last)])
       if (changed) stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
     end associate
   end subroutine soften_element
@@ -225,7 +224,7 @@ contains
     integer :: element
 
     do element = 1, size(self%touched)
-      if (self%touched(element)) self%accepted(:, element) = self%trial(:, element)
+      if (self%touched(element)) call self%states%accept(element)
     end do
   end subroutine commit
 
@@ -241,7 +240,7 @@ contains
 
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
-      self%accepted(:, element) = self%trial(:, element)
+      call self%states%accept(element)
       stiffness(lane_of(element), :, batch_of(element)) = self%stiffness(lane_of(element), :, batch_of(element))
       if (allocated(free)) &
         free(lane_of(element), :, batch_of(element)) = self%free(lane_of(element), :, batch_of(element))
@@ -259,7 +258,7 @@ contains
 
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
-      do ply = self%range(1, element), self%range(2, element)
+      do ply = self%states%range(1, element), self%states%range(2, element)
         dissipated = dissipated_in(self, ply, element)
         do mode = 1, energy_modes
           call energies(mode)%add(dissipated(mode))
@@ -277,8 +276,10 @@ contains
     !> In the order of the modes
     real(wp) :: energies(energy_modes)
 
-    energies = self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
-               *(self%trial(ply, element)%dissipated - self%accepted(ply, element)%dissipated)
+    associate (state => self%states%offset(element) + ply)
+      energies = self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
+                 *(self%states%trial(state)%dissipated - self%states%accepted(state)%dissipated)
+    end associate
   end function dissipated_in
 
   !> Energy dissipated so far in each mode and by permanent shear, of this rank's elements, as exact sums.
@@ -291,48 +292,17 @@ contains
 
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
-      do ply = self%range(1, element), self%range(2, element)
-        associate (volume => self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top))
+      do ply = self%states%range(1, element), self%states%range(2, element)
+        associate (volume => self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top), &
+                   state => self%states%accepted(self%states%offset(element) + ply))
           do mode = 1, energy_modes
-            call energies(mode)%add(volume*self%accepted(ply, element)%dissipated(mode))
+            call energies(mode)%add(volume*state%dissipated(mode))
           end do
-          call energies(energy_modes + 1)%add(volume*energy_of_shear(self%bands(ply), self%accepted(ply, element)))
+          call energies(energy_modes + 1)%add(volume*energy_of_shear(self%bands(ply), state))
         end associate
       end do
     end do
   end function dissipated
-
-  !> Elements of this rank with failed fibres and with failed matrix of a ply.
-  pure function failed_parts(self, ply)
-    !> The plies
-    class(crack_band_sections_t), intent(in) :: self
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> True for fibres, and for the matrix, (2, elements)
-    logical :: failed_parts(2, size(self%touched))
-    integer :: element
-
-    do element = 1, size(self%touched)
-      failed_parts(:, element) = self%trial(ply, element)%damage >= 1
-    end do
-  end function failed_parts
-
-  !> True if the matrix of a ply has dissipated more energy in transverse compression than in tension.
-  pure function mostly_compressed(self, ply)
-    !> The plies
-    class(crack_band_sections_t), intent(in) :: self
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> (elements)
-    logical :: mostly_compressed(size(self%touched))
-    integer :: element
-
-    do element = 1, size(self%touched)
-      associate (dissipated => self%trial(ply, element)%dissipated)
-        mostly_compressed(element) = dissipated(matrix_compression) > dissipated(matrix_tension)
-      end associate
-    end do
-  end function mostly_compressed
 
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)
@@ -343,7 +313,7 @@ contains
     !> The constants
     type(elasticity_t) :: elasticity
 
-    elasticity = degraded_elasticity(self%bands(ply), self%trial(ply, element))
+    elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
   end function elasticity
 
   !> Neighbouring plies of an element with the permanent strains of the trial.
@@ -358,7 +328,7 @@ contains
 
     plies = self%plies(first:last)
     do ply = first, last
-      plies(ply)%free_strain(3) = self%trial(ply, element)%permanent
+      plies(ply)%free_strain(3) = self%states%trial(self%states%offset(element) + ply)%permanent
     end do
   end function strained
 
@@ -372,11 +342,13 @@ contains
     real(wp) :: resultants(7)
     integer :: ply
 
-    associate (first => self%range(1, element), last => self%range(2, element))
+    associate (first => self%states%range(1, element), last => self%states%range(2, element), &
+               offset => self%states%offset(element))
       resultants = free_resultants(self%strained(first, last, element), &
                                    [(self%elasticity(ply, element), ply=first, last)])
-      if (self%bands(first)%crack_closure) resultants = resultants + closing_resultants( &
-        self%plies(first:last), reshape([(self%trial(ply, element)%recovered, ply=first, last)], [3, last - first + 1]))
+      if (self%bands(first)%crack_closure) resultants = resultants &
+        + closing_resultants(self%plies(first:last), reshape([(self%states%trial(offset + ply)%recovered, &
+                                                               ply=first, last)], [3, last - first + 1]))
     end associate
   end function free_resultants_of
 
@@ -387,13 +359,12 @@ contains
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer :: element, ply
+    integer :: element
 
-    call visit_bands(archive, model, self%range, self%accepted)
+    call self%states%visit(archive, model)
     if (.not. archive%loading) return
     do element = 1, size(self%touched)
-      self%touched(element) = any([(is_damaged(self%accepted(ply, element)), ply=1, size(self%plies))])
+      self%touched(element) = self%states%damaged(element)
     end do
-    self%trial = self%accepted
   end subroutine visit
 end module crack_band_sections

@@ -182,7 +182,7 @@ contains
   end function shares
 
   !> Stores an element's strains.
-  pure subroutine accumulate_strains(self, element, moments, bound, plies, bands, states)
+  pure subroutine accumulate_strains(self, element, moments, bound, first, plies, bands, states)
     !> The elements
     class(joined_elements_t), intent(inout) :: self
     !> Element of this rank that shares its state
@@ -191,11 +191,13 @@ contains
     type(strain_moments_t), intent(in) :: moments
     !> Upper bound of the strains of its plies
     real(wp), intent(in) :: bound
-    !> All plies
+    !> First ply of the element
+    integer, intent(in) :: first
+    !> Its plies
     type(ply_t), intent(in) :: plies(:)
     !> Their laws
     type(crack_band_t), intent(in) :: bands(:)
-    !> Their last accepted states in this element
+    !> Their last accepted states
     type(band_state_t), intent(in) :: states(:)
     type(band_strains_t) :: strains
     type(band_state_t) :: state
@@ -203,11 +205,12 @@ contains
 
     associate (column => self%moments(:, self%number(element)))
       column(:moment_values + 1) = [values_of(moments), bound]
-      do ply = 1, size(column) - moment_values - 1
+      if (size(column) == moment_values + 1) return
+      do ply = 1, size(plies)
         strains = strains_of_ply(plies(ply), moments)
         state = states(ply)
         call flow_band(bands(ply), strains, state)
-        column(moment_values + 1 + ply) = strains%shear_square
+        column(moment_values + first + ply) = strains%shear_square
       end do
     end associate
   end subroutine accumulate_strains

@@ -194,7 +194,7 @@ contains
       failed = self%modes%failed(ply)
       return
     end if
-    associate (failed_parts => self%bands%failed_parts(ply), pressed => self%bands%mostly_compressed(ply))
+    associate (failed_parts => self%bands%states%failed_parts(ply), pressed => self%bands%states%mostly_compressed(ply))
       allocate (failed(failure_modes, size(pressed)))
       failed(fibre_failure, :) = failed_parts(1, :)
       failed(matrix_cracking, :) = failed_parts(2, :) .and. .not. pressed
@@ -243,7 +243,7 @@ contains
     real(wp) :: stresses(2)
 
     stresses = 0
-    if (allocated(self%bands)) stresses = self%bands%trial(ply, element)%recovered(:2)
+    if (allocated(self%bands)) stresses = self%bands%states%carried_by_cracks(ply, element)
   end function carried_by_cracks
 
   !> Reduced elastic constants of the plies of an element.

@@ -1,0 +1,204 @@
+!> Damage of the softening plies of all elements: of each ply in the elements that have it.
+module band_states
+  use archives, only: archive_t
+  use crack_bands, only: band_state_t, is_damaged
+  use kinds, only: wp
+  use models, only: model_t
+  use ply_damage_parameters, only: energy_modes, matrix_compression, matrix_tension
+  implicit none
+  private
+  public :: band_states_t, new_band_states
+
+  !> States of the plies of one element after the other.
+  type :: band_states_t
+    !> The last accepted state, and the trial
+    type(band_state_t), allocatable :: accepted(:), trial(:)
+    !> First and last ply of each element, (2, elements)
+    integer, allocatable :: range(:, :)
+    !> A ply of an element has the state at this place plus the number of the ply, (elements)
+    integer, allocatable :: offset(:)
+  contains
+    !> Accepts the trial states of an element.
+    procedure :: accept
+    !> Accepted states of an element; true if one has damage.
+    procedure :: of_element
+    procedure :: damaged
+    !> Elements with failed fibres or matrix of a ply, and with matrix failure mostly in compression.
+    procedure :: failed_parts
+    procedure :: mostly_compressed
+    !> True if a ply lies in an element.
+    procedure, private :: has_ply
+    !> Damage of a ply of an element, and the stresses that its closed cracks carry.
+    procedure :: accepted_damage
+    procedure :: carried_by_cracks
+    !> Saves or loads.
+    procedure :: visit
+  end type band_states_t
+
+contains
+
+  !> Plies without damage.
+  pure function new_band_states(range) result(self)
+    !> First and last ply of each element, (2, elements)
+    integer, intent(in) :: range(:, :)
+    !> The states
+    type(band_states_t) :: self
+    integer :: i, next
+
+    self%range = range
+    allocate (self%offset(size(range, 2)), self%accepted(sum(range(2, :) - range(1, :) + 1)))
+    next = 1
+    do i = 1, size(self%offset)
+      self%offset(i) = next - range(1, i)
+      next = next + range(2, i) - range(1, i) + 1
+    end do
+    self%trial = self%accepted
+  end function new_band_states
+
+  !> Accepts the trial states of one element.
+  pure subroutine accept(self, element)
+    !> The states
+    class(band_states_t), intent(inout) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+
+    associate (first => self%offset(element) + self%range(1, element), &
+               last => self%offset(element) + self%range(2, element))
+      self%accepted(first:last) = self%trial(first:last)
+    end associate
+  end subroutine accept
+
+  !> Accepted states of an element.
+  pure function of_element(self, element) result(states)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Of its plies
+    type(band_state_t) :: states(self%range(2, element) - self%range(1, element) + 1)
+
+    states = self%accepted(self%offset(element) + self%range(1, element):self%offset(element) + self%range(2, element))
+  end function of_element
+
+  !> True if a ply of an element has damage in the accepted state.
+  pure logical function damaged(self, element)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+
+    damaged = any(is_damaged(self%of_element(element)))
+  end function damaged
+
+  !> Elements of this rank with failed fibres and with failed matrix of a ply.
+  pure function failed_parts(self, ply)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> True for fibres, and for the matrix, (2, elements)
+    logical :: failed_parts(2, size(self%offset))
+    integer :: element
+
+    failed_parts = .false.
+    do element = 1, size(self%offset)
+      if (self%has_ply(ply, element)) failed_parts(:, element) = self%trial(self%offset(element) + ply)%damage >= 1
+    end do
+  end function failed_parts
+
+  !> True if the matrix of a ply has dissipated more energy in transverse compression than in tension.
+  pure function mostly_compressed(self, ply)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> (elements)
+    logical :: mostly_compressed(size(self%offset))
+    integer :: element
+
+    mostly_compressed = .false.
+    do element = 1, size(self%offset)
+      if (.not. self%has_ply(ply, element)) cycle
+      associate (dissipated => self%trial(self%offset(element) + ply)%dissipated)
+        mostly_compressed(element) = dissipated(matrix_compression) > dissipated(matrix_tension)
+      end associate
+    end do
+  end function mostly_compressed
+
+  !> True if a ply lies in an element.
+  pure logical function has_ply(self, ply, element)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Ply of the laminate, and element of this rank
+    integer, intent(in) :: ply, element
+
+    has_ply = self%range(1, element) <= ply .and. ply <= self%range(2, element)
+  end function has_ply
+
+  !> Damage of fibres and matrix of a ply of an element in the last accepted state.
+  pure function accepted_damage(self, ply, element) result(damage)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Ply and element of this rank that has it
+    integer, intent(in) :: ply, element
+    !> From 0 to 1
+    real(wp) :: damage(2)
+
+    damage = self%accepted(self%offset(element) + ply)%damage
+  end function accepted_damage
+
+  !> Stresses along and across the fibres that closed cracks of a ply of an element carry in the trial.
+  pure function carried_by_cracks(self, ply, element) result(stresses)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Ply and element of this rank that has it
+    integer, intent(in) :: ply, element
+    !> Negative in compression
+    real(wp) :: stresses(2)
+
+    stresses = self%trial(self%offset(element) + ply)%recovered(:2)
+  end function carried_by_cracks
+
+  !> Saves or loads the accepted states. Collective.
+  subroutine visit(self, archive, model)
+    !> The states
+    class(band_states_t), intent(inout) :: self
+    !> Archive of the checkpoint
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    integer, parameter :: numbers = 3 + energy_modes
+    real(wp), dimension(:, :), allocatable :: table, strains, closed
+    integer :: element, ply
+
+    ! A column has all plies of the laminate, so that each layer of an element that separates can read its plies from
+    ! that of the whole element.
+    allocate (table(numbers*size(model%plies), size(self%offset)), strains(2*size(model%plies), size(self%offset)), &
+              closed(2*size(model%plies), size(self%offset)), source=0.0_wp)
+    do element = 1, size(self%offset)
+      do ply = self%range(1, element), self%range(2, element)
+        associate (state => self%accepted(self%offset(element) + ply))
+          table((ply - 1)*numbers + 1:ply*numbers, element) = [state%damage, state%shear_damage, state%dissipated]
+          strains(2*ply - 1:2*ply, element) = [state%permanent, state%accumulated]
+          closed(2*ply - 1:2*ply, element) = state%closed
+        end associate
+      end do
+    end do
+    call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
+    if (model%setup%ply_damage%permanent_shear) &
+      call archive%field('ply_failure/permanent_shear', model%distribution%elements, model%mesh%elements(), strains)
+    if (model%setup%ply_damage%crack_closure) &
+      call archive%field('ply_failure/closed_cracks', model%distribution%elements, model%mesh%elements(), closed)
+    if (.not. archive%loading) return
+    do element = 1, size(self%offset)
+      do ply = self%range(1, element), self%range(2, element)
+        associate (values => table((ply - 1)*numbers + 1:ply*numbers, element), &
+                   shear => strains(2*ply - 1:2*ply, element))
+          self%accepted(self%offset(element) + ply) = &
+            band_state_t(damage=values(1:2), shear_damage=values(3), dissipated=values(4:), permanent=shear(1), &
+                         accumulated=shear(2), closed=closed(2*ply - 1:2*ply, element))
+        end associate
+      end do
+    end do
+    self%trial = self%accepted
+  end subroutine visit
+end module band_states
