@@ -85,8 +85,12 @@ contains
     real(wp), intent(in) :: u(:, :), v(:, :)
     !> Forces on the layers, (5, points)
     real(wp), intent(inout) :: force(:, :)
+    integer :: p
 
-    force = force - springs*(u + steps%now*v)
+    do p = 1, size(springs, 2)
+      if (.not. any(springs(:, p) > 0)) cycle
+      force(:, p) = force(:, p) - springs(:, p)*(u(:, p) + steps%now*v(:, p))
+    end do
   end subroutine add_spring_forces
 
   !> Books the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
@@ -101,9 +105,15 @@ contains
     type(step_lengths_t), intent(in) :: steps
     !> Rates of the unknowns before the step and after it, (5, points)
     real(wp), intent(in) :: before(:, :), after(:, :)
+    integer :: p
 
-    self%step_loss = self%step_loss + steps%now/2*sum(springs*( &
-      steps%now*(before + after)*after - (steps%now - steps%last)/2*(before**2 + after**2)), 1)
+    do p = 1, size(springs, 2)
+      if (.not. any(springs(:, p) > 0)) cycle
+      associate (old => before(:, p), new => after(:, p))
+        self%step_loss(p) = self%step_loss(p) + steps%now/2*sum(springs(:, p)*( &
+          steps%now*(old + new)*new - (steps%now - steps%last)/2*(old**2 + new**2)))
+      end associate
+    end do
   end subroutine book_springs
 
   !> Saves or loads.

@@ -196,7 +196,7 @@ contains
 
     changed = .false.
     self%touched(element) = .false.
-    means = self%joined%means_of(element)
+    if (self%joined%shares(element)) means = self%joined%means_of(element)
     associate (first => self%states%range(1, element), last => self%states%range(2, element))
       do ply = first, last
         associate (old => self%states%accepted(self%states%offset(element) + ply), &

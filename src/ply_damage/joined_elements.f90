@@ -226,14 +226,12 @@ contains
   !> Means of an element and those joined with it, over their total area, for the elastic strains of its plies.
   pure function means_of(self, element) result(means)
     class(joined_elements_t), intent(in) :: self
-    !> Element of this rank
+    !> Element of this rank that shares its state
     integer, intent(in) :: element
-    !> The means, without the bound of strains; none where it shares no state
+    !> The means, without the bound of strains
     real(wp), allocatable :: means(:)
     integer, allocatable :: its(:)
 
-    allocate (means(0))
-    if (.not. self%shares(element)) return
     its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
     means = matmul(self%moments(:, its), self%area(its))/sum(self%area(its))
     means = [means(:moment_values), means(moment_values + 2:)]
@@ -249,8 +247,8 @@ contains
     type(crack_band_t), intent(in) :: band
     !> Strains of the element
     type(strain_moments_t), intent(in) :: moments
-    !> Means of it and those joined with it
-    real(wp), intent(in) :: means(:)
+    !> Means of it and those joined with it; absent: there are none
+    real(wp), intent(in), optional :: means(:)
     !> The ply in the last accepted state; receives its permanent strain
     type(band_state_t), intent(inout) :: state
     !> The elastic strains
@@ -258,7 +256,7 @@ contains
 
     strains = strains_of_ply(ply, moments)
     call flow_band(band, strains, state)
-    if (size(means) == 0) return
+    if (.not. present(means)) return
     strains = strains_of_ply(ply, moments_from(means(:moment_values)))
     if (band%permanent_shear) strains%shear_square = means(moment_values + number)
   end subroutine find_elastic_strains
