@@ -40,6 +40,8 @@ module layer_transfers
   contains
     !> Switches from saving to loading.
     procedure :: turn_to
+    !> Copies what rank 0 has saved to every rank.
+    procedure :: broadcast
     procedure :: real_item
     procedure :: integer_item
     procedure :: logical_item
@@ -156,6 +158,32 @@ contains
       if (self%kept(item)%name == name) return
     end do
   end function find
+
+  !> Copies the items of an archive that only rank 0 has saved to every rank. Collective.
+  subroutine broadcast(self, communicator)
+    !> The archive
+    class(layer_transfer_t), intent(inout) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    integer :: item, extents(2)
+    real(wp), allocatable :: list(:)
+
+    call communicator%broadcast(self%items)
+    if (.not. communicator%is_root()) allocate (self%kept(self%items))
+    do item = 1, self%items
+      associate (kept => self%kept(item))
+        call communicator%broadcast_text(kept%name)
+        if (communicator%is_root()) then
+          extents = shape(kept%values)
+          list = reshape(kept%values, [size(kept%values)])
+        end if
+        call communicator%broadcast(extents)
+        if (.not. communicator%is_root()) list = spread(0.0_wp, 1, product(extents))
+        call communicator%broadcast(list)
+        kept%values = reshape(list, extents)
+      end associate
+    end do
+  end subroutine broadcast
 
   !> Visits one real.
   subroutine real_item(self, name, value)

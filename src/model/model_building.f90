@@ -198,7 +198,8 @@ contains
 
     allocate (self%lines(0))
     if (.not. allocated(self%setup%lines)) return
-    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, self%fixed, self%plies, &
+    self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, &
+                              self%fixed(:, self%distribution%points), self%plies, &
                               self%section, self%setup%plate%symmetry), i=1, size(self%setup%lines))]
   end subroutine build_lines
 

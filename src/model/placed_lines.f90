@@ -73,7 +73,7 @@ contains
     type(distribution_t), intent(in) :: distribution
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
-    !> True for unknowns constrained by supports, (5, points)
+    !> True for unknowns constrained by supports, (5, points of this rank)
     logical, intent(in) :: fixed(:, :)
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
@@ -111,7 +111,7 @@ contains
   pure subroutine leave_out_fixed(self, fixed)
     !> The line
     type(placed_line_t), intent(inout) :: self
-    !> True for unknowns constrained by supports, (5, points)
+    !> True for unknowns constrained by supports, (5, points of this rank)
     logical, intent(in) :: fixed(:, :)
     logical :: acts(size(self%weight)), kept(size(self%point))
     integer :: node, k

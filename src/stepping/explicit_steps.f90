@@ -1,23 +1,19 @@
-!> Steps by central differences: equilibrium before the first step, failures of plies, flaws of interfaces, and the
-!> ledger when output or a check is due.
+!> Steps by central differences: failures of plies, flaws of interfaces, and the ledger when output or a check is due.
 module explicit_steps
   use central_difference_energies, only: book_energies
   use central_differences, only: central_difference_t
   use crack_flaws, only: update_flaws
   use damped_motions, only: damp_motion
   use errors, only: error_t
-  use initial_equilibrium, only: find_initial_equilibrium
   use kinds, only: wp
-  use linear_solver_parameters, only: linear_solver_parameters_t
   use models, only: model_t
   use rig_reactions, only: reactions_of
   use states, only: state_t
   use struck_stresses, only: struck_stress
-  use tangent_operators, only: tangent_operator_t
   use unstable_motions, only: check_stability
   implicit none
   private
-  public :: advance_explicit, complete_step, equilibrate_initial_stresses
+  public :: advance_explicit, complete_step
 
   !> Steps between two updates of flaws at interfaces by matrix cracks. Cracks grow at up to the speed of shear waves, a
   !> third of that of waves along the fibres, which pass at most one cell in two steps; so a crack grows by at most two
@@ -25,24 +21,6 @@ module explicit_steps
   integer, parameter :: steps_between_flaws = 8
 
 contains
-
-  !> Finds the equilibrium of a plate with residual stresses and with displacements prescribed before the run, so that
-  !> the run starts without vibration. Collective.
-  subroutine equilibrate_initial_stresses(operator, model, linear_solver, now, error)
-    !> The factored operator; released afterwards
-    type(tangent_operator_t), intent(inout) :: operator
-    type(model_t), intent(in) :: model
-    !> The linear solver
-    type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> The state
-    type(state_t), intent(inout) :: now
-    !> Set if there is no equilibrium
-    type(error_t), allocatable, intent(out) :: error
-
-    call operator%create(model, linear_solver%factorization, error)
-    if (.not. allocated(error)) call find_initial_equilibrium(model, operator, now, error)
-    call operator%release()
-  end subroutine equilibrate_initial_stresses
 
   !> Takes one step. Collective.
   subroutine advance_explicit(method, model, event, now)

@@ -3,12 +3,13 @@ module time_stepping
   use kinds, only: wp
   use archives, only: archive_t
   use errors, only: error_t
-  use explicit_steps, only: advance_explicit, complete_step, equilibrate_initial_stresses
+  use explicit_steps, only: advance_explicit, complete_step
   use initial_equilibrium, only: find_initial_equilibrium, has_initial_motion
   use linear_solver_parameters, only: linear_solver_parameters_t
   use load_steps, only: load_steps_t
   use models, only: model_t
   use motion_steps, only: motion_steps_t
+  use single_rank_equilibria, only: equilibrate_initial_stresses
   use states, only: new_state
   use step_acceptance, only: accept_step, reject_step, assess_error
   use steppers, only: stepper_t

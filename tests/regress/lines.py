@@ -10,7 +10,7 @@ time     prescribed lines are held exactly, with the force of equilibrium: fixed
 edges    a line that runs to edges which hold the plate: its work is half its force times its way, in load steps, in
          time and by central differences; held nodes are none of its own
 opened   lines that have opened an interface before the run: its fracture energy is work, and dissipated
-ranks    a notched strip in steps of dissipation, on 1 and 2 ranks: to 1e-6
+ranks    a notched strip in steps of dissipation, on 1 and 2 ranks: to 1e-6; a line to clamped edges on 2 ranks
 restart  the same from a checkpoint while damage grows: bitwise"""
 
 import re
@@ -129,6 +129,7 @@ def check_turned(implam, folder, _):
 
 
 # Nodes at the ends of the line are held by the edges.
+CLAMPED = "'clamped'"
 BETWEEN_EDGES = CANTILEVER.replace("'clamped','free','free','free'", "{}").replace("0.1, 0.02", "0.1, 0.06")
 
 
@@ -198,6 +199,14 @@ def check_ranks(implam, folder, launcher):
     left_out = [name for name in one if "iterations" in name or name in ("factorizations", "solves")]
     difference, name = largest_difference(two, one, left_out)
     require(difference <= 1e-6, f"{name} differs by {difference:.2g} of its largest value.")
+    deck = folder / "held" / "deck.nml"
+    deck.parent.mkdir(parents=True, exist_ok=True)
+    deck.write_text(f"{BETWEEN_EDGES.format(CLAMPED)}&line at=0.025 displacement={HELD} /\n&static steps=1 /\n",
+                    encoding="utf-8")
+    history = read_history(run_deck(implam, deck, (*launcher, "2")))
+    force, place, work = (history[column][-1] for column in ("line_force_1", "line_displacement_1", "work_external"))
+    require(abs(place/HELD - 1) < 1e-3, f"On two ranks the line is at {place!r}.")
+    require(abs(force*HELD/2/work - 1) < 1e-3, f"On two ranks a force of {force!r} did a work of {work!r}.")
 
 
 def check_restart(implam, folder, _):
