@@ -26,6 +26,7 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 HEADING = re.compile(r"^(#+) +(.*?) *#*$")
 TAG = re.compile(r"\\tag\{([A-Z])(\d+)\}")
+DISPLAYED = re.compile(r"^\$\$\n.*?^\$\$$", re.MULTILINE | re.DOTALL)
 REFERRED = re.compile(r"\(([A-Z]\d+)\)")
 FORMULA = re.compile(r"\$[^$\n]+\$")
 FENCE = re.compile(r"^ *```")
@@ -320,8 +321,11 @@ def check_equations(pages_of_theory):
     """Breaches of the numbers of equations."""
     known = set()
     for page in pages_of_theory:
-        tags = TAG.findall(page.read_text(encoding="utf-8"))
+        text = page.read_text(encoding="utf-8")
+        tags = TAG.findall(text)
         known |= {letter + number for letter, number in tags}
+        if len(tags) != len(DISPLAYED.findall(text)):
+            yield f"{page}:1: displayed equations are without a number such as \\tag{{P1}}"
         expected = [(tags[0][0], str(number)) for number in range(1, len(tags) + 1)] if tags else []
         if tags != expected:
             yield f"{page}:1: the equations are not numbered from 1 without a gap, by one letter"

@@ -146,11 +146,12 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(code, 0, said)
 
     def test_equations(self):
-        """Gaps in the numbers of equations are found, and references to none."""
+        """Gaps in the numbers of equations are found, equations without one, and references to none."""
         good = "# Theory\n\n$$\na \\tag{A1}\n$$\n\n$$\nb \\tag{A2}\n$$\n\nBy (A1) and (A2).\n"
         self.assertEqual(self.said(theory=good)[0], 1)  # the index lacks the page
         gap, none = good.replace("A2}", "A3}"), good.replace("(A2)", "(A4)")
-        for text, sentence in ((gap, "without a gap"), (none, "no equation (A4)")):
+        bare = good.replace(" \\tag{A2}", "").replace(" and (A2)", "")
+        for text, sentence in ((gap, "without a gap"), (none, "no equation (A4)"), (bare, "without a number")):
             self.assertIn(sentence, self.said(theory=text)[1])
         self.assertNotIn("equation", self.said(theory=good)[1])
 
