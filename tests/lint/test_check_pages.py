@@ -29,7 +29,8 @@ FILES = {
     "doc/index.md": INDEX,
     "doc/page.md": GOOD,
     "doc/glossary.md": "# Glossary\n\n**term**: its meaning. [page](page.md#page)\n\n**other**: without a page.\n",
-    "doc/manual/case.md": "# &case: the case\n\n| key | type |\n|---|---|\n| `name` | text |\n\n| `no_key` | of it |\n",
+    "doc/manual/case.md": "# &case: the case\n\n| key | type |\n|---|---|\n| `name` | text |\n\n| `no_key` | of it |\n"
+    "\n## What is warned of\nIt.\n\n## Limits\nIt.\n",
     "doc/manual/history.md": "# History\n\n| name | type |\n|---|---|\n| `time` | real |\n| `step` | integer |",
     "tests/examples/new.patch": "--- /dev/null\n+++ b/src/base/new.f90\n@@ -0,0 +1 @@\n+module new\n",
     "src/base/kinds.f90": "module kinds\n  implicit none\n  integer, parameter :: wp = 8\nend module kinds\n",
@@ -137,6 +138,12 @@ class PagesTest(unittest.TestCase):
             lacking = asked.replace(f"\n**[Title]({name})**\n\n{five}", "")
             self.assertIn(f"{name} has no five questions", self.said(testing=lacking)[1])
         self.assertIn("has no five questions", self.said(testing=asked.replace("3. Why?\n", "", 1))[1])
+
+    def test_groups(self):
+        """The page of a group says what is warned of, and has limits."""
+        for lost in ("What is warned of", "Limits"):
+            lacking = FILES["doc/manual/case.md"].replace(f"## {lost}\n", "")
+            self.assertIn(f'has a section "{lost}"', self.said(**{"manual/case": lacking})[1])
 
     def test_longest(self):
         """A sentence of more than forty words is a breach; displayed equations are no part of it."""
