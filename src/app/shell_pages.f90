@@ -37,7 +37,7 @@ contains
     end do
     call append(lines, '.SH DECK')
     call append(lines, 'A file of Fortran namelists: groups &name key = values ... / and comments behind !. '// &
-                       'Units are any that go together.')
+                       'Units are any consistent ones.')
     do i = 1, size(vocabulary%groups)
       call append(lines, '.SS &'//vocabulary%groups(i)%name)
       call append(lines, escaped(vocabulary%groups(i)%meaning))

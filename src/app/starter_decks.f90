@@ -14,7 +14,7 @@ module starter_decks
   !> Its lines. Material and interface are those of input/peanut.nml.
   character(len=105), parameter :: lines(*) = [character(len=105) :: &
     '! A drop weight strikes the middle of a composite plate. Lengths are in m, masses in kg, times in s,', &
-    '! so forces are in N, energies in J, stresses in Pa; any other units that go together will do.', &
+    '! so forces are in N, energies in J, stresses in Pa; any other consistent units will do.', &
     '! `implam explain GROUP` lists all keys of a group, with their defaults.', &
     '', &
     '&plate        length=0.10, 0.10        ! sides along x and y', &

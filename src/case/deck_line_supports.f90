@@ -41,14 +41,14 @@ contains
       tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(supporting%component == 3 + along) .or. &
                      any(supporting%component == 3 .and. .not. across)
     end do
-    ! A rotation about an axis in the plane turns its sign as the plate is turned by 180 degrees about z.
+    ! A rotation about an in-plane axis turns its sign as the plate is turned by 180 degrees about z.
     tilts = tilts .or. is_mirrored(deck%plate%symmetry) .or. deck%plate%symmetry == symmetry_point
     if (all(tilts) .and. (any(supporting%component == 3) .or. any(edges))) return
     call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports
 
-  !> Checks that forces in the plane balance where nothing holds the plate against them: the struck point, which is held
+  !> Checks that in-plane forces balance where nothing holds the plate against them: the struck point, which is held
   !> against rigid-body motions, would carry the rest.
   subroutine check_in_plane_balance(deck, problems)
     !> The deck
@@ -74,7 +74,7 @@ contains
       end associate
     end do
     if (.not. any(free .and. abs(net) > rounding*total)) return
-    call report(deck%settings, problems, line_group, '', 'forces of lines in the plane do not balance, and nothing '// &
+    call report(deck%settings, problems, line_group, '', 'in-plane forces of lines do not balance, and nothing '// &
                 'holds the plate against them in a static analysis; give a line with a displacement u or v, or an '// &
                 'edge with in_plane = ''fixed''.', 1)
   end subroutine check_in_plane_balance

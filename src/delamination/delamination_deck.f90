@@ -67,19 +67,19 @@ module delamination_deck
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
       &Damage starts beside cracks by transverse shear in the neighbouring plies at their shear strength.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
-      &Energy release rate: Eq. 11 with its sign corrected, or virtual crack closure.', &
+      &Energy release rate: Eq. 11 of Li et al. with its sign corrected, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
       &Release at a frozen time until no front is above G_c, or one cell a step.', &
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
-      &Intact surfaces: joined exactly, or by penalty springs as in the paper.', &
+      &Intact surfaces: joined exactly, or by penalty springs as by Li et al.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
       &Stiffness of penalty ties; left out: a million times E2 over the thinner layer.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
-      &Exponent q of the continuous penalty (Eq. 12).', &
+      &Exponent q of the continuous penalty (Li et al., Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
-      &While the impactor rebounds: contact, or separated surfaces move together (Eq. 13b).', &
+      &While the impactor rebounds: contact, or separated surfaces move together (Li et al., Eq. 13b).', &
     'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the laminate | > 0 | &
       &Distance along a front within which tie forces and openings are averaged before they make its rate.']
 

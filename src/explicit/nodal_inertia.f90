@@ -1,6 +1,6 @@
 !> Lumped inertia of the layers at each node, and its inverse.
 !>
-!> In each direction in the plane a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
+!> In each in-plane direction a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
 !> where the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which
 !> lengthens the stable step (`inertia_scaling`; L. Olovsson, K. Simonsson, M. Unosson, International Journal for
 !> Numerical Methods in Engineering 63 (2005) 1436-1445); the mass of w is never scaled. The inertia of dependent

@@ -35,7 +35,7 @@ module indentation_deck
     'indentation | beta | real | 1 | - | 0.094 | >= 0, < 1 | &
       &Slope of Tan and Sun''s dent.', &
     'indentation | alpha_cr | real | 1 | length | none | > 0 | &
-      &Indentation above which a dent remains; needed but with law = ''hertz''.', &
+      &Indentation above which a dent remains; needed except with law = ''hertz''.', &
     'indentation | dent | choice | 1 | - | ''tan_sun'' | tan_sun yang_sun | &
       &Formula of the permanent dent.']
 

@@ -39,7 +39,7 @@ contains
     end do
   end function chosen_indices
 
-  !> Squares of Puck's exposures: of the fibres to the stress along them, of the matrix to those in the plane.
+  !> Squares of Puck's exposures: of the fibres to the stress along them, of the matrix to in-plane stresses.
   pure function puck_indices(material, stress) result(indices)
     !> Material of the ply
     type(material_t), intent(in) :: material

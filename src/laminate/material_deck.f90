@@ -70,7 +70,7 @@ module material_deck
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
       &Fracture energy of the matrix in shear or transverse compression.', &
     'material | shear_failure_strain | real | 1 | - | none | > 0 | &
-      &Shear strain in the plane at S12; left out: S12/G12, shear is linear.', &
+      &In-plane shear strain at S12; left out: S12/G12, shear is linear.', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &

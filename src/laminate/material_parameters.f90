@@ -31,9 +31,9 @@ module material_parameters
     real(wp) :: xt = 0, xc = 0
     !> Tensile and compressive strength across the fibres
     real(wp) :: yt = 0, yc = 0
-    !> Shear strengths: in the plane, of the fibres, and in the 2-3 plane
+    !> Shear strengths: in-plane, of the fibres, and in the 2-3 plane
     real(wp) :: s12 = 0, sf = 0, sm23 = 0
-    !> Hahn and Tsai's coefficient of shear in the plane; 0: it is linear
+    !> Hahn and Tsai's coefficient of in-plane shear; 0: it is linear
     real(wp) :: shear_beta = 0
     !> Fracture energies per area: fibre tension and compression, matrix tension and compression; 0: not given
     real(wp) :: toughness(4) = 0

@@ -43,11 +43,11 @@ contains
     if (material%sm23 > 0) strengths%shear_across = material%sm23
   end function matrix_strengths
 
-  !> Exposure of the matrix to stresses in the plane.
+  !> Exposure of the matrix to in-plane stresses.
   pure real(wp) function matrix_exposure(strengths, across, shear) result(exposure)
     !> Strengths and set of criteria
     type(matrix_strengths_t), intent(in) :: strengths
-    !> Stress across the fibres, and shear stress in the plane
+    !> Stress across the fibres, and in-plane shear stress
     real(wp), intent(in) :: across, shear
     real(wp) :: linear, square
 
@@ -67,7 +67,7 @@ contains
   pure real(wp) function puck_exposure(strengths, across, shear) result(exposure)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
-    !> Stress across the fibres, and shear stress in the plane
+    !> Stress across the fibres, and in-plane shear stress
     real(wp), intent(in) :: across, shear
     real(wp) :: plane, ratio
 

@@ -1,4 +1,4 @@
-!> Small symmetric matrices stored as their upper triangle: (11, 12, 16, 22, 26, 66) in the plane,
+!> Small symmetric matrices stored as their upper triangle: (11, 12, 16, 22, 26, 66) of in-plane components,
 !> (xz-xz, xz-yz, yz-yz) across it.
 module packed_matrices
   use kinds, only: wp

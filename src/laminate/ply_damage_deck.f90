@@ -20,11 +20,11 @@ module ply_damage_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: ply_damage_rows(*) = [character(len=key_row_length) :: &
     'ply_damage | d | real | 1 | - | 100 | >= 1 | &
-      &Divisor of the elastic constants affected by a mode of failure (Table 2).', &
+      &Divisor of the elastic constants affected by a mode of failure (Li et al., Table 2).', &
     'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
       &Smallest value of an elastic constant, as a fraction of the undamaged one.', &
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck | &
-      &Set of failure criteria: those of Hou et al. (Table 1), of Hashin (1980) or of Puck (1998).', &
+      &Set of failure criteria: those of Hou et al. (2000), of Hashin (1980) or of Puck (1998).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
       &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.', &
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &

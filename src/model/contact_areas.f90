@@ -2,7 +2,7 @@
 !> surface.
 !>
 !> At the edge of a Hertzian contact the separation of the undeformed surfaces is half the indentation larger than at
-!> first touch (K. L. Johnson, Contact Mechanics, 1985, section 4.2). The pressure is proportional to the difference
+!> first contact (K. L. Johnson, Contact Mechanics, 1985, section 4.2). The pressure is proportional to the difference
 !> from that separation, as on an elastic foundation (section 4.3): on a flat plate up to Hertz's radius, farther where
 !> the plate bends around the nose. On the patch it is uniform, with its mean value.
 module contact_areas

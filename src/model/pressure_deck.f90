@@ -19,7 +19,7 @@ module pressure_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: pressure_rows(*) = [character(len=key_row_length) :: &
     'pressure | value | real | 1 | pressure | required | any | &
-      &Force per area, positive downwards.', &
+      &Force per area, positive along z, as the impact.', &
     'pressure | history | choice | 1 | - | ''step'' | step ramp | &
       &There from the start, or growing in proportion to time up to the end.', &
     'pressure | distribution | choice | 1 | - | ''uniform'' | uniform sine | &

@@ -12,7 +12,7 @@ module pressure_loads
 
   !> Pressure on the struck face.
   type :: pressure_t
-    !> Force per area, positive downwards
+    !> Force per area, positive along z
     real(wp) :: value = 0
     !> history_step or history_ramp
     integer :: history = history_step

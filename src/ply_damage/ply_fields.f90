@@ -26,15 +26,15 @@ module ply_fields
     'ply_N_damage_matrix'//damaged//'Part of E2 that ply N has lost.', &
     'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
     'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
-    'ply_N_tau12'//middle//'Shear stress in the plane, in the mid-plane of ply N.', &
+    'ply_N_tau12'//middle//'In-plane shear stress, in the mid-plane of ply N.', &
     'ply_N_tau13'//middle//'Shear stress between fibres and normal in ply N.', &
     'ply_N_tau23'//middle//'Shear stress between the direction across the fibres and the normal in ply N.', &
     'ply_N_sigma11_top'//faces//'Stress along the fibres on the upper face of ply N, towards the struck face.', &
     'ply_N_sigma22_top'//faces//'Stress across the fibres on the upper face of ply N.', &
-    'ply_N_tau12_top'//faces//'Shear stress in the plane on the upper face of ply N.', &
+    'ply_N_tau12_top'//faces//'In-plane shear stress on the upper face of ply N.', &
     'ply_N_sigma11_bottom'//faces//'Stress along the fibres on the lower face of ply N.', &
     'ply_N_sigma22_bottom'//faces//'Stress across the fibres on the lower face of ply N.', &
-    'ply_N_tau12_bottom'//faces//'Shear stress in the plane on the lower face of ply N.']
+    'ply_N_tau12_bottom'//faces//'In-plane shear stress on the lower face of ply N.']
 
 contains
 

@@ -18,7 +18,7 @@ module adapt_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: adapt_rows(*) = [character(len=key_row_length) :: &
     'adapt | on | logical | 1 | - | .true. | .true. .false. | &
-      &Whether the time step adapts; left-out group: .false.', &
+      &Whether the time step adapts; without the group: .false.', &
     'adapt | rule | choice | 1 | - | = ''local_error'', with stress_change ''stress_rate'' | stress_rate local_error | &
       &Control of the step: the stress rate at the struck point, or the error of each step.', &
     'adapt | tolerance | real | 1 | - | 0.001 | > 0, <= 1 | &

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Semi-analytic responses against meshes and steps that `&case accuracy` chooses. See README.md."""
+"""Semi-analytic responses: peak force and history on meshes and steps that `&case accuracy` chooses, to one and three
+times its error. See README.md."""
 import argparse
 import csv
 import json

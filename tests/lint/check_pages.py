@@ -10,7 +10,9 @@ check_pages.py [ROOT] [--write] [--sentences]
 - Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
 - doc/testing.md has five questions for each page under doc/ but the news, numbered 1 to 5.
-- Equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those referred to exist.
+- The page of a group of the deck says what is warned of, and has limits.
+- Displayed equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those that text
+  refers to exist.
 
 --write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
 Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.
@@ -26,6 +28,7 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
 HEADING = re.compile(r"^(#+) +(.*?) *#*$")
 TAG = re.compile(r"\\tag\{([A-Z])(\d+)\}")
+DISPLAYED = re.compile(r"^\$\$\n.*?^\$\$$", re.MULTILINE | re.DOTALL)
 REFERRED = re.compile(r"\(([A-Z]\d+)\)")
 FORMULA = re.compile(r"\$[^$\n]+\$")
 FENCE = re.compile(r"^ *```")
@@ -320,8 +323,11 @@ def check_equations(pages_of_theory):
     """Breaches of the numbers of equations."""
     known = set()
     for page in pages_of_theory:
-        tags = TAG.findall(page.read_text(encoding="utf-8"))
+        text = page.read_text(encoding="utf-8")
+        tags = TAG.findall(text)
         known |= {letter + number for letter, number in tags}
+        if len(tags) != len(DISPLAYED.findall(text)):
+            yield f"{page}:1: displayed equations are without a number such as \\tag{{P1}}"
         expected = [(tags[0][0], str(number)) for number in range(1, len(tags) + 1)] if tags else []
         if tags != expected:
             yield f"{page}:1: the equations are not numbered from 1 without a gap, by one letter"
@@ -347,6 +353,15 @@ def check_questions(root):
             yield f"doc/testing.md:1: {name} has no five questions in the reading test"
 
 
+def check_groups(root):
+    """Breaches by pages of groups that do not say what is warned of, or where the limits are."""
+    for page in sorted((root / "doc" / "manual").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        for heading in ("What is warned of", "Limits"):
+            if text.startswith("# &") and f"\n## {heading}\n" not in text:
+                yield f"{page}:1: a page of a group has a section \"{heading}\""
+
+
 def main(arguments):
     """Check the pages; return the exit code."""
     folders = [argument for argument in arguments if not argument.startswith("--")]
@@ -358,7 +373,7 @@ def main(arguments):
         total = sum(1 for page in pages(root) for _ in sentences(page))
         print(f"{len(found)} of {total} sentences have more than {LONGEST} words")
         return 0
-    breaches = [*check_index(root, "--write" in arguments), *check_questions(root)]
+    breaches = [*check_index(root, "--write" in arguments), *check_questions(root), *check_groups(root)]
     breaches += check_equations([root / "doc" / "theory.md", *sorted((root / "doc" / "theory").glob("*.md"))]
                                 if (root / "doc" / "theory.md").exists() else [])
     names = Names(root)

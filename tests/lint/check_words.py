@@ -62,6 +62,8 @@ WORDS = {
     r"followers?": "dependent points, next case",
     r"stands? beside|lawful|astray|tales?|meanwhile|in vain": "next to; allowed; wrong; note; until then; rejected",
     r"begins? anew": "start again, start from zero",
+    r"first touch(?:es)?": "first contact",
+    r"in the plane(?! (?:of|x|y|z)(?!\w))": "in-plane",
 }
 # Parts of names in code.
 NAMES = {

@@ -29,7 +29,8 @@ FILES = {
     "doc/index.md": INDEX,
     "doc/page.md": GOOD,
     "doc/glossary.md": "# Glossary\n\n**term**: its meaning. [page](page.md#page)\n\n**other**: without a page.\n",
-    "doc/manual/case.md": "# &case: the case\n\n| key | type |\n|---|---|\n| `name` | text |\n\n| `no_key` | of it |\n",
+    "doc/manual/case.md": "# &case: the case\n\n| key | type |\n|---|---|\n| `name` | text |\n\n| `no_key` | of it |\n"
+    "\n## What is warned of\nIt.\n\n## Limits\nIt.\n",
     "doc/manual/history.md": "# History\n\n| name | type |\n|---|---|\n| `time` | real |\n| `step` | integer |",
     "tests/examples/new.patch": "--- /dev/null\n+++ b/src/base/new.f90\n@@ -0,0 +1 @@\n+module new\n",
     "src/base/kinds.f90": "module kinds\n  implicit none\n  integer, parameter :: wp = 8\nend module kinds\n",
@@ -138,6 +139,12 @@ class PagesTest(unittest.TestCase):
             self.assertIn(f"{name} has no five questions", self.said(testing=lacking)[1])
         self.assertIn("has no five questions", self.said(testing=asked.replace("3. Why?\n", "", 1))[1])
 
+    def test_groups(self):
+        """The page of a group says what is warned of, and has limits."""
+        for lost in ("What is warned of", "Limits"):
+            lacking = FILES["doc/manual/case.md"].replace(f"## {lost}\n", "")
+            self.assertIn(f'has a section "{lost}"', self.said(**{"manual/case": lacking})[1])
+
     def test_longest(self):
         """A sentence of more than forty words is a breach; displayed equations are no part of it."""
         long = " ".join(["word"] * 41)
@@ -146,11 +153,12 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(code, 0, said)
 
     def test_equations(self):
-        """Gaps in the numbers of equations are found, and references to none."""
+        """Gaps in the numbers of equations are found, equations without one, and references to none."""
         good = "# Theory\n\n$$\na \\tag{A1}\n$$\n\n$$\nb \\tag{A2}\n$$\n\nBy (A1) and (A2).\n"
         self.assertEqual(self.said(theory=good)[0], 1)  # the index lacks the page
         gap, none = good.replace("A2}", "A3}"), good.replace("(A2)", "(A4)")
-        for text, sentence in ((gap, "without a gap"), (none, "no equation (A4)")):
+        bare = good.replace(" \\tag{A2}", "").replace(" and (A2)", "")
+        for text, sentence in ((gap, "without a gap"), (none, "no equation (A4)"), (bare, "without a number")):
             self.assertIn(sentence, self.said(theory=text)[1])
         self.assertNotIn("equation", self.said(theory=good)[1])
 

@@ -4,7 +4,7 @@ others must exist. Usage: check_commands.py IMPLAM ROOT BUILD
 
 These are the lines of blocks marked `sh long` and `sh elsewhere` (page_commands.py), indented lines that begin with one
 of the programs below, and commands of the program within sentences and tables. Those of blocks marked `sh` are run by
-docs_commands and docs_tutorial.
+docs_commands and docs_tutorial. The manual gives each command of Python at least once.
 """
 
 import os
@@ -13,6 +13,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 from page_commands import FENCE, INLINE, Command, parts_of
@@ -156,12 +157,20 @@ class Checker:
                     yield f"{name}:{number}: ctest -{option} {pattern} chooses no test"
 
 
+def unnamed(root):
+    """Commands of Python that no page of the manual gives."""
+    manual = "".join(page.read_text(encoding="utf-8") for page in (root / "doc" / "manual").glob("*.md"))
+    project = tomllib.loads((root / "postproc" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return [name for name in project["scripts"] if not re.search(rf"\b{name} ", manual)]
+
+
 def main(program, root, build):
     """Check all pages; return the exit code."""
     program, root, build = (Path(word).resolve() for word in (program, root, build))
     checker = Checker(str(program), root, build)
     pages = [root / "README.md", *(page for page in sorted((root / "doc").rglob("*.md")) if "news" not in page.parts)]
     wrong = [breach for page in pages for breach in checker.check(page)]
+    wrong += [f"doc/manual: no page gives the command {name}" for name in unnamed(root)]
     tried = sum(1 for page in pages for _ in commands(page))
     print("\n".join(wrong) or f"{tried} commands of {len(pages)} pages can be given")
     return 1 if wrong else 0

@@ -139,6 +139,10 @@ def main(arguments):
     folders = [word for word in arguments if not word.startswith("--")]
     root = Path(folders[0] if folders else Path(__file__).resolve().parents[2])
     page, text = root / "doc" / "verification.md", page_of(root)
+    empty = [line for line in text.splitlines() if "|  |" in line]
+    if empty:
+        print("A first sentence, `Reference: case`, lacks one of both:", *empty, sep="\n")
+        return 1
     if "--check" not in arguments:
         page.write_text(text, encoding="utf-8")
     elif not page.exists() or page.read_text(encoding="utf-8") != text:

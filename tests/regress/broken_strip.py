@@ -1,4 +1,4 @@
-"""Fracture energy times section, 4.256 J, of a strip that fails by bending, in each model of it.
+"""Fracture energy times section, 4.256 J: a strip that fails by bending, in each model of it, .5 %.
 Usage: broken_strip.py IMPLAM FOLDER
 
 Its middle lies between two rows of elements or, where their number is odd, in one. Two rows are strained alike there,

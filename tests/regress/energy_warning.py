@@ -1,4 +1,4 @@
-"""Runs that create energy or move too fast warn of it, and others do not.
+"""Manual: runs that create energy or move too fast warn of it, and others do not.
 Usage: energy_warning.py IMPLAM FOLDER"""
 
 import re

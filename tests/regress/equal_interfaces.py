@@ -1,4 +1,4 @@
-"""Closed form of the threshold force of equal circular delaminations above each other.
+"""Closed form of the threshold force: equal circular delaminations above each other, mean force 2 %.
 Usage: equal_interfaces.py IMPLAM FOLDER
 
 Under a force in the middle of a thin plate the release rate of each of n is (n + 2) P**2/(32 pi**2 D), so they grow

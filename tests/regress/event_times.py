@@ -1,4 +1,4 @@
-"""Output times that nearly coincide with the end or with each other make no tiny steps.
+"""Run without such times: output times that nearly coincide with the end or with each other make no tiny steps.
 Usage: event_times.py IMPLAM FOLDER"""
 
 import sys

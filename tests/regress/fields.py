@@ -1,4 +1,4 @@
-"""The fields of a run, and of one that was restarted, as h5py and meshio read them.
+"""History: fields of a run, and of one that was restarted, as h5py and meshio read them, 1e-12.
 Usage: fields.py IMPLAM FOLDER"""
 
 import sys

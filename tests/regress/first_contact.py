@@ -1,4 +1,5 @@
-"""First contact with a plate that residual stress has deflected. Usage: first_contact.py IMPLAM FOLDER
+"""Energy balance: first contact with a plate that residual stress has deflected, 1e-6 of the impact.
+Usage: first_contact.py IMPLAM FOLDER
 
 An unsymmetric laminate is deflected towards the impactor or away from it, by more than its thickness. The run starts at
 first contact all the same, and conserves the energy of the impact. With linear strains, where steps may leave out the

@@ -1,4 +1,4 @@
-"""The frame supports the lowest layer, so that a weak interface above it stays closed.
+"""The plate without interface: the frame supports the lowest layer, a weak interface stays closed, 3 % of the force.
 Usage: frame_layers.py IMPLAM FOLDER
 
 The interface below the first ply has a strength in opening that its share of the reaction exceeds if the frame holds

@@ -101,7 +101,7 @@ def check_time(implam, folder, _):
 
 
 def check_plane(implam, folder, _):
-    """In the plane a plate moves though strains are linear and nothing couples it with bending."""
+    """A plate has in-plane motion though strains are linear and nothing couples it with bending."""
     force, expected = 1e3, 1e3*0.1/(70e9*0.02*2e-3)
     for kinematics in ("linear", "von_karman"):
         case = folder / kinematics

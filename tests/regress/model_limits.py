@@ -1,4 +1,4 @@
-"""Passing a limit of the model is reported once, with its time, and ends a strict run.
+"""Manual: passing a limit of the model is reported once, with its time, and ends a strict run.
 Usage: model_limits.py IMPLAM FOLDER"""
 
 import json

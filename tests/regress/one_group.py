@@ -1,4 +1,5 @@
-"""One &delamination for several interfaces gives what a group for each gives. Usage: one_group.py IMPLAM FOLDER"""
+"""Equal histories of two decks: one &delamination for several interfaces, or a group for each: bitwise.
+Usage: one_group.py IMPLAM FOLDER"""
 
 import re
 import sys

@@ -1,4 +1,4 @@
-"""A run that fails ends with the documented exit code and one sentence on the error output.
+"""Manual: a run that fails ends with the documented exit code and one sentence on the error output.
 Usage: one_sentence.py IMPLAM FOLDER"""
 
 import signal

@@ -1,4 +1,4 @@
-"""Equal stiffness of a sandwich with and without interfaces at or in its core.
+"""Equal stiffness: a sandwich with and without interfaces at or in its core, .1 %.
 Usage: sandwich_layers.py IMPLAM FOLDER
 
 Shear stresses of the core are nearly uniform while its skins hold: 5/6 of its stiffness makes the panel 10 % softer.

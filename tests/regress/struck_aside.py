@@ -1,4 +1,5 @@
-"""Navier's series of a plate struck beside its centre. Usage: struck_aside.py IMPLAM FOLDER
+"""Navier's series: deflection of a plate struck beside its centre, .5 %, its mirror image 1e-8.
+Usage: struck_aside.py IMPLAM FOLDER
 
 Navier's series for a simply supported plate under a force on a square anywhere, quasi-static as in frame.py; and the
 plate struck at the mirrored place, which must respond alike."""

@@ -29,7 +29,7 @@ THICKNESS = float(re.search(r"thicknesses=([-+\d.e]+)", DECK)[1])
 
 
 def ply_forces(stresses, angle, away):
-    """Shear force and membrane force of a ply along directions in the plane, per length."""
+    """Shear force and membrane force of a ply along in-plane directions, per length."""
     along = away[:, 0] * np.cos(np.radians(angle)) + away[:, 1] * np.sin(np.radians(angle))
     across = away[:, 1] * np.cos(np.radians(angle)) - away[:, 0] * np.sin(np.radians(angle))
     shear = along * stresses["tau13"] + across * stresses["tau23"]

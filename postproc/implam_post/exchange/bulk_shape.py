@@ -233,7 +233,7 @@ def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: R
 
 
 def _axes(quad: _Quadrilateral, struck_last: bool) -> np.ndarray:
-    """Return the panel's axes: z along the plies from the struck face on, x the first basic axis in the plane."""
+    """Return the panel's axes: z along the plies from the struck face on, x the first in-plane basic axis."""
     normal = quad.normal
     along = int(np.argmax(np.abs(normal)))
     if abs(normal[along]) < 1 - _NEAR:

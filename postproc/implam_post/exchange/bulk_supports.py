@@ -46,7 +46,7 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
         card, grid = pins[0]
         raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of an entire edge.")
     for card, _ in pins:
-        remarks.add(card, "part of it suppresses rigid-body motion in the plane; Implam does so by itself")
+        remarks.add(card, "part of it suppresses in-plane rigid-body motion; Implam does so by itself")
     for number in sorted({edge for edge, _ in lines}):
         remarks.edge(EDGES[number], "held in-plane by &line, as the edges aren't held alike or both ways")
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)

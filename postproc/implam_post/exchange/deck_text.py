@@ -62,7 +62,7 @@ def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Itera
 
 
 def _lines(shape: Shape, supports: Supports) -> Iterator[str]:
-    """Return the lines that hold edges in the plane, one way each."""
+    """Return the lines that hold in-plane motion of edges, one way each."""
     for edge, component in supports.in_plane_lines:
         axis, far = divmod(edge, 2)
         at = number((1 if far else -1) * shape.lengths[axis] / 2)

@@ -89,7 +89,7 @@ def rebound_velocity(history: History) -> float:
 
 
 def contact_duration(history: History) -> float:
-    """Return the time from the first touch to the end of the last contact."""
+    """Return the time from first contact to the end of the last contact."""
     found = contacts(history)
     return found[-1].end - found[0].begin if found else np.nan
 

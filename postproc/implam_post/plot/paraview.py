@@ -99,7 +99,7 @@ def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, 
 
 
 def _write_sphere(file: h5py.File, fields: Fields, history: History, radius: float, start: np.ndarray) -> list[str]:
-    """Write the impactor at every time, from where it first touches; return the XDMF of each."""
+    """Write the impactor at every time, from first contact on; return the XDMF of each."""
     sphere_points, file["triangles"] = sphere(radius)
     depths = np.interp([snapshot.time for snapshot in fields.snapshots], history.time,
                        history["impactor_displacement"])

@@ -33,7 +33,7 @@ def differences(history: History, reference: History) -> list[Difference]:
     """Return the differences of the quantities that at least one of the histories has.
 
     Forces are measured by the peak force, times by the length of the first contact, the deflection by its largest
-    value, the velocity by that at first touch; quantities that one history lacks differ by NaN.
+    value, the velocity by that at first contact; quantities that one history lacks differ by NaN.
     """
     first = contact(reference, 0)
     end = first.end if math.isfinite(first.end) else reference.time[-1]

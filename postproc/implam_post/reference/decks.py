@@ -12,7 +12,7 @@ from implam_post.reference.indentation import IndentationLaw
 
 @dataclass(frozen=True)
 class Impactor:
-    """The rigid impactor; its velocity at first touch is positive towards the plate."""
+    """The rigid impactor; its velocity at first contact is positive towards the plate."""
 
     mass: float
     velocity: float

@@ -154,7 +154,7 @@ class TemperatureTest(ImportTest):
 
 
 class InPlaneTest(ImportTest):
-    """Edges that are held one way in the plane, or otherwise than others."""
+    """Edges that are held in one in-plane direction, or otherwise than others."""
 
     def lines(self, *edges: str, **more: object) -> list[tuple[object, ...]]:
         """Return place, direction and component of the lines of a deck."""

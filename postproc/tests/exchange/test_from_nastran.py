@@ -160,7 +160,7 @@ class CardsTest(ImportTest):
         self.assertEqual(deck.edges(), ["simple", "simple", "simple", "clamped"])
 
     def test_edges(self) -> None:
-        """Clamped, simple and free edges; rigid motion in the plane may be held at single grids."""
+        """Clamped, simple and free edges; in-plane rigid motion may be held at single grids."""
         bulk = Bulk(edges=("345", "34", "35", ""))
         self.assertEqual(self.deck(bulk).edges(), ["clamped", "simple", "simple", "free"])
         self.assertEqual(self.deck(bulk).value("plate", "in_plane"), "free")

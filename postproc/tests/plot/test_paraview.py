@@ -49,7 +49,7 @@ class ParaviewTest(unittest.TestCase):
         self.assertEqual(len(set(np.sign(np.sum(normals * first, axis=1)[wide]))), 1)
 
     def test_impactor_moves(self) -> None:
-        """Its nose is on the struck face, at -h/2, when it first touches, and as deep as the history says."""
+        """Its nose is on the struck face, at -h/2, at first contact, and as deep as the history says."""
         self.assertEqual(self.write(), {"case_paraview.h5", "case_paraview.py", "case_through.xdmf",
                                         "case_impactor.xdmf"})
         with h5py.File(self.folder / "case_paraview.h5") as file:
