@@ -78,7 +78,7 @@ def array(implam, slurm, folder):
 if [[ ${{SLURM_ARRAY_TASK_ID:-}} != 1 || ${{SLURM_RESTART_COUNT:-0}} != 0 ]]; then
   exec {implam} "$@"
 fi
-exec {HERE}/held.sh "${{!#}}/swept_restart.h5" {implam} "$@" """)
+exec {HERE}/held.sh "${{!#}}/damage_restart.h5" {implam} "$@" """)
     run([*sweep, "--output", "queued", "--program", held, "--array"], folder=folder)
     run([implam, "queue", "slurm", "queued/array.txt", "--chain", "--time", "0:10:00"], folder=folder)
     number = slurm.submit(folder, "sweep.slurm")
