@@ -188,7 +188,6 @@ contains
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(21)
     type(band_strains_t) :: strains
-    type(elasticity_t) :: elasticity(size(self%plies))
     real(wp), allocatable :: means(:)
     real(wp) :: before(3), normal(2)
     logical :: changed
@@ -209,11 +208,12 @@ contains
           call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                              dot_product(normal, self%sides([2, 1], element))], strains, old, new)
           changed = changed .or. any(abs(stiffness_lost(new) - before) > 0)
-          elasticity(ply) = degraded_elasticity(self%bands(ply), new)
           self%touched(element) = self%touched(element) .or. is_damaged(new)
         end associate
       end do
-      if (changed) stiffness(:18) = in_plane_section(self%plies(first:last), elasticity(first:last))
+      if (changed) stiffness(:18) = in_plane_section( &
+        self%plies(first:last), [(degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply)), &
+                                  ply=first, last)])
     end associate
   end subroutine soften_element
 
