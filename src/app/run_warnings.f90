@@ -21,7 +21,6 @@ module run_warnings
                          warning_steps, warning_torn
   use run_moments, only: moment
   use states, only: state_t
-  use stepping_parameters, only: is_explicit
   use text, only: line_t, append
   use time_stepping, only: time_stepper_t
   use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled
@@ -145,9 +144,6 @@ contains
     has_begun = now%time > slow_start*deck%stepping%time%end
     if (deck%is_impact() .or. has_begun) then
       if (record%scaled_energy > max_scaled*energy_check%largest) call add(warning_scaled, 0)
-    else if (is_explicit(deck%stepping)) then
-      ! A sudden load does little work in its first steps, a quarter of which is the error of the first one.
-      exceeded(energy_taken) = .false.
     end if
     if (is_slow_motion(deck) .and. has_begun) then
       if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add(warning_kinetic, 0)

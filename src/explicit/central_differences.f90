@@ -40,8 +40,7 @@ module central_differences
   !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data of central differences besides the state. It has many components because inertia, stacks, lines, rigs and
-  !> patch each have their own part in a step.
+  !> Data of central differences besides the state: inertia, stacks, lines, rigs and patch have their part in a step.
   type :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters
@@ -86,8 +85,6 @@ module central_differences
     procedure :: longest_step
     !> Takes one step.
     procedure :: advance
-    !> Books a change of the step's length.
-    procedure, private :: change_length
     !> Finds the forces on the layers.
     procedure :: find_forces
     procedure :: add_loads
@@ -113,9 +110,7 @@ contains
     !> The state; receives the forces
     type(state_t), intent(inout) :: now
     type(inertia_scaling_t) :: scaling
-    integer :: points
 
-    points = size(model%distribution%points)
     self%parameters = parameters
     scaling = create_inertia_scaling(model%setup, parameters%mass_scaling)
     self%inertia = create_nodal_inertia(model, scaling)
@@ -131,8 +126,8 @@ contains
     self%impact = create_impactor_steps(model, now%impactor%velocity)
     self%impact%patch%offset = now%contact%offset
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
-    allocate (self%force(5, points), self%motion(5, points), self%field(5, model%borders%columns), &
-              self%strain(lanes, model%elements%batches), source=0.0_wp)
+    allocate (self%force(5, size(model%distribution%points)), self%motion(5, size(model%distribution%points)), &
+              self%field(5, model%borders%columns), self%strain(lanes, model%elements%batches), source=0.0_wp)
     self%initial_work = now%ledger%external_work
     call self%find_forces(model, now)
     call self%add_loads(model, now, [0.0_wp, 0.0_wp])
@@ -202,7 +197,7 @@ contains
         call self%rigs%add_spring_forces(self%inertia%springs, self%steps, u, v, self%force)
         rates = v
       end if
-      call self%change_length(model, v, -1)
+      call change_length(self, model, v, -1)
       call move_single(self, model, u, v)
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
                        self%force, now%interfaces%cohesive, u, v)
@@ -211,7 +206,7 @@ contains
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
-      call self%change_length(model, v, 1)
+      call change_length(self, model, v, 1)
       call model%profile%leave()
       call model%halo%update(u)
     end associate
@@ -225,19 +220,27 @@ contains
   end subroutine advance
 
   !> Books the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
-  !> force at that time over half of the step (`step_lengths`).
+  !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the energy
+  !> then is that of the method's initial state, -h^2 F M^-1 F/8 at rest, and no dissipation. Collective.
   subroutine change_length(self, model, v, sign)
     !> The method
-    class(central_difference_t), intent(inout) :: self
+    type(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Rates of the unknowns before the step or after it, (5, points)
     real(wp), contiguous, intent(in) :: v(:, :)
     !> -1 before the step, 1 after it
     integer, intent(in) :: sign
 
+    real(wp) :: change(size(self%force, 2))
+
     if (.not. abs(self%steps%now - self%steps%last) > 0) return
-    self%rigs%step_loss = self%rigs%step_loss + sign*(self%steps%now - self%steps%last)/4* &
-                          sum(self%force*model%motion_of(v), 1)
+    change = sign*(self%steps%now - self%steps%last)/4*sum(self%force*model%motion_of(v), 1)
+    if (self%steps%last > 0) then
+      self%rigs%step_loss = self%rigs%step_loss + change
+    else
+      self%initial_work = self%initial_work - model%mesh%multiplicity* &
+                          total_of(model%communicator, change(:model%distribution%owned))
+    end if
   end subroutine change_length
 
   !> Computes inverse inertia and compliances for the step length.
@@ -314,8 +317,7 @@ contains
     real(wp) :: amplitudes(2)
 
     if (.not. (allocated(model%pressure) .or. any(.not. model%lines%load%prescribed))) return
-    allocate (loads, mold=self%force)
-    loads = 0
+    allocate (loads(5, size(self%force, 2)), source=0.0_wp)
     change = self%steps%now*model%motion_of(now%motion%velocity)
     call self%lines%add_forces(model, load_factors, change, loads)
     if (allocated(model%pressure)) then
@@ -392,8 +394,7 @@ contains
       call self%impact%visit(archive)
       if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%initial%is_inherited) &
         call self%lines%visit(archive, owned, points)
-      if (.not. model%map%layered) return
-      call self%stacks%history%visit(archive, owned, points)
+      if (model%map%layered) call self%stacks%history%visit(archive, owned, points)
     end associate
   end subroutine visit
 end module central_differences

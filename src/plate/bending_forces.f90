@@ -3,7 +3,7 @@
 module bending_forces
   use kinds, only: wp
   use plate_options, only: shear_assumed
-  use element_batches, only: element_batches_t, lanes
+  use element_batches, only: element_batches_t, lanes, shear_size
   use reference_fields, only: reference_values, add_value_forces
   use batch_strains, only: plane_strains, add_plane_forces, shear_strains, add_shear_forces
   use batch_resultants, only: shear_resultants
@@ -27,7 +27,7 @@ contains
     real(wp), intent(out) :: energy
     !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
     real(wp), contiguous, intent(out), optional :: energies(:, :)
-    real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(lanes*9*2), stored(lanes)
+    real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(shear_size), stored(lanes)
     integer :: b
 
     stored = 0.0_wp

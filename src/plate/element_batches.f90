@@ -16,6 +16,10 @@ module element_batches
   !> Shear samples of the assumed strains: six for gamma_xi, then six for gamma_eta.
   integer, parameter, public :: shear_samples = 12
 
+  !> Size of the transverse shear of a batch (lane, point, component) at the 9 points that an element has at most, of
+  !> which shear_selective uses 4. An array of constant size is not on the heap.
+  integer, parameter, public :: shear_size = lanes*9*2
+
   !> A set of 9-node elements. Element e sits in batch `batch_of(e)`, lane `lane_of(e)`;
   !> the lanes left over in the last batch repeat the last element with no weight and no section.
   type, public :: element_batches_t

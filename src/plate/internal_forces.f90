@@ -2,7 +2,7 @@
 module internal_forces
   use kinds, only: wp
   use plate_options, only: kinematics_linear, shear_assumed
-  use element_batches, only: element_batches_t, lanes
+  use element_batches, only: element_batches_t, lanes, shear_size
   use reference_fields, only: gather, scatter
   use batch_strains, only: in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, add_shear_forces
   use batch_resultants, only: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
@@ -125,8 +125,7 @@ contains
     real(wp), intent(inout) :: energies(lanes)
     !> Resultants of strains that go without stress, and their energy per area
     real(wp), intent(in), optional :: free(lanes, 7)
-    ! Transverse shear (lane, point, component), of at most 9 points: an array of constant size is not on the heap.
-    real(wp) :: shear(lanes*9*2)
+    real(wp) :: shear(shear_size)
 
     call shear_strains(batches, b, r, shear)
     if (present(free)) call add_free_energy(free, batches%weight(:, :, b), strains, energies)

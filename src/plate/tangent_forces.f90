@@ -3,7 +3,7 @@
 module tangent_forces
   use kinds, only: wp
   use plate_options, only: kinematics_linear, kinematics_von_karman, shear_assumed
-  use element_batches, only: element_batches_t, lanes
+  use element_batches, only: element_batches_t, lanes, shear_size
   use reference_fields, only: gather, scatter, add_gradient_forces
   use batch_strains, only: in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, add_shear_forces
   use batch_resultants, only: in_plane_resultants, shear_resultants, take_free_resultants
@@ -84,7 +84,7 @@ contains
     real(wp), intent(inout) :: strains(lanes, 9, 6)
     !> Motion of the nodes on entry, forces on them on return
     real(wp), intent(inout) :: r(lanes, 9, 5)
-    real(wp) :: shear(lanes*9*2), unused(lanes)
+    real(wp) :: shear(shear_size), unused(lanes)
 
     unused = 0
     call shear_strains(batches, b, r, shear)
