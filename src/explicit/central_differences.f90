@@ -40,7 +40,7 @@ module central_differences
   !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data of central differences besides the state: inertia, stacks, lines, rigs and patch have their part in a step.
+  !> Data besides the state; many, because inertia, stacks, lines, rigs and patch each have their part in a step.
   type :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters

@@ -262,7 +262,7 @@ contains
   end function sheared_law
 
   !> Elastic constants of a state.
-  pure function degraded_elasticity(band, state) result(elasticity)
+  elemental function degraded_elasticity(band, state) result(elasticity)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> The ply

@@ -211,9 +211,11 @@ contains
           self%touched(element) = self%touched(element) .or. is_damaged(new)
         end associate
       end do
-      if (changed) stiffness(:18) = in_plane_section( &
-        self%plies(first:last), [(degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply)), &
-                                  ply=first, last)])
+      if (changed) then
+        associate (states => self%states%trial(self%states%offset(element) + first:self%states%offset(element) + last))
+          stiffness(:18) = in_plane_section(self%plies(first:last), degraded_elasticity(self%bands(first:last), states))
+        end associate
+      end if
     end associate
   end subroutine soften_element
 
