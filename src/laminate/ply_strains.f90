@@ -28,11 +28,12 @@ contains
     real(wp), intent(in) :: strains(:, :)
     !> The means
     type(strain_moments_t) :: moments
-    real(wp) :: product(6), share
+    real(wp) :: product(6), share, area
     integer :: g, i
 
+    area = sum(weight)
     do g = 1, size(weight)
-      share = weight(g)/sum(weight)
+      share = weight(g)/area
       moments%mean = moments%mean + share*strains(g, :)
       do i = 1, 3
         product = share*strains(g, :)*strains(g, i)
