@@ -101,7 +101,7 @@ contains
     if (command%verify .and. command%verb /= verb_run .and. .not. allocated(error)) &
       call fail(error, exit_usage, '--verify takes a deck to run.')
     if (command%rig /= '' .and. command%verb /= verb_new .and. .not. allocated(error)) &
-      call fail(error, exit_usage, '--rig goes with new.')
+      call fail(error, exit_usage, '--rig is an option of new.')
     if (command%profile .and. all(command%verb /= [verb_run, verb_restart]) .and. .not. allocated(error)) &
       call fail(error, exit_usage, '--profile takes a deck to run, or a checkpoint.')
   end subroutine read_command_line

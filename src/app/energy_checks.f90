@@ -10,15 +10,15 @@ module energy_checks
   private
   public :: energy_check_t, new_energy_check
 
-  !> Permitted fraction of energy created, dissipated or unaccounted for. Energies go by the square of forces: 1 % of
-  !> energy is half the error of the force that accuracy='standard' permits.
+  !> Permitted fraction of energy created or dissipated, and of the energy error. Energies are proportional to squares
+  !> of forces: 1 % of energy is half the error of the force that accuracy='standard' permits.
   real(wp), parameter, public :: energy_tolerance = 0.01_wp
   !> Fraction of the energy of residual stresses below which energies are not checked. The initial equilibrium has a
   !> residual of 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of the
   !> smallest energy that is checked.
   real(wp), parameter :: fine = 1.0e-4_wp
-  !> Kinds of errors: energy created, energy dissipated, energy unaccounted for.
-  integer, parameter, public :: energy_created = 1, energy_taken = 2, energy_unaccounted = 3
+  !> Kinds of errors: energy created, energy dissipated, energy error.
+  integer, parameter, public :: energy_created = 1, energy_dissipated = 2, energy_imbalance = 3
 
   !> State of the check.
   type :: energy_check_t
@@ -65,7 +65,7 @@ contains
     class(energy_check_t), intent(inout) :: self
     !> The ledger after an accepted step
     type(ledger_t), intent(in) :: ledger
-    !> Energy booked as fracture energy but not yet released by fronts; it is not algorithmic
+    !> Energy recorded as fracture energy but not yet released by fronts; it is not algorithmic
     real(wp), intent(in) :: deficit
     !> Load over its full value; small energies are compared with those of the full load, larger by its inverse square
     real(wp), intent(in) :: amplitude
@@ -82,8 +82,8 @@ contains
     most = energy_tolerance*self%largest
     self%created_before = (-ledger%algorithmic - deficit)*amplitude**2 > most .or. -ledger%indentation > most
     exceeded(energy_created) = self%created_before .and. before
-    exceeded(energy_taken) = ledger%algorithmic*amplitude**2 > most
-    exceeded(energy_unaccounted) = abs(ledger%error())*amplitude**2 > most
+    exceeded(energy_dissipated) = ledger%algorithmic*amplitude**2 > most
+    exceeded(energy_imbalance) = abs(ledger%error())*amplitude**2 > most
   end function check
 
   !> Saves or loads the check.

@@ -24,8 +24,8 @@ module result_rows
 
   !> Warnings of the run.
   character(len=result_row_length), parameter :: limit_rows(*) = [character(len=result_row_length) :: &
-    'limits_passed | integer | - | Limits of the model that the run has passed so far; log and summary name which, &
-      &and when.']
+    'limits_passed | integer | - | Number of limits of the model exceeded so far; log and summary name them with &
+      &their times.']
   !> The low-pass filtered force.
   character(len=result_row_length), parameter :: filter_rows(*) = [character(len=result_row_length) :: &
     'force_filtered | real | force | Contact force after the low-pass filter force_filter of &output.']

@@ -21,7 +21,7 @@ module run_records
   !> membrane strains; a hole; adaptive layers beyond the core; steps of the smallest length with too large an error;
   !> energy error; kinetic energy in slow motion; kinetic energy of motions with scaled inertia.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
-                                warning_slopes = 5, warning_torn = 6, warning_hole = 7, warning_core = 8, &
+                                warning_slopes = 5, warning_membrane = 6, warning_perforation = 7, warning_core = 8, &
                                 warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
                                 warning_scaled = 12
 

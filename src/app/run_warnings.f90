@@ -4,7 +4,7 @@ module run_warnings
   use failed_plies_areas, only: failed_areas
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
-  use energy_checks, only: energy_check_t, energy_created, energy_taken, energy_unaccounted
+  use energy_checks, only: energy_check_t, energy_created, energy_dissipated, energy_imbalance
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
@@ -12,30 +12,30 @@ module run_warnings
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
-  use plate_options, only: steepest
+  use plate_options, only: max_slope
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use roundings, only: rounding
-  use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_hole, &
+  use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_perforation, &
                          warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
                          warning_slopes, &
-                         warning_steps, warning_torn
+                         warning_steps, warning_membrane
   use run_moments, only: moment
   use states, only: state_t
   use text, only: line_t, append
   use time_stepping, only: time_stepper_t
-  use warning_texts, only: warning_text, deepest, max_kinetic, max_scaled
+  use warning_texts, only: warning_text, max_deflection_ratio, max_kinetic, max_scaled
   implicit none
   private
-  public :: give_warnings, give_last_warnings, warnings_given
+  public :: report_warnings, report_last_warnings, reported_warnings
 
-  !> Fraction of the run after which slow motion and sudden loads are checked: the default rise of a travel, after which
+  !> Fraction of the run after which slow motion is checked: the default rise of a travel, after which
   !> the velocity is constant.
   real(wp), parameter :: slow_start = 0.25_wp
 
 contains
 
   !> Warns once of each condition that affects the validity; a strict run ends there. Collective.
-  subroutine give_warnings(deck, model, stepper, record, energy_check, log, error)
+  subroutine report_warnings(deck, model, stepper, record, energy_check, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -53,11 +53,11 @@ contains
 
     call find_warnings(deck, model, stepper%now, stepper%exceeds_tolerance, record, energy_check, warnings)
     call give(deck, warnings, log, error)
-  end subroutine give_warnings
+  end subroutine report_warnings
 
   !> Warns of energies of the last state of a run. Those of a small load are compared with the energy of the full load,
   !> unless the run has ended at that load. Collective.
-  subroutine give_last_warnings(deck, model, now, record, energy_check, log, error)
+  subroutine report_last_warnings(deck, model, now, record, energy_check, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
@@ -78,7 +78,7 @@ contains
     call add_energy_warnings(deck, energy_check%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), &
                              now%time, record, warnings)
     call give(deck, warnings, log, error)
-  end subroutine give_last_warnings
+  end subroutine report_last_warnings
 
   !> Prints warnings; a strict run ends with the first.
   subroutine give(deck, warnings, log, error)
@@ -126,17 +126,17 @@ contains
       if (now%interfaces%border_reached(zone)) call add(warning_border, zone)
       if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, 0)
     end do
-    if (now%indentation%alpha > deepest_indentation(deck)) call add(warning_indentation, 0)
+    if (now%indentation%alpha > max_indentation(deck)) call add(warning_indentation, 0)
     if (step_errs) call add(warning_steps, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call add(warning_slopes, 0)
     end if
-    if (.not. record%has_warned(warning_torn, 0) .and. abs(now%deflection) > deepest*thickness) then
-      if (has_fibre_failure(deck, model, now)) call add(warning_torn, 0)
+    if (.not. record%has_warned(warning_membrane, 0) .and. abs(now%deflection) > max_deflection_ratio*thickness) then
+      if (has_fibre_failure(deck, model, now)) call add(warning_membrane, 0)
     end if
     ! After the impactor has left, the check does not apply.
-    if (.not. record%has_warned(warning_hole, 0) .and. deck%has_ply_damage .and. now%force > 0) then
-      if (is_perforated(model, now)) call add(warning_hole, 0)
+    if (.not. record%has_warned(warning_perforation, 0) .and. deck%has_ply_damage .and. now%force > 0) then
+      if (is_perforated(model, now)) call add(warning_perforation, 0)
     end if
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
@@ -175,8 +175,8 @@ contains
     type(line_t), allocatable, intent(inout) :: warnings(:)
 
     if (exceeded(energy_created)) call add_warning(deck, warning_energy, 0, time, record, warnings)
-    if (exceeded(energy_taken)) call add_warning(deck, warning_loss, 0, time, record, warnings)
-    if (exceeded(energy_unaccounted)) call add_warning(deck, warning_ledger, 0, time, record, warnings)
+    if (exceeded(energy_dissipated)) call add_warning(deck, warning_loss, 0, time, record, warnings)
+    if (exceeded(energy_imbalance)) call add_warning(deck, warning_ledger, 0, time, record, warnings)
   end subroutine add_energy_warnings
 
   !> Adds a warning at its first occurrence.
@@ -199,13 +199,13 @@ contains
 
   !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor,
   !> half of which is immersed there.
-  pure real(wp) function deepest_indentation(deck) result(limit)
+  pure real(wp) function max_indentation(deck) result(limit)
     !> The deck
     type(deck_t), intent(in) :: deck
 
     limit = deck%expected%scales%thickness
     if (deck%impactor%radius > 0) limit = min(limit, deck%impactor%radius)
-  end function deepest_indentation
+  end function max_indentation
 
   !> True: only prescribed motions in time load the plate, as in a quasi-static test.
   pure logical function is_slow_motion(deck)
@@ -238,7 +238,7 @@ contains
     !> The step reached
     type(state_t), intent(in) :: now
 
-    is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > steepest)
+    is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > max_slope)
   end function is_steep
 
   !> True: the fibres of every ply have failed over an area as large as the contact, so that the contact force has no
@@ -273,7 +273,7 @@ contains
   end function has_fibre_failure
 
   !> All warnings of a run, with those before a restart.
-  function warnings_given(record, deck) result(lines)
+  function reported_warnings(record, deck) result(lines)
     !> Record of the run
     type(run_record_t), intent(in) :: record
     !> The deck
@@ -287,5 +287,5 @@ contains
       call append(lines, warning_text(record%warning_kinds(i), record%warning_zones(i), &
                                       moment(deck, record%warning_times(i)), deck))
     end do
-  end function warnings_given
+  end function reported_warnings
 end module run_warnings

@@ -26,7 +26,7 @@ contains
     allocate (lines(0))
     call append(lines, '.TH IMPLAM 1 "" "Implam '//version//'"')
     call append(lines, '.SH NAME')
-    call append(lines, 'implam \- low-velocity impact on composite laminates and the damage it leaves')
+    call append(lines, 'implam \- low-velocity impact on composite laminates and the damage it causes')
     call append_terms('SYNOPSIS', '.B implam ', command_rows)
     call append_terms('OPTIONS', '.B ', option_rows)
     call append_terms('EXIT STATUS', '.B ', code_rows)

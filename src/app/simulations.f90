@@ -21,7 +21,7 @@ module simulations
   use run_records, only: run_record_t, new_run_record
   use run_reports, only: log_echo, log_model, log_costs, summary
   use run_steps, only: advance_to_output, row_is_due
-  use run_warnings, only: give_last_warnings, give_warnings
+  use run_warnings, only: report_last_warnings, report_warnings
   use stepping_parameters, only: end_of_run
   use run_summaries, only: summarise
   use summary_file, only: summary_ending
@@ -315,7 +315,7 @@ contains
     call self%stepper%complete_state(self%model, error)
     if (allocated(error)) return
     call self%record%observe_reactions(self%model, self%stepper%now)
-    call give_warnings(self%deck, self%model, self%stepper, self%record, self%energy_check, self%log, error)
+    call report_warnings(self%deck, self%model, self%stepper, self%record, self%energy_check, self%log, error)
     row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
     checkpoint_due = .false.
@@ -389,7 +389,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (.not. self%is_ready) return
-    call give_last_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_check, self%log, error)
+    call report_last_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_check, self%log, error)
     call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
                    wall_time() - self%timers%profile%begun, self%base//summary_ending, self%log, error)
   end subroutine conclude

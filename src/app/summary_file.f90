@@ -18,7 +18,7 @@ module summary_file
   use run_figures, only: ending_t, run_figures_t
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
-  use run_warnings, only: warnings_given
+  use run_warnings, only: reported_warnings
   use states, only: state_t
   use text, only: line_t
   use time_stepping, only: time_stepper_t
@@ -311,7 +311,7 @@ contains
     type(line_t), allocatable :: given(:)
     integer :: i
 
-    given = warnings_given(record, deck)
+    given = reported_warnings(record, deck)
     call json%open_list('warnings')
     do i = 1, size(deck%remarks)
       call json%open_object('')

@@ -10,7 +10,7 @@ module summary_lines
   use roundings, only: rounding
   use run_moments, only: moment
   use run_records, only: run_record_t
-  use run_warnings, only: warnings_given
+  use run_warnings, only: reported_warnings
   use states, only: state_t
   use text, only: line_t, append, counted, rounded_text, to_text
   implicit none
@@ -123,11 +123,11 @@ contains
     character(len=:), allocatable :: depth
 
     if (figures%dent(1) > figures%dent(2)) then
-      depth = rounded_text(figures%dent(1))//' below the surface around it, of that indentation '// &
+      depth = rounded_text(figures%dent(1))//' below the surface around it, of which indentation '// &
               rounded_text(figures%dent(2))
-      if (.not. deck%stepping%central%settle > 0) depth = depth//'; with what is left of the vibration'
+      if (.not. deck%stepping%central%settle > 0) depth = depth//'; with residual vibration'
     else
-      depth = rounded_text(figures%dent(2))//', the indentation''s'
+      depth = rounded_text(figures%dent(2))//', permanent indentation only'
     end if
     call add_figure(lines, 'dent', depth)
   end subroutine add_dent
@@ -174,7 +174,7 @@ contains
     energy_input = impactor_energy(deck%impactor, new_impactor(deck%impactor))
     lost = energy_input - now%ledger%impactor
     clause = ', absorbed '
-    if (now%force > 0) clause = ', contact lasts, transferred so far '
+    if (now%force > 0) clause = ', still in contact, transferred so far '
     clause = rounded_text(energy_input)//clause//rounded_text(lost)
     ! Of an impact with next to no energy the weight of the impactor may transfer more.
     if (energy_input > 0 .and. lost <= energy_input*(1 + rounding)) &
@@ -193,14 +193,14 @@ contains
     damping = ''
     if (ledger%damping > 0) damping = ', damping '//rounded_text(ledger%damping)
     if (ledger%external_work /= 0) call add_figure(lines, 'work of the load', rounded_text(ledger%external_work))
-    call add_figure(lines, 'of it', 'kinetic '//rounded_text(ledger%kinetic)//', strain '// &
+    call add_figure(lines, 'energies', 'kinetic '//rounded_text(ledger%kinetic)//', strain '// &
                     rounded_text(ledger%strain)// &
               ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
               rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
     call add_figure(lines, '', 'contact '//rounded_text(ledger%contact)//', friction '// &
                     rounded_text(ledger%friction)// &
               ', layers '//rounded_text(ledger%layers)//damping//', algorithmic dissipation '// &
-              rounded_text(ledger%algorithmic)//', not accounted for '//rounded_text(ledger%error(), 2))
+              rounded_text(ledger%algorithmic)//', energy error '//rounded_text(ledger%error(), 2))
   end subroutine add_energies
 
   !> Results of the interfaces.
@@ -226,10 +226,10 @@ contains
                   range_of(figure%bounds(:, 2))//', energy '//rounded_text(figure%energy))
         call add_event('onset', record%onset(:, zone))
         call add_event('first growth', record%growth(:, zone))
-        if (deck%has_impactor) call add_figure(lines, '', 'closed form '//rounded_text(figures%threshold(zone))// &
-                                               ' for '// &
-          counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
-          of_starter(figures%starter_threshold))
+        if (deck%has_impactor) &
+          call add_figure(lines, '', 'threshold force (closed form) '//rounded_text(figures%threshold(zone))// &
+                          ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
+                          of_starter(figures%starter_threshold))
       end associate
     end do
 
@@ -245,7 +245,7 @@ contains
       if (.not. event(1) > 0) then
         call add_figure(lines, '', 'no '//name)
       else if (deck%has_impactor) then
-        call add_figure(lines, '', name//' under '//rounded_text(event(2))//' at '//moment(deck, event(1)))
+        call add_figure(lines, '', name//' at force '//rounded_text(event(2))//', '//moment(deck, event(1)))
       else
         call add_figure(lines, '', name//' at '//moment(deck, event(1)))
       end if
@@ -284,7 +284,7 @@ contains
     type(line_t), allocatable :: given(:)
     integer :: i
 
-    given = warnings_given(record, deck)
+    given = reported_warnings(record, deck)
     if (size(deck%remarks) + size(given) == 0) call add_figure(lines, 'warnings', 'none')
     do i = 1, size(deck%remarks)
       call add_figure(lines, 'warning', deck%remarks(i)%text)

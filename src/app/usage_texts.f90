@@ -13,8 +13,8 @@ module usage_texts
   !> Commands and their meaning.
   character(len=text_length), parameter, public :: command_rows(2, 11) = reshape([character(len=text_length) :: &
     '[run] DECK.nml', 'run a deck', &
-    'check DECK.nml', 'read and check a deck and list every fault, without a run', &
-    'new [NAME.nml]', 'write a commented deck to start from, which runs as it is, with --rig that of a rig; &
+    'check DECK.nml', 'check a deck and list all errors, without a run', &
+    'new [NAME.nml]', 'write a commented deck that is ready to run, with --rig that of a test rig; &
       &no file is overwritten', &
     'explain [GROUP [KEY]]', 'groups and keys of a deck: units, defaults, meaning; GROUP.KEY and GROUP%KEY are &
       &accepted too', &
@@ -22,32 +22,32 @@ module usage_texts
     'explain materials', 'published materials for decks, with the source of each value', &
     'restart [FILE]', 'resume from a checkpoint (NAME_restart.h5), or from the newest one of a folder: that named, &
       &that of --output, or the current one; the deck is that of the checkpoint, and its file is not read again', &
-    'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory from the deck; with --chain jobs '// &
-    'follow each other until the run has ended; array.txt of a sweep instead of a deck makes a job array', &
-    'completion bash|zsh', 'print a script by which a shell completes commands, groups and keys', &
+    'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory estimated from the deck; with --chain '// &
+    'the job is submitted again until the run is complete; array.txt of a sweep makes a job array', &
+    'completion bash|zsh', 'print a script for the completion of commands, groups and keys in the shell', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
     'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 11])
   !> Options.
   character(len=text_length), parameter, public :: option_rows(2, 12) = reshape([character(len=text_length) :: &
-    '--rig d7136', 'new writes the deck of a test rig: a drop-weight test after ASTM D7136', &
+    '--rig d7136', 'with new: the deck of a drop-weight test after ASTM D7136', &
     '--output DIR', 'folder of the results, instead of the deck''s', &
-    '--wall-limit SECONDS', 'end with a checkpoint before so many wall-clock seconds have passed', &
+    '--wall-limit SECONDS', 'end with a checkpoint before this wall-clock time has passed', &
     '--verify', 'run the deck, then again with elements and time steps half as long, and report the changes of &
       &the figures; the same command resumes where it was stopped', &
     '--profile', 'print in log and summary the time and memory of each part of the run', &
-    '--ranks N', 'ranks of the job that queue writes, instead of what the deck''s size suggests', &
-    '--time H:MM:SS', 'its wall-clock limit; default: one day', &
-    '--chain', 'the job is submitted again, from its checkpoint, until the run has ended', &
-    '--markdown', 'explain as a table for the manual', &
+    '--ranks N', 'with queue: ranks of the job; default: by the number of unknowns', &
+    '--time H:MM:SS', 'with queue: wall-clock limit of the job; default: one day', &
+    '--chain', 'with queue: submit the job again, from its checkpoint, until the run is complete', &
+    '--markdown', 'with explain: print a Markdown table', &
     '-v, --version', 'version, commit, compiler and PETSc, and how to cite', &
     '-h, --help', 'this page', &
     '-mat_..., -ksp_..., -log_view', 'these and other options with one dash are passed to PETSc'], [2, 12])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
-    '0', 'done', '1', 'usage', '2', 'deck', '3', 'no convergence at the smallest step, an unstable motion, or with &
-      &strict a limit of the model passed', '4', 'files', '5', 'internal', &
-    '75', 'stopped by a signal of the queue or the wall-clock time, with a checkpoint written: resume with &
-      &restart'], [2, 7])
+    '0', 'completed', '1', 'wrong use of the command line', '2', 'error in the deck', &
+    '3', 'no convergence at the smallest step, an unstable motion, or with strict of &case a limit of the model &
+      &exceeded', '4', 'a file that cannot be read or written', '5', 'internal error', &
+    '75', 'stopped by a signal or the wall-clock limit, with a checkpoint: resume with restart'], [2, 7])
   !> Paragraphs on ranks and signals.
   character(len=text_length), parameter, public :: notes(2) = [character(len=text_length) :: &
     'Under mpirun all of this applies except the signals.', &

@@ -3,10 +3,10 @@ module warning_texts
   use deck_contents, only: deck_t
   use energy_checks, only: energy_tolerance
   use kinds, only: wp
-  use run_records, only: warning_border, warning_core, warning_energy, warning_hole, warning_indentation, &
+  use run_records, only: warning_border, warning_core, warning_energy, warning_perforation, warning_indentation, &
                          warning_kinetic, warning_ledger, warning_loss, warning_scaled, warning_slopes, &
-                         warning_steps, warning_torn
-  use plate_options, only: steepest
+                         warning_steps, warning_membrane
+  use plate_options, only: max_slope
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit
   use text, only: to_text
@@ -17,7 +17,7 @@ module warning_texts
   !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
   !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
   !> Shells, 1959, art. 100).
-  real(wp), parameter, public :: deepest = 3
+  real(wp), parameter, public :: max_deflection_ratio = 3
   !> Permitted ratio of kinetic energy to work in slow motion, 5 % (Getting Started with Abaqus, chapter on quasi-static
   !> analysis: 5 to 10 %).
   real(wp), parameter, public :: max_kinetic = 0.05_wp
@@ -48,40 +48,40 @@ contains
              ' has reached the border of its zone at '//at// &
              ' and cannot grow further: make the zone larger.'
     case (warning_core)
-      text = 'Layers grow with the damage beyond the core of the mesh since '//at// &
-             ', where its cells grow: make the core larger.'
+      text = 'Layers have extended with the damage beyond the core of the mesh since '//at// &
+             ', where cells are larger: make the core larger.'
     case (warning_energy)
       text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
                          '(rho_inf) with delamination.', 'take a smaller step_factor.')
     case (warning_loss)
       text = energy_text('dissipated', 'take smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
     case (warning_ledger)
-      text = 'More than '//short_text(100*energy_tolerance)//' % of the energy is not accounted for since '//at// &
-             ' (energy_error): take a smaller '//trim(merge('step_factor.         ', 'tolerance of &solver.', &
-                                                                          is_explicit(deck%stepping)))
+      text = 'The energy error (energy_error) has exceeded '//short_text(100*energy_tolerance)// &
+             ' % of the energy since '//at//': take a smaller '// &
+             trim(merge('step_factor.         ', 'tolerance of &solver.', is_explicit(deck%stepping)))
     case (warning_kinetic)
-      text = 'The plate''s kinetic energy is more than '//short_text(100*max_kinetic)//' % of the work since '// &
+      text = 'The kinetic energy of the plate has exceeded '//short_text(100*max_kinetic)//' % of the work since '// &
              at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
     case (warning_scaled)
-      text = 'Kinetic energy of motions with scaled inertia exceeds '//short_text(100*max_scaled)// &
+      text = 'The kinetic energy of motions with scaled inertia has exceeded '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
     case (warning_indentation)
-      text = 'The indentation exceeds the thickness of the laminate or the radius of the impactor since '//at// &
+      text = 'The indentation has exceeded the thickness of the laminate or the radius of the impactor since '//at// &
              ': no contact law is valid there; take less energy or a larger radius.'
     case (warning_slopes)
-      text = 'The slope of the plate exceeds '//to_text(steepest)//' since '//at// &
+      text = 'The slope of the plate has exceeded '//to_text(max_slope)//' since '//at// &
              ': its strains assume small rotations; later results are not valid.'
     case (warning_steps)
-      text = 'The error of steps exceeds the tolerance of &adapt since '//at// &
-             ' at the smallest step, too long for the waves of failures: an eighth of that tolerance halves the &
-               &steps and shows the effect.'
-    case (warning_torn)
-      text = 'The clamped plate deflects by more than '//to_text(deepest)// &
+      text = 'The error of steps has exceeded the tolerance of &adapt since '//at// &
+             ' at the smallest step, which is too long for waves emitted by failures: compare with a run at an &
+               &eighth of the tolerance, which halves the steps.'
+    case (warning_membrane)
+      text = 'The deflection of the clamped plate has exceeded '//to_text(max_deflection_ratio)// &
              ' thicknesses with failed fibres since '//at// &
-             ': membrane forces carry it, and plies do not tear in the model; later results are not valid.'
-    case (warning_hole)
+             ': membrane forces carry the load, and tearing of plies is not modelled; later results are not valid.'
+    case (warning_perforation)
       text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
-             ': the impactor perforates the plate, and the model has no hole; later results are not valid.'
+             ': the impactor perforates the plate, which is not modelled; later results are not valid.'
     end select
 
   contains

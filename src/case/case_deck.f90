@@ -15,7 +15,7 @@ module case_deck
   character(len=*), parameter :: group = case_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
-    'case | settings | The case: its name, its title and the strains used.'
+    'case | settings | Name and title of the case, units, accuracy and kinematics.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: case_rows(*) = [character(len=key_row_length) :: &
     'case | name | name | 1 | - | = the deck''s file name | letters, digits, . _ - | &
@@ -23,15 +23,15 @@ module case_deck
     'case | title | text | 1 | - | '''' | any text | &
       &Free text kept with the results.', &
     'case | accuracy | choice or real | 1 | % | none | draft standard reference, >= 0.01, <= 20 | &
-      &Error of the peak force allowed; what &mesh and &time leave out follows. By name 5, 1 and 0.2.', &
+      &Permitted error of the peak force, by name 5, 1 or 0.2; it chooses mesh and steps that are not given.', &
     'case | units | choice | 1 | - | none | SI mm-t-s mm-kg-ms mm-mN-kg-s | &
-      &Units that the deck is in: the check compares its values with them, and results name them.', &
+      &System of units of the deck; the check compares values with usual ones, and results name it.', &
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
-      &Whether a run ends with exit code 3 where it passes the model''s limits, instead of a warning.', &
+      &Whether a run ends with exit code 3 where it exceeds a limit of the model, instead of a warning.', &
     'case | error_estimate | logical | 1 | - | none | .true. .false. | &
-      &Whether a coarser run, an eighth of the work, gives errors. Default: accuracy without elastic estimate.', &
+      &Whether a coarser run, an eighth of the work, estimates errors. Default: accuracy without elastic estimate.', &
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
-      &Times that elements and steps are halved; the results are then those of NAME_finer1 and so on.']
+      &Number of halvings of elements and steps; results are then named NAME_finer1 and so on.']
 
   !> Permitted errors of the peak force for each `accuracy`, %. doc/studies/defaults.md has their
   !> cost.

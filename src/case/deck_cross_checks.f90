@@ -106,7 +106,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. is_explicit(deck%stepping)) then
-      call report(deck%settings, problems, impactor_group, key_travel, 'in time it goes with &time integrator = '// &
+      call report(deck%settings, problems, impactor_group, key_travel, 'in time it requires &time integrator = '// &
                 '''central_difference''; give that, &static for load steps, or the velocity instead.')
     else if (deck%impactor%rise > deck%stepping%time%end .and. .not. problems%concern(time_group)) then
       call report(deck%settings, problems, impactor_group, impactor_key_rise, 'the rise lasts longer than the run.')

@@ -26,9 +26,10 @@ module deck_extents
   private
   public :: check_sizes, check_extents, extent_lines
 
-  !> Length over thickness beyond which rounding spoils the result, and below which plate theory does. Stiffnesses of
-  !> shear and bending differ by the square of the first, 1e10, which leaves six of sixteen digits. At four thicknesses
-  !> the deflection of a cross-ply is 12 % too small (N. J. Pagano, S. J. Hatfield, AIAA J. 10 (1972) 931-933).
+  !> Length over thickness beyond which round-off dominates the result, and below which plate theory is inaccurate.
+  !> Stiffnesses of shear and bending differ by the square of the first, 1e10, which leaves six of sixteen digits. At
+  !> four thicknesses the deflection of a cross-ply is 12 % too small (N. J. Pagano, S. J. Hatfield, AIAA J. 10 (1972)
+  !> 931-933).
   real(wp), parameter :: max_slenderness = 1.0e5_wp, min_slenderness = 5
   !> Side of a starter over the loaded patch's below which growth may never start: of two starters under the same force,
   !> that of the patch's size had an eighth of the energy release rate of one twice as wide. It decides on a warning.
@@ -80,8 +81,8 @@ contains
                       'the line is not on the plate; allowed: '// &
                     to_text(-half)//' to '//to_text(half)//'.', place)
         else if (mirrored(direction) .and. line%at < 0) then
-          call report(deck%settings, problems, line_group, line_key_at, 'one side stands for the plate, and a line '// &
-                    'for that on the other side too; allowed: 0 or more.', place)
+          call report(deck%settings, problems, line_group, line_key_at, 'only one side is modelled, and a line '// &
+                    'includes its image on the other side; allowed: 0 or more.', place)
         end if
       end associate
     end do
@@ -121,11 +122,11 @@ contains
     longer = maxval(deck%plate%length)
     if (thickness > shorter) then
       call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
-                  short_text(thickness)//' thick, more than the plate is wide; this is no plate.')
+                  short_text(thickness)//' thick, more than the plate''s width; plate theory does not apply.')
     else if (longer > max_slenderness*thickness*(1 + rounding)) then
       call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
                   short_text(thickness)//' thick, less than '//to_text(1/max_slenderness)// &
-                  ' of the plate''s length, where rounding spoils it.')
+                  ' of the plate''s length, where round-off dominates.')
     else if (thickness*min_slenderness > shorter) then
       call remark(deck%settings, problems, laminate_group, key_thicknesses, 'the plate is less than '// &
                   to_text(min_slenderness)//' thicknesses wide; plate theory is inaccurate there.')

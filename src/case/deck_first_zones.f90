@@ -31,11 +31,11 @@ contains
       place = deck%delaminations(i)%group
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
       if (deck%delaminations(i)%law == law_front) then
-        call require('a front needs it, and layers follow the damage of law = ''cohesive'' only')
+        call require('a front needs it; zones are adaptive with law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
         call require(key_strip//' runs across its whole width')
       else if (.not. all(beside_layers(deck)) .and. .not. problems%concern(line_group, line_key_at)) then
-        call require('a &line acts on layers that are there from the start')
+        call require('a &line acts on layers that exist from the start')
       end if
     end do
 

@@ -51,7 +51,7 @@ contains
                     'load steps do not begin from a state of another run; give &time '// &
                   'with integrator = ''central_difference'', or leave &initial_state out.')
       else if (deck%has_time .and. .not. is_explicit(deck%stepping)) then
-        call report(s, problems, initial_state_group, '', 'goes with &time integrator = ''central_difference''.')
+        call report(s, problems, initial_state_group, '', 'requires &time integrator = ''central_difference''.')
       end if
       if (deck%has_impactor) call report(s, problems, impactor_group, '', &
                                          'does not go with &initial_state; load the '// &

@@ -46,7 +46,7 @@ contains
     associate (s => deck%settings, symmetry => deck%plate%symmetry)
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
         coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
-        'A45 isn''t 0), so a '//part//' can''t stand for the plate; use ''none'' or ''point''.')
+        'A45 isn''t 0), so a '//part//' can''t represent the plate; use ''none'' or ''point''.')
       if (is_eccentric(deck%mesh%struck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
@@ -56,11 +56,11 @@ contains
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
                   '; list all of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
-        'fronts are not followed across the line that a turned plate is cut at; use ''none'', or law = ''cohesive''.')
+        'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
         if (any(deck%lines%direction == along_x .or. .not. deck%lines%at > 0)) &
-          call report(s, problems, plate_group, key_symmetry, 'a line is no line any more where a turned plate is '// &
-                    'cut; use ''none'', or lines along y at x > 0, which stand for their images too.')
+          call report(s, problems, plate_group, key_symmetry, 'a line along x or at x = 0 has no image '// &
+                    'on the same line; use ''none'', or lines along y at x > 0, whose images are included.')
       end if
     end associate
   end subroutine check_symmetry
@@ -127,7 +127,7 @@ contains
     sentence = ''
     part = smallest_part(deck)
     if (part /= deck%plate%symmetry) sentence = 'Laminate, supports and struck point allow symmetry = '''// &
-                                                trim(names(part))//''', which computes less of the plate.'
+                                                trim(names(part))//''', which reduces the model.'
   end function symmetry_sentence
 
   !> The smallest part of the plate that suffices; that of the deck if there is none smaller.

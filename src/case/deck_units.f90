@@ -21,7 +21,7 @@ module deck_units
   use plate_deck, only: plate_group, key_length
   use short_numbers, only: short_text
   use time_deck, only: time_group, key_end
-  use unit_systems, only: base_units, is_odd, system_named, unit_that_fits, unit_name, systems, quantities, &
+  use unit_systems, only: base_units, is_unusual, system_named, unit_that_fits, unit_name, systems, quantities, &
                           of_pressure, of_density, of_length, of_thickness, of_radius, of_mass, of_velocity, &
                           of_toughness, of_time, of_strength, of_fibre_toughness
   implicit none
@@ -67,10 +67,10 @@ contains
 
     if (problems%errors() > 0) return
     call gather(deck, list)
-    system = likeliest_system(deck, list)
+    system = probable_system(deck, list)
     if (system == 0) return
     do i = 1, size(list)
-      if (.not. is_odd(list(i)%quantity, list(i)%value, system)) cycle
+      if (.not. is_unusual(list(i)%quantity, list(i)%value, system)) cycle
       fits = unit_that_fits(list(i)%quantity, list(i)%value)
       if (fits == '') cycle
       call report_unit(deck, problems, list(i), system, 'is odd', fits)
@@ -174,7 +174,7 @@ contains
 
   !> The system of the deck, or else the one with the fewest unusual kinds of quantities; 0: none fits, the deck has
   !> units of its own.
-  pure integer function likeliest_system(deck, list) result(system)
+  pure integer function probable_system(deck, list) result(system)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Its values
@@ -185,15 +185,15 @@ contains
     if (system > 0) return
     present_kinds = count([(any(list%quantity == i), i=1, quantities)])
     do i = 1, size(systems)
-      odd(i) = odd_kinds(list, i)
+      odd(i) = unusual_kinds(list, i)
     end do
     system = minloc(odd, 1)
     ! Without an impactor there are too few values to decide, and plates of unit density are common.
     if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
-  end function likeliest_system
+  end function probable_system
 
   !> Number of kinds of quantities with an unusual value; lengths of all kinds count as one.
-  pure integer function odd_kinds(list, system) result(number)
+  pure integer function unusual_kinds(list, system) result(number)
     !> Values of the deck
     type(quantity_t), intent(in) :: list(:)
     !> Index of the system
@@ -203,12 +203,12 @@ contains
 
     odd = .false.
     do i = 1, size(list)
-      if (is_odd(list(i)%quantity, list(i)%value, system)) odd(list(i)%quantity) = .true.
+      if (is_unusual(list(i)%quantity, list(i)%value, system)) odd(list(i)%quantity) = .true.
     end do
     odd(of_length) = odd(of_length) .or. odd(of_thickness) .or. odd(of_radius)
     odd([of_thickness, of_radius]) = .false.
     number = count(odd)
-  end function odd_kinds
+  end function unusual_kinds
 
   !> Checks the end of the run against the expected events.
   subroutine check_times(deck, system, problems)
@@ -254,7 +254,7 @@ contains
 
     associate (impactor => deck%impactor, law => deck%indentation)
       if (.not. impactor%radius > 0) return
-      if (is_odd(of_radius, impactor%radius, system)) return
+      if (is_unusual(of_radius, impactor%radius, system)) return
       base = base_units(system)
       ball = impactor%mass*base(2)/(4*pi/3*(impactor%radius*base(1))**3)
       if (abs(ball/(1000*steel) - 1) < near) then

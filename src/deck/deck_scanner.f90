@@ -56,7 +56,7 @@ contains
       if (.not. scan%open) then
         call skip_to_group(deck, cursor, unknown_word, unknown_line)
         if (unknown_line > 0) call problems%error(unknown_line, '', '', shown(unknown_word)// &
-          ' stands outside of a group, where Fortran would skip it; allowed: comments with ! and groups &name ... /')
+          ' is outside of a group, where Fortran would skip it; allowed: comments with ! and groups &name ... /')
         if (cursor%at > len(deck)) exit
       end if
       call next_token(deck, cursor, token)
@@ -110,7 +110,7 @@ contains
       'the deck is empty; it needs at least &plate, &mesh, &material and &laminate.')
   end subroutine check_characters
 
-  !> True: here stands the carriage return of a line end as Windows writes it.
+  !> True: at this place is the carriage return of a line end as Windows writes it.
   pure logical function is_line_end(deck, at)
     !> Text of the deck
     character(len=*), intent(in) :: deck
@@ -328,7 +328,7 @@ contains
     associate (group => scan%blocks(size(scan%blocks))%name)
       if (.not. scan%collecting) then
         call problems%error(line, group, '', '&'//shown(group)// &
-                            ': a comma or = stands where a key should; write key = value.')
+                            ': a comma or = in place of a key; write key = value.')
       else if (scan%entries(last)%valid) then
         concerned = scan%entries(last)%key
         if (present(keys)) concerned = keys

@@ -53,7 +53,8 @@ contains
     do while (at <= len(deck))
       kind = kind_at(deck, at)
       if (kind > 0 .and. counts(place, kind)) then
-        if (.not. place%reported(kind)) call problems%error(place%line, '', '', 'here stands '//trim(advice(kind))//'.')
+        if (.not. place%reported(kind)) &
+          call problems%error(place%line, '', '', 'this line has '//trim(advice(kind))//'.')
         place%reported(kind) = .true.
         clean = clean//deck(copied + 1:at - 1)//plain(kind)
         if (index('''"', plain(kind)) > 0) place%curly = place%quote == ' '

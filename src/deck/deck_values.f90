@@ -44,7 +44,7 @@ contains
         fault = fault_of_number(branch_of(key, 'real'), value)
       end if
     case default
-      fault = shown(value%text)//' stands without quotes'
+      fault = shown(value%text)//' has no quotes'
       if (value%quoted) fault = fault_of_text(key, value%text)
     end select
   end function fault_of_value

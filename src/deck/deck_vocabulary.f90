@@ -80,7 +80,7 @@ contains
     end do
   end subroutine load_vocabulary
 
-  !> Sets a key from the columns of its row, one by one: gfortran 12 spoils memory if a constructor does it.
+  !> Sets a key from the columns of its row, one by one: gfortran 12 corrupts memory if a constructor does it.
   pure subroutine set_key(column, key)
     !> Columns of the row
     type(line_t), intent(in) :: column(8)

@@ -30,7 +30,7 @@ module delamination_deck
                                             ' '//key_shear_cracks
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
-    'delamination | several | Interfaces that may delaminate; one group for equal ones.'
+    'delamination | several | Interfaces that may delaminate; one group for all that have equal properties.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: delamination_rows(*) = [character(len=key_row_length) :: &
     'delamination | below_ply | integer | 1 or more | - | required | >= 1, <= 1000, or ''all'', &
@@ -41,9 +41,9 @@ module delamination_deck
     'delamination | G_Ic | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure opening.', &
     'delamination | G_IIc | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure shear.', &
     'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
-      &Exponent of Benzeggagh and Kenane between opening and shear.', &
-    'delamination | zone | real | 2 | length | = as the damage needs it, with law = cohesive | > 0 | &
-      &Full extents of the layered rectangle along x and y, centred on the struck point.', &
+      &Exponent of Benzeggagh and Kenane''s mixed-mode law.', &
+    'delamination | zone | real | 2 | length | = adaptive, with law = cohesive | > 0 | &
+      &Full extents along x and y of the rectangle with separate layers, centred on the struck point.', &
     'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, or diameter of the round one.', &
     'delamination | starter_shape | choice | 1 | - | ''square'' | square round | &
@@ -53,7 +53,7 @@ module delamination_deck
     'delamination | starter_strip | real | 2 | length | none | any | &
       &First and last x of a starter across the whole width of the zone, from the struck point; instead of starter.', &
     'delamination | law | choice | 1 | - | = cohesive; front with a starter or without strengths | front cohesive | &
-      &Ties that a front releases by its energy release rate, or tractions that soften with the separation.', &
+      &front: ties are released by the energy release rate; cohesive: tractions soften with the separation.', &
     'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure opening.', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
@@ -63,25 +63,25 @@ module delamination_deck
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
       &Coulomb''s coefficient of friction of damaged surfaces that are closed.', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
-      &Damage starts beside matrix cracks of the neighbouring plies at what the cells resolve of the strengths.', &
+      &Beside matrix cracks of adjacent plies damage starts at the strengths whose process zone the cells resolve.', &
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
-      &Damage starts beside cracks by transverse shear in the neighbouring plies at their shear strength.', &
+      &Beside transverse shear cracks of adjacent plies damage starts at the shear strength of these plies.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 of Li et al. with its sign corrected, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
-      &Release at a frozen time until no front is above G_c, or one cell a step.', &
+      &equilibrium: growth at fixed time until G <= G_c on all fronts; one_per_step: one cell per step.', &
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
-      &Intact surfaces: joined exactly, or by penalty springs as by Li et al.', &
+      &Connection of intact surfaces: exact elimination, or penalty springs as by Li et al.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
-      &Stiffness of penalty ties; left out: a million times E2 over the thinner layer.', &
+      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner layer.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
       &Exponent q of the continuous penalty (Li et al., Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
-      &While the impactor rebounds: contact, or separated surfaces move together (Li et al., Eq. 13b).', &
+      &During rebound: contact, or relative displacements of separated surfaces held constant (Li et al., Eq. 13b).', &
     'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the laminate | > 0 | &
-      &Distance along a front within which tie forces and openings are averaged before they make its rate.']
+      &Distance along a front over which tie forces and openings are averaged for the energy release rate.']
 
 contains
 

@@ -81,7 +81,7 @@ module delamination_parameters
   end type delamination_t
 
   !> Smallest number of cells over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about
-  !> their mean, with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of the booked energy, with 2.6
+  !> their mean, with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of the recorded energy, with 2.6
   !> cells .84.
   integer, parameter, public :: min_smoothed_cells = 5
 

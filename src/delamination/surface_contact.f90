@@ -26,9 +26,9 @@ module surface_contact
   real(wp), parameter :: moving_stiffness = 2.0e6_wp
   !> Decay of the pressure times the mean gap (section 3.4 of the paper).
   real(wp), parameter :: decay_factor = 1.5_wp
-  !> Slope of the steepest tail over the stiffness: rounding of the gap is still less than the pressures' own error. A
+  !> Largest slope of the tail over the stiffness: rounding of the gap is still less than the pressures' own error. A
   !> factor of ten either way changes nothing (doc/studies/solution_controls.md).
-  real(wp), parameter :: steepest = 1.0e5_wp
+  real(wp), parameter :: max_tail_slope = 1.0e5_wp
   !> A pressure below this part of stiffness times gap is none: the surfaces are open. A factor of ten either way
   !> changes nothing (doc/studies/solution_controls.md).
   real(wp), parameter :: open_fraction = 1.0e-9_wp
@@ -92,7 +92,7 @@ contains
     if (.not. largest_pressure > 0) return
     decay = law%stiffness/largest_pressure
     if (converged) return
-    decay = steepest*decay
+    decay = max_tail_slope*decay
     if (gaps*decay > decay_factor*pressures) decay = decay_factor*pressures/gaps
   end function updated_decay
 

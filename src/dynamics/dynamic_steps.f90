@@ -15,7 +15,7 @@ module dynamic_steps
   use dynamic_tangents, only: find_tangent, add_force_slope, is_exact
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
-  use energy_balance, only: book_step
+  use energy_balance, only: record_step
   use line_motions, only: has_moved_lines, prescribe_lines, move_lines, line_displacement
   use motion_forces, only: weight_forces, weight_start_forces, find_internal_forces
   implicit none
@@ -299,7 +299,7 @@ contains
         call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
       end if
       call model%profile%enter('energy ledger')
-      call book_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)
+      call record_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)
       call model%profile%leave()
       if (.not. has_moved_lines(model)) return
       call move_lines(model, new%interfaces, new%time, new%motion, work)

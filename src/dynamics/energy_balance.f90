@@ -10,7 +10,7 @@ module energy_balance
   use states, only: state_t
   implicit none
   private
-  public :: book_step, book_failures
+  public :: record_step, record_failures
 
   !> Length of blocks of products that are summed together, a multiple of the vector length, as in residual_norms
   integer, parameter :: block_length = 8
@@ -34,8 +34,8 @@ module energy_balance
 
 contains
 
-  !> Books a step.
-  subroutine book_step(model, integrator, old, step, force, energy, new)
+  !> Records a step.
+  subroutine record_step(model, integrator, old, step, force, energy, new)
     type(model_t), intent(in) :: model
     !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
@@ -61,7 +61,7 @@ contains
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
     new%ledger%algorithmic = old%ledger%algorithmic - gain
-    call new%plies%book(model, damage)
+    call new%plies%record(model, damage)
     new%ledger%ply_damage = new%ledger%ply_damage + damage
     fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
     new%ledger%delamination = new%ledger%delamination + fracture
@@ -72,8 +72,8 @@ contains
                                - products%cohesive, &
                          max(new%ledger%initial + new%ledger%external_work, products%strain))
     if (model%map%layered) then
-      ! Subtracts the fracture energy, which is booked when ties are released.
-      call new%interfaces%ties%book(model, old%interfaces%ties, &
+      ! Subtracts the fracture energy, which is recorded when ties are released.
+      call new%interfaces%ties%record(model, old%interfaces%ties, &
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
@@ -83,11 +83,11 @@ contains
     new%ledger%indentation = new%indentation%work
     new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
       + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
-  end subroutine book_step
+  end subroutine record_step
 
-  !> Books the strain energy dissipated by failed plies, and computes the remaining forces. An energy error of softening
-  !> plies by the lag of damage is booked as algorithmic dissipation.
-  subroutine book_failures(model, now, trial)
+  !> Records the strain energy dissipated by failed plies, and computes the remaining forces. An energy error of
+  !> softening plies by the lag of damage is recorded as algorithmic dissipation.
+  subroutine record_failures(model, now, trial)
     type(model_t), intent(in) :: model
     !> The state before the step
     type(state_t), intent(in) :: now
@@ -101,13 +101,13 @@ contains
     lost = trial%ledger%strain - energy
     dissipated = lost
     if (allocated(trial%plies%bands)) then
-      call trial%plies%book(model, dissipated)
+      call trial%plies%record(model, dissipated)
       call trial%plies%bands%commit()
     end if
     trial%ledger%ply_damage = trial%ledger%ply_damage + dissipated
     trial%ledger%algorithmic = trial%ledger%algorithmic + lost - dissipated
     trial%ledger%strain = energy
-  end subroutine book_failures
+  end subroutine record_failures
 
   !> Energy that the plate's integrator adds to a linear plate in a step: the Newmark formulas and the
   !> weighted equation of motion combined. Zero for alpha_m = alpha_f = gamma = 1/2, beta = 1/4.

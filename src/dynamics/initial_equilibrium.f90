@@ -34,7 +34,7 @@ module initial_equilibrium
 contains
 
   !> Finds the equilibrium of a plate at rest with its residual stresses, and then with lines prescribed before the run,
-  !> whose work is booked. Collective.
+  !> whose work is recorded. Collective.
   subroutine find_initial_equilibrium(model, operator, state, error)
     type(model_t), intent(in) :: model
     !> The factored operator; not ready for steps afterwards
@@ -121,7 +121,7 @@ contains
       call state%interfaces%contact%constrain_correction(model, correction)
       state%motion%displacement = state%motion%displacement + correction
     end do
-    call state%plies%book(model, damage)
+    call state%plies%record(model, damage)
     if (allocated(state%plies%bands)) then
       call state%plies%bands%commit()
       call state%plies%total_dissipation(model)

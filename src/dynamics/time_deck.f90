@@ -25,28 +25,28 @@ module time_deck
     'time | settings | Time integration of the plate; needed unless the analysis is static.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: time_rows(*) = [character(len=key_row_length) :: &
-    'time | end | real | 1 | time | = by &case accuracy, central differences: past the contact | > 0 | &
+    'time | end | real | 1 | time | = by &case accuracy, central differences: after the contact | > 0 | &
       &End of the run.', &
     'time | step | real | 1 | time | = by &case accuracy, central differences: the stable one | > 0 | &
-      &First time step, and the step if it doesn''t adapt; central differences cut it to the stable one.', &
+      &Initial time step, constant unless steps are adaptive; central differences limit it to the stable step.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
       &Smallest step tried before giving up.', &
     'time | step_max | real | 1 | time | = step, end with &adapt rule=''local_error'' | > 0 | &
       &Largest step taken with &adapt.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
       &Wall-clock seconds by which the run ends with a checkpoint; --wall-limit overrides it.', &
-    'time | integrator | choice | 1 | - | = by the setup | newmark generalized_alpha central_difference | &
+    'time | integrator | choice | 1 | - | = by the deck | newmark generalized_alpha central_difference | &
       &Time integrator of the plate; left out, central_difference where plies or interfaces soften.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
       &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
     'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &
-      &Newmark''s gamma; above 0.5 it damps.', &
+      &Newmark''s gamma; above 0.5 it adds numerical damping.', &
     'time | rho_inf | real | 1 | - | = 1, with &delamination 0.5, with a front 0 | >= 0, <= 1 | &
-      &Generalised-alpha''s spectral radius at high frequency: 1 damps nothing, 0 most.', &
+      &Spectral radius of generalised-alpha at infinite frequency: 1 no damping, 0 most.', &
     'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
-      &Part of the stable step that central differences take.', &
-    'time | mass_scaling | real | 1 | - | = up to 10, as the waves allow | >= 1, <= 1000 | &
-      &Mean factor of rotary inertia for central differences, more in short elements, never of w; 1: none.', &
+      &Step of central differences over the stable step.', &
+    'time | mass_scaling | real | 1 | - | = up to 10, limited by its effect on bending waves | >= 1, <= 1000 | &
+      &Mean factor of rotary inertia for central differences, larger in short elements; w is not scaled. 1: none.', &
     'time | settle | real | 1 | time | 0 | >= 0 | &
     &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 

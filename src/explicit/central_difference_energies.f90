@@ -2,7 +2,7 @@
 !>
 !> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, with the mid-step velocity v. T
 !> changes by the work of the mean force of both ends, so that T plus strain energy of a linear plate without interfaces
-!> is constant to round-off. Work of the tractions beyond the energy that interfaces store and dissipate is booked as
+!> is constant to round-off. Work of the tractions beyond the energy that interfaces store and dissipate is recorded as
 !> algorithmic dissipation. The remaining error of the ledger is that of forces which are nonlinear within a step.
 module central_difference_energies
   use central_differences, only: central_difference_t
@@ -13,12 +13,12 @@ module central_difference_energies
   use states, only: state_t
   implicit none
   private
-  public :: book_energies, kinetic_energy
+  public :: record_energies, kinetic_energy
 
 contains
 
   !> Computes the ledger of a state. Collective.
-  subroutine book_energies(method, model, now)
+  subroutine record_energies(method, model, now)
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
@@ -64,7 +64,7 @@ contains
       if (model%setup%impactor%travel > 0) return
       ledger%impactor = method%impact%energy(model, method%steps%now, now)
     end associate
-  end subroutine book_energies
+  end subroutine record_energies
 
   !> Kinetic energy of the plate at the end of the last step. Collective.
   real(wp) function kinetic_energy(method, model, now, kept) result(energy)

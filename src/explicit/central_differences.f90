@@ -90,8 +90,8 @@ module central_differences
     procedure :: add_loads
     !> Computes them again after a change of stiffness or layers.
     procedure :: renew_forces
-    !> Books the energy dissipated by failed plies.
-    procedure :: book_failures
+    !> Records the energy dissipated by failed plies.
+    procedure :: record_failures
     !> Resumes from a loaded state.
     procedure :: resume
     !> Saves or loads.
@@ -201,7 +201,7 @@ contains
       call move_single(self, model, u, v)
       call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
                        self%force, now%interfaces%cohesive, u, v)
-      if (allocated(self%inertia%springs)) call self%rigs%book_springs(self%inertia%springs, self%steps, rates, v)
+      if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia%springs, self%steps, rates, v)
       call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)
@@ -219,7 +219,7 @@ contains
     call add_loads(self, model, now, load_factors)
   end subroutine advance
 
-  !> Books the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
+  !> Records the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
   !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the energy
   !> then is that of the method's initial state, -h^2 F M^-1 F/8 at rest, and no dissipation. Collective.
   subroutine change_length(self, model, v, sign)
@@ -304,7 +304,7 @@ contains
     call self%inertia%fold(self%force)
   end subroutine find_forces
 
-  !> Adds the forces of pressure and lines to those on the layers, and books their work in the step.
+  !> Adds the forces of pressure and lines to those on the layers, and records their work in the step.
   subroutine add_loads(self, model, now, load_factors)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -329,8 +329,8 @@ contains
     self%force = self%force + loads
   end subroutine add_loads
 
-  !> Books the strain energy dissipated by failed plies, and computes the remaining forces. Collective.
-  subroutine book_failures(self, model, now)
+  !> Records the strain energy dissipated by failed plies, and computes the remaining forces. Collective.
+  subroutine record_failures(self, model, now)
     !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -342,7 +342,7 @@ contains
     call self%renew_forces(model, now)
     lost = lost - total_of(model%communicator, self%strain)
     now%ledger%ply_damage = now%ledger%ply_damage + lost*model%mesh%multiplicity
-  end subroutine book_failures
+  end subroutine record_failures
 
   !> Computes the forces again after failures of plies or insertion of layers, without work of the loads. Collective.
   subroutine renew_forces(self, model, now)

@@ -70,7 +70,7 @@ contains
     end do
   end subroutine advance_intact
 
-  !> Updates jumps, damage and friction of a damaged stack, and books the work of the tractions.
+  !> Updates jumps, damage and friction of a damaged stack, and records the work of the tractions.
   subroutine advance_points(stacks, i, model, steps, friction, forces, cohesive, u, v)
     !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks

@@ -54,7 +54,7 @@ module line_steps
     procedure :: find_rates
     !> Sets the prescribed velocity of the layer of a point.
     procedure :: prescribe
-    !> Books the reactions on a point.
+    !> Records the reactions on a point.
     procedure :: react
     !> Adds the forces of lines with a force.
     procedure :: add_forces
@@ -257,7 +257,7 @@ contains
     end do
   end subroutine prescribe
 
-  !> Books the reactions on a point: change of the momentum of its layer minus the impulse of the other forces.
+  !> Records the reactions on a point: change of the momentum of its layer minus the impulse of the other forces.
   pure subroutine react(self, p, steps, mass, before, after, force)
     !> The lines
     class(line_steps_t), intent(inout) :: self

@@ -24,7 +24,7 @@ module rig_steps
     procedure :: stop_at_frame
     !> Adds the forces of springs.
     procedure :: add_spring_forces
-    procedure :: book_springs
+    procedure :: record_springs
     !> Saves or loads.
     procedure :: visit
   end type rig_steps_t
@@ -45,7 +45,7 @@ contains
               source=0.0_wp)
   end function create_rig_steps
 
-  !> Stops a layer that would pass its frame, and books the energy dissipated.
+  !> Stops a layer that would pass its frame, and records the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
     !> The frames
     class(rig_steps_t), intent(inout) :: self
@@ -93,10 +93,10 @@ contains
     end do
   end subroutine add_spring_forces
 
-  !> Books the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
+  !> Records the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
   !> the sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
-  !> (v_old**2 + v**2)/4), where the change of step length is booked with the force -k (u_old + h v_old).
-  pure subroutine book_springs(self, springs, steps, before, after)
+  !> (v_old**2 + v**2)/4), where the change of step length is recorded with the force -k (u_old + h v_old).
+  pure subroutine record_springs(self, springs, steps, before, after)
     !> The springs' state
     class(rig_steps_t), intent(inout) :: self
     !> Stiffness, (5, points)
@@ -114,7 +114,7 @@ contains
           steps%now*(old + new)*new - (steps%now - steps%last)/2*(old**2 + new**2)))
       end associate
     end do
-  end subroutine book_springs
+  end subroutine record_springs
 
   !> Saves or loads.
   subroutine visit(self, archive, owned, points)

@@ -123,7 +123,7 @@ contains
     call accelerate_by_tractions(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
     if (rigs%on_frame(p)) layer(3, n + 1) = rigs%approach(p)/steps%now
     if (prescribed) &
-      call book_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
+      call record_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
     call find_rates(n, stacks%height(p:q), layer, trial)
     v(:, p) = layer(:, 1)
     v(1:3, p + 1:q) = trial
@@ -178,8 +178,8 @@ contains
     end associate
   end subroutine stop_stack_at_frame
 
-  !> Books the reactions of lines on the layers of a stack.
-  pure subroutine book_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)
+  !> Records the reactions of lines on the layers of a stack.
+  pure subroutine record_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)
     !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Index of the stack
@@ -205,5 +205,5 @@ contains
                                                  force(:, l) + traction_resultant(size(forces, 2), height, forces, l))
       end do
     end associate
-  end subroutine book_reactions
+  end subroutine record_reactions
 end module stack_motions

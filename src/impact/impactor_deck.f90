@@ -21,25 +21,25 @@ module impactor_deck
   character(len=*), parameter :: key_energy = 'energy'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
-    'impactor | optional | The rigid impactor that strikes the plate, in its middle or elsewhere.'
+    'impactor | optional | The rigid impactor, and the point that it strikes.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
     'impactor | mass | real | 1 | mass | none | > 0 | &
-      &Mass of the whole impactor, also under symmetry; needed unless travel is given.', &
+      &Mass of the full impactor, also under symmetry; needed unless travel is given.', &
     'impactor | velocity | real | 1 | length/time | = sqrt(2 energy/mass) | >= 0 | &
       &Speed towards the plate at first contact.', &
     'impactor | at | real | 2 | length | none | any | &
-      &The struck point from the plate''s centre, its default; patch, core, zones and starters go with it.', &
+      &The struck point, from the plate''s centre (default); patch, core, zones and starters are centred on it.', &
     'impactor | energy | real | 1 | energy | none | >= 0 | &
-      &Kinetic energy of the whole impactor at first contact, instead of velocity.', &
+      &Kinetic energy of the full impactor at first contact, instead of velocity.', &
     'impactor | travel | real | 1 | length | none | > 0 | &
-      &Travel from first contact at the end of load steps, or prescribed in time with central differences.', &
+      &Prescribed displacement of the impactor after first contact, at the end of load steps or of an explicit run.', &
     'impactor | rise | real | 1 | time | = end/4 | >= 0 | &
-      &Time in which the velocity of a travel in time rises smoothly to its constant value.', &
+      &Time in which the prescribed velocity of the impactor rises smoothly to its constant value.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k isn''t given.', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
-      &Where its force presses: on the patch, or also beside it where the plate has come near a spherical nose.', &
+      &Area on which the contact force acts: the patch, or that in contact with a spherical nose if it is larger.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
       &Acceleration of gravity along the impact, positive towards the plate.', &
     'impactor | integrator | choice | 1 | - | ''gear4'' | gear4 trapezoidal central conserving | &

@@ -17,11 +17,11 @@ module indentation_deck
   character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k', key_alpha_critical = 'alpha_cr'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: indentation_group_row = &
-    'indentation | optional | Contact force against indentation; left out: elastic Hertz, k by Sun''s formula.'
+    'indentation | optional | Law of contact force and indentation; left out: elastic Hertz, k by Sun''s formula.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: indentation_rows(*) = [character(len=key_row_length) :: &
     'indentation | law | choice | 1 | - | ''tan_sun'' | tan_sun hertz thornton | &
-      &After Tan and Sun, elastic Hertz both ways, or elastic-plastic after Thornton.', &
+      &Tan and Sun''s law with a permanent dent, elastic law of Hertz, or elastic-plastic law of Thornton.', &
     'indentation | k | real | 1 | force/length^1.5 | = Sun''s formula | > 0 | &
       &Contact stiffness in F = k alpha^1.5.', &
     'indentation | impactor_E | real | 1 | pressure | = rigid | > 0 | &
@@ -33,7 +33,7 @@ module indentation_deck
     'indentation | reload | real | 1 | - | 1.5 | >= 1.5, <= 10 | &
       &Exponent of reloading after separation.', &
     'indentation | beta | real | 1 | - | 0.094 | >= 0, < 1 | &
-      &Slope of Tan and Sun''s dent.', &
+      &Slope of the permanent dent against the largest indentation, after Tan and Sun.', &
     'indentation | alpha_cr | real | 1 | length | none | > 0 | &
       &Indentation above which a dent remains; needed except with law = ''hertz''.', &
     'indentation | dent | choice | 1 | - | ''tan_sun'' | tan_sun yang_sun | &

@@ -31,17 +31,17 @@ module interface_columns
   character(len=result_row_length), parameter, public :: border_rows(*) = [character(len=result_row_length) :: &
     'border_reached | logical | - | 1 once a front or damage has reached the border of its zone, beyond which it &
       &cannot grow; else 0.', &
-    'projected_area | real | area | Area that a C-scan sees: where several interfaces have delaminated above each &
-      &other, the largest of them counts once.']
+    'projected_area | real | area | Delaminated area in projection, as in a C-scan: interfaces above each other &
+      &count once, with the largest delaminated fraction.']
 
   !> Columns per interface: N is its ply.
   character(len=result_row_length), parameter, public :: interface_rows(*) = [character(len=result_row_length) :: &
     'stage_below_N | integer | - | The interface below ply N, starter left out: 0 intact, 1 a cohesive law has begun &
-      &to soften, 2 grown. These columns come for each interface.', &
+      &to soften, 2 grown.', &
     'area_below_N | real | area | Delaminated area of the interface below ply N, its starter included; with a cohesive &
       &law the area dissipated.', &
-    'energy_below_N | real | energy | Fracture energy taken by the interface below ply N.', &
-    'extent_x_below_N | real | length | Length along x of what has delaminated below ply N, starter included: cells, &
+    'energy_below_N | real | energy | Fracture energy of the interface below ply N.', &
+    'extent_x_below_N | real | length | Extent along x of the delamination below ply N, starter included: cells, &
       &or nodes where a cohesive law has failed.', &
     'extent_y_below_N | real | length | The same along y.', &
     'layered_below_N | real | area | Area of the zone of layers at the interface below ply N.']

@@ -23,22 +23,22 @@ module interface_fields
   !> The fields. A new one needs a row here, its output below, and a choice of &output.
   character(len=result_row_length), parameter, public :: interface_field_rows(*) = &
     [character(len=result_row_length) :: &
-    'jump | points | length | '//field_gap//' | &delamination | Displacement below less that above the interface on &
-      &top of a layer; its z is the gap.', &
+    'jump | points | length | '//field_gap//' | &delamination | Relative displacement across the interface on top of &
+      &a layer, lower minus upper surface; its z component is the gap.', &
     'contact_pressure | points | pressure | '//field_contact_pressure//' | &delamination | Contact pressure in the &
       &interface on top of a layer.', &
     'delaminated_above | cells | - | '//field_delamination//' | &delamination | 1 in elements whose interface on top &
-      &has delaminated, else 0; with a cohesive law the dissipated part of its toughness.', &
+      &has delaminated, else 0; with a cohesive law the dissipated fraction of its toughness.', &
     'damage_above | points | - | '//field_delamination//' | &delamination | Damage of the cohesive interface on top of &
-      &a layer: part of its stiffness that is lost, 0 to 1; 0 where fronts release ties.', &
-    'dissipated_above | points | - | '//field_delamination//' | &delamination | Share of the toughness that the &
-      &cohesive interface on top of a layer has dissipated, 0 to 1: its integral is the delaminated area.', &
-    'shear_share_above | points | - | '//field_delamination//' | &delamination | Share of shear in the energy of the &
-      &jumps of the cohesive interface on top of a layer.', &
+      &a layer: relative loss of its stiffness, 0 to 1; 0 where fronts release ties.', &
+    'dissipated_above | points | - | '//field_delamination//' | &delamination | Fraction of the toughness &
+      &dissipated by the cohesive interface on top of a layer, 0 to 1: its integral is the delaminated area.', &
+    'shear_share_above | points | - | '//field_delamination//' | &delamination | Fraction of shear in the energy of &
+      &the cohesive interface on top of a layer (mode mixture).', &
     'energy_release_above | cells | - | '//field_energy_release//' | &delamination | G/G_c of the interface on top in &
       &the intact elements next to a front, 0 elsewhere.', &
-    'onset_index | cells | - | '//field_onset//' | - | Largest interlaminar stress over strength, shear and opening as &
-      &squares, in and on top of an element, by equilibrium through the thickness of joined layers.', &
+    'onset_index | cells | - | '//field_onset//' | - | Largest index of interlaminar stress in and on top of an &
+      &element, quadratic in shear and opening over their strengths; stresses by equilibrium through tied layers.', &
     'onset_ply | cells | - | '//field_onset//' | - | Ply above the interface where onset_index is reached; 0 if no &
       &strength is known.']
 

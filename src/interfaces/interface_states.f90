@@ -45,7 +45,7 @@ module interface_states
     procedure :: keep_contact_closed
     !> Work of contact and penalty ties in a step.
     procedure :: contact_work
-    !> Energy booked as fracture energy but not released by fronts.
+    !> Energy recorded as fracture energy but not released by fronts.
     procedure :: unreleased
     !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
@@ -227,7 +227,7 @@ contains
     end function in_delaminated_cell
   end function delaminated_areas
 
-  !> Energy booked as fracture energy but not released by fronts in equilibrium, which is not an error of the
+  !> Energy recorded as fracture energy but not released by fronts in equilibrium, which is not an error of the
   !> integrator.
   pure real(wp) function unreleased(self, model)
     !> The state

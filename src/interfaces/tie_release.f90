@@ -33,8 +33,8 @@ module tie_release
     procedure :: ramp_down
     !> Adds the forces to a residual.
     procedure :: add_to_residual
-    !> Books the work against the forces in a step.
-    procedure :: book
+    !> Records the work against the forces in a step.
+    procedure :: record
     !> Saves or loads.
     procedure :: visit
   end type tie_release_t
@@ -149,10 +149,10 @@ contains
     end do
   end subroutine add_to_residual
 
-  !> Books the work against the forces in a step: that of the step with the force at its end, and the energy released
+  !> Records the work against the forces in a step: that of the step with the force at its end, and the energy released
   !> with the mean of the forces at its start and end. For ties released in this step the difference is that of
   !> `first_opening`.
-  subroutine book(self, model, old, change, taken)
+  subroutine record(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -180,7 +180,7 @@ contains
     sums = sums*model%mesh%multiplicity
     taken = sums(1)
     self%set_free = self%set_free + sums(2:)
-  end subroutine book
+  end subroutine record
 
   !> Saves or loads.
   subroutine visit(self, archive, model)

@@ -136,7 +136,7 @@ contains
     type(band_state_t), intent(inout) :: new
     type(softening_t) :: signs(2, 2)
     type(remaining_t) :: left
-    real(wp) :: before(2), share(2), booked(energy_modes)
+    real(wp) :: before(2), share(2), recorded(energy_modes)
     integer :: round, i
 
     do round = 1, max_iterations
@@ -153,13 +153,14 @@ contains
     share = 0
     if (band%crack_closure) share = compressed_share(band%elasticity, strains, left)
     do i = 1, 2
-      booked = 0
-      booked(signs(2, i)%mode) = dissipated_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), new%closed(i))
+      recorded = 0
+      recorded(signs(2, i)%mode) = dissipated_by(signs(2, i), (1 - band%remainder)*share(i), old%closed(i), &
+                                                 new%closed(i))
       associate (fall => more_damaged(signs(:, i)))
-        booked(fall%mode) = booked(fall%mode) &
+        recorded(fall%mode) = recorded(fall%mode) &
                             + dissipated_by(fall, (1 - band%remainder)*(1 - share(i)), old%damage(i), new%damage(i))
       end associate
-      new%dissipated = new%dissipated + booked
+      new%dissipated = new%dissipated + recorded
     end do
     if (band%crack_closure) &
       new%recovered = find_recovered(band%elasticity, strains%mean, remaining_fractions(band, strains, new))
@@ -203,8 +204,8 @@ contains
       end if
     end do
     new%shear_damage = loss_at(least)
-    associate (modulus => band%elasticity%g12, beta => band%shear_beta, booked => new%dissipated(matrix_compression))
-      booked = booked + (energy_of_loss(modulus, beta, new%shear_damage) &
+    associate (modulus => band%elasticity%g12, beta => band%shear_beta, recorded => new%dissipated(matrix_compression))
+      recorded = recorded + (energy_of_loss(modulus, beta, new%shear_damage) &
                          - energy_of_loss(modulus, beta, old%shear_damage))
     end associate
 

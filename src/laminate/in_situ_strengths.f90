@@ -43,7 +43,7 @@ contains
     material%s12 = strengths(2)
   end function material_in_place
 
-  !> Strengths by which cracks of a ply along its fibres are judged on all planes.
+  !> Strengths of a ply in the criterion for cracks along its fibres, on all planes.
   pure function crack_strengths(plies, ply, materials, damage) result(strengths)
     !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)

@@ -39,7 +39,7 @@ module laminate_deck
     'laminate | ply_thickness | real | 1 | length | none | > 0 | &
       &Thickness of every ply of stacking.', &
     'laminate | shear_correction | choice | 1 | - | = energy if shear moduli differ tenfold, else 5/6 | 5/6 energy | &
-      &Reduction of the transverse shear stiffness: a factor, or equal shear energy.']
+      &Correction of the transverse shear stiffness: the factor 5/6, or equal shear energy.']
 
 contains
 

@@ -83,8 +83,8 @@ module material_deck
 
   !> Keys of an orthotropic material that have to be there, and all of them.
   character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
-  !> Largest ratio of two moduli of a material; rounding spoils the result beyond: with the slenderness of a plate it
-  !> leaves few of sixteen digits.
+  !> Largest ratio of two moduli of a material; beyond it round-off dominates the result: with the slenderness of a
+  !> plate it leaves few of sixteen digits.
   real(wp), parameter :: max_contrast = 1.0e6_wp
 
 contains
@@ -148,7 +148,7 @@ contains
       call report(settings, problems, material_group, '', material_objection(material)//'.', place)
     else if (contrast(material) > max_contrast) then
       call report(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
-                to_text(max_contrast)//', where rounding spoils the result.', place)
+                to_text(max_contrast)//', where round-off dominates.', place)
     end if
     material%shear_beta = shear_coefficient(material%g12, material%s12, &
                                             settings%real_of(material_group, key_shear_strain, place))

@@ -27,7 +27,7 @@ module material_parameters
     real(wp) :: g12 = 0, g13 = 0, g23 = 0
     !> Poisson's ratios; nu21 follows from reciprocity
     real(wp) :: nu12 = 0, nu23 = 0
-    !> Tensile and compressive strength along the fibres; no XC: compression is judged by XT (Table 1)
+    !> Tensile and compressive strength along the fibres; without XC, XT applies in compression (Table 1)
     real(wp) :: xt = 0, xc = 0
     !> Tensile and compressive strength across the fibres
     real(wp) :: yt = 0, yc = 0

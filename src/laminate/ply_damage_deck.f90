@@ -26,13 +26,13 @@ module ply_damage_deck
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck | &
       &Set of failure criteria: those of Hou et al. (2000), of Hashin (1980) or of Puck (1998).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
-      &Where in a ply the stresses are taken: its mid-plane, or the worse of its faces.', &
+      &Where in a ply stresses are evaluated: its mid-plane, or the face with the higher failure index.', &
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
-      &YT and S12 of each block of plies follow from its thickness, G_mt and G_mc (in-situ strengths).', &
+      &Whether YT and S12 are in-situ strengths, from the thickness of each block of plies, G_mt and G_mc.', &
     'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
-      &Shear strain beyond s12/G12 stays when a ply with shear_failure_strain is unloaded, which leaves a dent.', &
+      &Whether nonlinear shear strain (shear_failure_strain) is permanent after unloading, which leaves a dent.', &
     'ply_damage | crack_closure | logical | 1 | - | .false. | .true. .false. | &
-      &What tension has cracked along or across the fibres carries compression again.']
+      &Whether plies that failed in tension, along or across the fibres, carry compression again.']
 
 contains
 

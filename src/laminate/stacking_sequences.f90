@@ -13,7 +13,7 @@ module stacking_sequences
   !> Largest plausible angle; a larger number may be a lost subscript, as in 302 for 30_2.
   real(wp), parameter, public :: usual_degrees = 180
   !> How plies of one angle are counted.
-  character(len=*), parameter, public :: count_hint = 'a count of plies stands behind _, as in 0_2'
+  character(len=*), parameter, public :: count_hint = 'a count of plies follows _, as in 0_2'
   character(len=*), parameter :: digits = '0123456789'
   !> The signs of a pair of plies as one character of UTF-8, and the minus of typesetters.
   character(len=*), parameter :: plus_minus = char(194)//char(177), typeset_minus = char(226)//char(136)//char(146)
@@ -143,7 +143,7 @@ contains
         call step(reader, 1)
       case ('_')
         call step(reader, 1)
-        if (scan(next(reader), digits//'sStT') == 0) call object(reader, 'a count, s or T should stand behind _')
+        if (scan(next(reader), digits//'sStT') == 0) call object(reader, 'a count, s or T is expected after _')
       case default
         call read_count(reader, count)
         if (reader%fault == '') angles = repeated(angles, count)
@@ -180,7 +180,7 @@ contains
       if (index(number, typeset_minus) == 1) then
         call object(reader, 'this is a Unicode minus; write -')
       else
-        call object(reader, 'an angle should stand, such as 45, -45 or +-45')
+        call object(reader, 'an angle is expected, such as 45, -45 or +-45')
       end if
       return
     end if
@@ -221,7 +221,7 @@ contains
     status = 1
     if (last > 0 .and. last <= 4) read (number(:last), *, iostat=status) count
     if (status /= 0 .or. count < 1 .or. count > max_plies) then
-      call object(reader, 'a count from 1 to '//to_text(max_plies)//' should stand')
+      call object(reader, 'a count from 1 to '//to_text(max_plies)//' is expected')
       return
     end if
     call step(reader, last)

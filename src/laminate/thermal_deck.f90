@@ -16,11 +16,11 @@ module thermal_deck
   character(len=*), parameter, public :: thermal_group = 'thermal'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: thermal_group_row = &
-    'thermal | optional | Residual stress of plies that were joined at another temperature.'
+    'thermal | optional | Residual stress of the cure.'
   !> Row of the key.
   character(len=key_row_length), parameter, public :: thermal_rows(*) = [character(len=key_row_length) :: &
     'thermal | delta_T | real | 1 | temperature | required | any | &
-      &Temperature less that at which the plies had no stress; negative after cooling from the cure.']
+      &Temperature minus the stress-free temperature; negative after cooling from the cure.']
 
 contains
 

@@ -26,7 +26,7 @@ module mesh_deck
     'mesh | elements | integer | 2 | - | = by &case accuracy | >= 2, <= 2000 | &
       &Elements along x and y of the modelled part.', &
     'mesh | grading | real | 1 | - | 0 | >= 0, <= 1000 | &
-      &Largest over smallest element edge outside the patch; 0: sizes change smoothly.', &
+      &Ratio of the largest to the smallest element edge outside the patch; 0: chosen for smooth growth.', &
     'mesh | patch | real | 1 | length | 0 | >= 0 | &
       &Side of the loaded square centred on the struck point; an impactor needs one.', &
     'mesh | core | real | 2 | length | none | > 0 | &
@@ -34,9 +34,9 @@ module mesh_deck
     'mesh | cell | real | 1 | length | none | > 0 | &
       &Side of the elements in the core; outside sizes grow smoothly or by `grading`.', &
     'mesh | lines_x | real | 1 or more | length | none | any | &
-      &Coordinates x from the centre that lines of the mesh are moved to, on both sides: the edges of a later rig.', &
+      &Distances from the centre along x at which mesh lines are placed on both sides, as for another deck''s rig.', &
     'mesh | lines_y | real | 1 or more | length | none | any | &
-      &Coordinates y from the centre that lines of the mesh are moved to, on both sides: the edges of a later rig.']
+      &Distances from the centre along y at which mesh lines are placed on both sides, as for another deck''s rig.']
 
 contains
 

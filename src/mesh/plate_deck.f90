@@ -10,7 +10,7 @@ module plate_deck
   use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, edge_elastic, symmetry_none, &
                              symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_halved, &
                              has_symmetric_imperfection
-  use plate_options, only: steepest
+  use plate_options, only: max_slope
   use text, only: line_t, lower_case, rounded_text, to_text
   implicit none
   private
@@ -21,7 +21,7 @@ module plate_deck
                                          key_imperfection = 'imperfection', key_half_waves = 'half_waves'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: plate_group_row = &
-    'plate | required | The plate: size, supports and the part of it that is modelled.'
+    'plate | required | The plate: size, edges, imperfection and symmetry.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
@@ -29,15 +29,15 @@ module plate_deck
     'plate | edges | choice | 1 or 4 | - | required | clamped simple free elastic | &
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
     'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &
-      &Force per length of an elastic edge and deflection of it; left out: it holds the deflection.', &
+      &Stiffness of an elastic edge against deflection, force per length and deflection; left out: rigid.', &
     'plate | edge_rotation_stiffness | real | 1 | force | none | > 0 | &
-      &Moment per length of an elastic edge and rotation about it; left out: it rotates freely.', &
+      &Stiffness of an elastic edge against rotation, moment per length and angle; left out: free rotation.', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
-      &Whether the supported edges also fix in-plane motion.', &
+      &Whether supported edges also constrain in-plane displacements.', &
     'plate | imperfection | real | 1 | length | none | any | &
-      &Amplitude of the deflection that the plate has without stress.', &
+      &Amplitude of the initial, stress-free deflection.', &
     'plate | half_waves | integer | 2 | - | none | >= 1, <= 100 | &
-      &Half waves of that deflection over the lengths along x and y; left out: one along each.', &
+      &Number of half waves of the initial deflection along x and y; left out: one along each.', &
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
       &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of a plate with point symmetry.']
 
@@ -107,13 +107,13 @@ contains
     slope = 0
     if (settings%is_known(plate_group, key_length)) &
       slope = abs(plate%imperfection)*pi*maxval(plate%half_waves/plate%length)
-    if (slope > steepest) call remark(settings, problems, plate_group, key_imperfection, 'has a slope of '// &
-                                      rounded_text(slope)//', and the strains assume up to '//to_text(steepest)//'.')
+    if (slope > max_slope) call remark(settings, problems, plate_group, key_imperfection, 'has a slope of '// &
+                                      rounded_text(slope)//', and the strains assume up to '//to_text(max_slope)//'.')
     ! A plate with point symmetry has equal opposite edges.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &
       call report(settings, problems, plate_group, key_length, 'one side is more than '//to_text(max_aspect_ratio)// &
-                ' times the other; such a strip is no plate.')
+                ' times the other; such a strip is not a plate.')
     if (plate%edges(1) /= plate%edges(2) .and. halved(1) .or. plate%edges(3) /= plate%edges(4) .and. halved(2)) &
       call report(settings, problems, plate_group, 'edges', 'symmetry = '''// &
                 lower_case(settings%text_of(plate_group, key_symmetry))//''' needs the same support at opposite edges.')

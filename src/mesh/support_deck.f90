@@ -32,18 +32,18 @@ module support_deck
       &Lengths along x and y of a rectangular window; its edges become lines of the mesh.', &
     'support | radius | real | 1 | length | none | > 0 | &
       &Radius of a circular window.', &
-    'support | unilateral | logical | 1 | - | .false. | - | &
+    'support | unilateral | logical | 1 | - | .false. | .true. .false. | &
       &Whether the plate may lift off the frame, which then supports it by pressure only.', &
     'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
-      &What supports the plate: the edge of the window, a simple support, or all of the frame''s face.', &
+      &Where a frame supports the plate: at the edge of its window, as a simple support, or over its face.', &
     'support | sides | choice | 1 | - | = as bearing | edge face | &
-      &The same for the sides of a rectangular window, those along x, where they differ from its ends.', &
+      &bearing of the sides along x of a rectangular window, if it differs from that of the ends.', &
     'support | clamps | real | 1 or more | length | none | any | &
       &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
     'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &
       &Stiffness of each clamp along u, v and w; left out: clamps are rigid.', &
     'support | clamp_force | real | 1 | force | none | > 0 | &
-      &Force with which each clamp presses the plate on the frame below it, where more lifts it; left out: no limit.']
+      &Force of each clamp on the plate; a larger lifting force opens the clamp. Left out: no limit.']
 
 contains
 
@@ -182,7 +182,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (support%shape == window_rectangle .and. any(support%window > plate%length)) then
-      call report(settings, problems, group, key_window, 'is larger than the plate, which would fall through; '// &
+      call report(settings, problems, group, key_window, 'is larger than the plate, which would not be supported; '// &
                 'allowed: up to '//to_text(plate%length(1))//', '//to_text(plate%length(2))//'.', place)
     else if (support%shape == window_circle .and. 2*support%radius > minval(plate%length)) then
       call report(settings, problems, group, key_window_radius, 'is larger than half the plate''s width; allowed: '// &
@@ -212,7 +212,8 @@ contains
     else if (allocated(support%clamps)) then
       if (any([(any(abs(support%clamps(:, i)) > plate%length/2), i=1, size(support%clamps, 2))])) &
         call report(settings, problems, group, key_clamps, 'a clamp lies off the plate; allowed: up to '// &
-                  to_text(plate%length(1)/2)//', '//to_text(plate%length(2)/2)//' either way from its centre.', place)
+                  to_text(plate%length(1)/2)//', '//to_text(plate%length(2)/2)// &
+                  ' in both directions from its centre.', place)
     end if
   end subroutine check_clamps
 

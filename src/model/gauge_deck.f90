@@ -16,13 +16,13 @@ module gauge_deck
   character(len=*), parameter :: group = 'gauge'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: gauge_group_row = &
-    'gauge | several | A strain gauge on a surface of the plate, a column of the history; one group a gauge.'
+    'gauge | several | A strain gauge on a surface of the plate, written as a column of the history.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: gauge_rows(*) = [character(len=key_row_length) :: &
     'gauge | at | real | 2 | length | required | any | &
       &Point from the plate''s centre, x and y.', &
     'gauge | face | choice | 1 | - | ''front'' | front back | &
-      &Surface that it is on: the struck one or the one opposite to it.', &
+      &Surface of the gauge: the struck one (front) or the opposite one (back).', &
     'gauge | angle | real | 1 | degree | 0 | >= -360, <= 360 | &
       &Direction of the strain from x.']
 
@@ -60,7 +60,7 @@ contains
       if (.not. are_clear(settings, problems, group, 'at', place)) cycle
       if (any(abs(all(place)%at) > length/2)) &
         call report(settings, problems, group, 'at', 'the gauge lies off the plate; allowed: up to '// &
-                  to_text(length(1)/2)//', '//to_text(length(2)/2)//' either way from its centre.', place)
+                  to_text(length(1)/2)//', '//to_text(length(2)/2)//' in both directions from its centre.', place)
     end do
   end subroutine check_gauges
 end module gauge_deck

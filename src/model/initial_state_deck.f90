@@ -12,13 +12,13 @@ module initial_state_deck
   character(len=*), parameter, public :: initial_state_group = 'initial_state', key_from = 'from'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: initial_state_group_row = &
-    'initial_state | optional | The state that another run has left, from which this one begins under other loads.'
+    'initial_state | optional | Initial state from the checkpoint of another run, such as compression after impact.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: initial_state_rows(*) = [character(len=key_row_length) :: &
     'initial_state | from | text | 1 | - | required | not empty | &
-      &Checkpoint NAME_restart.h5 that the other run has left, from the working directory.', &
+      &Checkpoint NAME_restart.h5 of the other run; the path is relative to the working directory.', &
     'initial_state | motion | choice | 1 | - | ''rest'' | rest kept | &
-      &Whether the plate begins at rest or with the velocities that it had.']
+      &Whether the plate starts at rest, or with the velocities of the checkpoint.']
 
 contains
 

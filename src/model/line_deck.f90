@@ -18,7 +18,7 @@ module line_deck
   character(len=*), parameter :: value_keys(4) = [character(len=12) :: 'force', 'displacement', 'moment', 'rotation']
   !> Row of the group.
   character(len=group_row_length), parameter, public :: line_group_row = &
-    'line | several | A line across the plate that holds it, moves it or presses on it; one group a line.'
+    'line | several | A line across the plate with a support, a prescribed displacement or a load.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: line_rows(*) = [character(len=key_row_length) :: &
     'line | at | real | 1 | length | required | any | &
@@ -26,21 +26,21 @@ module line_deck
     'line | direction | choice | 1 | - | ''y'' | x y | &
       &Direction in which the line runs, from edge to edge of the plate.', &
     'line | layer | integer | 1 | - | none | >= 1, <= 1000 | &
-      &Layer that it acts on at its middle surface, 1 the uppermost of those stacked there; left out: all of them.', &
+      &Layer on whose mid-surface the line acts, counted from the struck face; left out: all layers.', &
     'line | component | choice | 1 | - | ''w'' | u v w theta_x theta_y | &
-      &Component of the motion that is held, moved or loaded.', &
+      &Displacement or rotation that is supported, prescribed or loaded.', &
     'line | force | real | 1 | force | none | any | &
-      &Force on the whole line along u, v or w.', &
+      &Total force on the line, in the direction of u, v or w.', &
     'line | displacement | real | 1 | length | none | any | &
       &Displacement u, v or w of the line; 0 is a support.', &
     'line | moment | real | 1 | energy | none | any | &
-      &Moment on the whole line that turns theta_x or theta_y.', &
+      &Total moment on the line, acting on theta_x or theta_y.', &
     'line | rotation | real | 1 | radian | none | any | &
       &Rotation theta_x or theta_y of the line.', &
     'line | history | choice | 1 | - | ''ramp'' | ramp fixed | &
-      &In proportion to the load factor, in a run in time to the time over its end, or there from the start.', &
+      &ramp: in proportion to the load factor, in time to time/end; fixed: full value from the start.', &
     'line | rise | real | 1 | time | 0 | >= 0 | &
-      &Time in which a line sets in smoothly: the velocity of a ramp rises, a fixed value is reached; 0: at once.']
+      &Smooth start: time in which the velocity of a ramp rises, or a fixed value is reached; 0: sudden.']
 
 contains
 

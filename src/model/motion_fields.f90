@@ -15,10 +15,10 @@ module motion_fields
   character(len=result_row_length), parameter, public :: motion_field_rows(*) = [character(len=result_row_length) :: &
     'displacement | points | length | '//field_displacement//' | - | Displacement u, v, w of each layer where z is 0, &
       &the mid-plane of the laminate; w is positive along the impact.', &
-    'rotation_1 | points | radian | '//field_rotation//' | - | Rotation of the layer''s normal towards x: u grows by &
-      &it per z.', &
-    'rotation_2 | points | radian | '//field_rotation//' | - | Rotation of the layer''s normal towards y: v grows by &
-      &it per z.', &
+    'rotation_1 | points | radian | '//field_rotation//' | - | Rotation theta_x of the layer''s normal towards x: &
+      &u(z) = u + z theta_x.', &
+    'rotation_2 | points | radian | '//field_rotation//' | - | Rotation theta_y of the layer''s normal towards y: &
+      &v(z) = v + z theta_y.', &
     'velocity | points | length/time | '//field_velocity//' | - | Velocity, the rate of the displacement.']
 
 contains

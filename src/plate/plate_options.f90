@@ -9,7 +9,7 @@ module plate_options
   !> Strains: linear, or von Karman's (squares of the slopes kept).
   integer, parameter, public :: kinematics_linear = 1, kinematics_von_karman = 2
   !> Largest rotation with a cosine of about 1, as assumed by von Karman's strains: the error is 2 %.
-  real(wp), parameter, public :: steepest = 0.2_wp
+  real(wp), parameter, public :: max_slope = 0.2_wp
   !> Mass: consistent, or lumped at the nodes by nodal quadrature.
   integer, parameter, public :: mass_consistent = 1, mass_lumped = 2
 end module plate_options

@@ -15,8 +15,10 @@ module ply_columns
     'matrix_crushings | integer | - | Plies of elements whose matrix was crushed, counted over the full plate.', &
     'energy_fibre_tension | real | energy | Part of energy_ply_damage by fibre failure in tension.', &
     'energy_fibre_compression | real | energy | Part of energy_ply_damage by fibre failure in compression.', &
-    'energy_matrix_cracking | real | energy | Part of energy_ply_damage by matrix cracking in transverse tension.', &
-    'energy_matrix_crushing | real | energy | Part of energy_ply_damage by matrix failure in transverse compression.']
+    'energy_matrix_cracking | real | energy | Part of energy_ply_damage by matrix cracking in transverse tension &
+      &and shear.', &
+    'energy_matrix_crushing | real | energy | Part of energy_ply_damage by matrix failure in transverse compression &
+      &and shear.']
 
   !> Permanent strains of softening plies.
   character(len=result_row_length), parameter, public :: permanent_rows(*) = [character(len=result_row_length) :: &

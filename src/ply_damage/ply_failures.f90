@@ -48,8 +48,8 @@ module ply_failures
     procedure :: find_forces
     !> Forces of the elements on the layers, with softening plies.
     procedure :: add_layer_forces
-    !> Books the energy dissipated by softening in a step, and measures the lag of damage.
-    procedure :: book
+    !> Records the energy dissipated by softening in a step, and measures the lag of damage.
+    procedure :: record
     procedure :: measure_lag
     !> Computes the energy dissipated by softening plies so far.
     procedure :: total_dissipation
@@ -135,8 +135,8 @@ contains
     end if
   end subroutine add_layer_forces
 
-  !> Books the energy dissipated by softening in a step. Collective.
-  subroutine book(self, model, energy)
+  !> Records the energy dissipated by softening in a step. Collective.
+  subroutine record(self, model, energy)
     !> The failures with the trial of the step
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -149,7 +149,7 @@ contains
     energies = totals_of(model%communicator, self%bands%dissipation_sums())*model%mesh%multiplicity
     self%dissipated = self%dissipated + energies
     energy = sum(energies)
-  end subroutine book
+  end subroutine record
 
   !> Computes the energy dissipated by softening plies so far in each mode. Collective.
   subroutine total_dissipation(self, model)

@@ -22,13 +22,13 @@ module ply_fields
   character(len=result_row_length), parameter, public :: ply_field_rows(*) = [character(len=result_row_length) :: &
     'ply_N_failure | cells | - | '//field_ply_damage//' | &ply_damage | Failures of ply N: 1 fibre failure, 2 matrix &
       &cracking, 4 matrix crushing, added up.', &
-    'ply_N_damage_fibre'//damaged//'Part of E1 that ply N has lost.', &
-    'ply_N_damage_matrix'//damaged//'Part of E2 that ply N has lost.', &
+    'ply_N_damage_fibre'//damaged//'Relative loss of E1 of ply N, 0 to 1.', &
+    'ply_N_damage_matrix'//damaged//'Relative loss of E2 of ply N, 0 to 1.', &
     'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
     'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
     'ply_N_tau12'//middle//'In-plane shear stress, in the mid-plane of ply N.', &
-    'ply_N_tau13'//middle//'Shear stress between fibres and normal in ply N.', &
-    'ply_N_tau23'//middle//'Shear stress between the direction across the fibres and the normal in ply N.', &
+    'ply_N_tau13'//middle//'Transverse shear stress in the 1-3 plane, mean over ply N.', &
+    'ply_N_tau23'//middle//'Transverse shear stress in the 2-3 plane, mean over ply N.', &
     'ply_N_sigma11_top'//faces//'Stress along the fibres on the upper face of ply N, towards the struck face.', &
     'ply_N_sigma22_top'//faces//'Stress across the fibres on the upper face of ply N.', &
     'ply_N_tau12_top'//faces//'In-plane shear stress on the upper face of ply N.', &

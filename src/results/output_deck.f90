@@ -18,7 +18,7 @@ module output_deck
   character(len=*), parameter :: group = output_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: output_group_row = &
-    'output | settings | What is written, how often and where.'
+    'output | settings | Folder of the results, intervals of output, and fields.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: output_rows(*) = [character(len=key_row_length) :: &
     'output | directory | text | 1 | - | ''.'' | not empty | &
@@ -30,9 +30,9 @@ module output_deck
     'output | checkpoint_every | real | 1 | time | 0 | >= 0 | &
       &Time between checkpoints; 0: only at the end, or when a queue stops the run.', &
     'output | checkpoint_at_end | logical | 1 | - | .true. | .true. .false. | &
-      &Whether a run leaves its end as a checkpoint, from which &initial_state of another deck may begin.', &
+      &Whether a checkpoint is written at the end, from which &initial_state of another deck can start.', &
     'output | force_filter | real | 1 | 1/time | none | > 0 | &
-      &Corner frequency of a low pass, Butterworth of 4th order, that the column force_filtered has passed.', &
+      &Corner frequency of the low-pass filter of force_filtered, a Butterworth filter of 4th order.', &
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
       &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, separated by commas.']
 

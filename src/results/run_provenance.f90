@@ -42,10 +42,10 @@ contains
   pure function citation_of(version) result(citation)
     !> Version of Implam
     character(len=*), intent(in) :: version
-    !> The program, and the paper whose method it extends
+    !> The program with the year of its release, and the paper whose method it extends, as in CITATION.cff
     character(len=:), allocatable :: citation
 
-    citation = 'The Implam developers: Implam '//version//', low-velocity impact on composite laminates. '// &
+    citation = 'The Implam developers: Implam '//version//' (2026), low-velocity impact on composite laminates. '// &
                'Method: C. F. Li, N. Hu, Y. J. Yin, H. Sekine, H. Fukunaga, Composites Part A 33 (2002) 1055-1062.'
   end function citation_of
 

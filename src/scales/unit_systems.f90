@@ -4,7 +4,7 @@ module unit_systems
   use text, only: lower_case
   implicit none
   private
-  public :: is_odd, unit_that_fits, unit_name, system_named, base_units, decades_of
+  public :: is_unusual, unit_that_fits, unit_name, system_named, base_units, decades_of
 
   !> Kinds of quantities.
   integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
@@ -87,7 +87,7 @@ contains
   end function base_units
 
   !> True: a value in the units of a system is of no size that its kind of quantity has.
-  pure logical function is_odd(quantity, value, system)
+  pure logical function is_unusual(quantity, value, system)
     !> Kind of the quantity
     integer, intent(in) :: quantity
     !> The value
@@ -95,8 +95,8 @@ contains
     !> Index of the system
     integer, intent(in) :: system
 
-    is_odd = .not. in_range(quantity, value*size_of(quantity, unit_name(quantity, system)))
-  end function is_odd
+    is_unusual = .not. in_range(quantity, value*size_of(quantity, unit_name(quantity, system)))
+  end function is_unusual
 
   !> The unit in which a value would be of usual size, or an empty text if there is none.
   pure function unit_that_fits(quantity, value) result(name)

@@ -13,8 +13,8 @@ module dent_depths
 
   !> Columns of the history.
   character(len=result_row_length), parameter, public :: dent_rows(*) = [character(len=result_row_length) :: &
-    'dent_depth | real | length | Depth of the struck face at its deepest point below the plane of the surface 3 to 4 &
-      &radii of the nose away, with dent_indentation; meant for a plate at rest.', &
+    'dent_depth | real | length | Largest depth of the struck face below the plane of the surface 3 to 4 nose radii &
+      &away, dent_indentation included; for a plate at rest.', &
     'dent_indentation | real | length | Permanent indentation by the indentation law, a part of dent_depth.']
 
   !> Distances from the struck point, in radii of the nose, between which the plane is fitted: 24 and 32 mm for a nose

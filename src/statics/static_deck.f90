@@ -11,13 +11,13 @@ module static_deck
   character(len=*), parameter, public :: static_group = 'static', key_dissipation = 'dissipation'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: static_group_row = &
-    'static | optional | Load steps in equilibrium instead of time, by pressure and lines or by an impactor''s travel.'
+    'static | optional | Quasi-static load steps under pressure and lines, or under the travel of an impactor.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: static_rows(*) = [character(len=key_row_length) :: &
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
       &Number of equal load steps.', &
     'static | dissipation | real | 1 | energy | none | > 0 | &
-      &Energy dissipated by cohesive interfaces at which the run ends; given: steps are taken by it as damage grows.']
+      &Energy dissipated by cohesive interfaces at the end of the run; it controls the steps as damage grows.']
 
 contains
 

@@ -229,7 +229,7 @@ contains
       new%ledger%friction = old%ledger%friction + heat
       if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
       sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
-      call new%plies%book(model, damage)
+      call new%plies%record(model, damage)
       new%ledger%ply_damage = old%ledger%ply_damage + damage
       new%ledger%delamination = old%ledger%delamination + fracture
       excess = sums(1) - old%ledger%strain - sums(2)

@@ -1,6 +1,6 @@
 !> Steps by central differences: failures of plies, flaws of interfaces, and the ledger when output or a check is due.
 module explicit_steps
-  use central_difference_energies, only: book_energies
+  use central_difference_energies, only: record_energies
   use central_differences, only: central_difference_t
   use crack_flaws, only: update_flaws
   use damped_motions, only: damp_motion
@@ -40,7 +40,7 @@ contains
       call model%profile%enter('ply criteria')
       call now%plies%grow(model, now%motion%displacement)
       call model%profile%leave()
-      if (now%plies%softened) call method%book_failures(model, now)
+      if (now%plies%softened) call method%record_failures(model, now)
     end if
     if (modulo(now%step, steps_between_flaws) > 0) return
     call model%profile%enter('flaws')
@@ -79,7 +79,7 @@ contains
 
     if (allocated(model%nose)) &
       call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), method%impact%patch%offset)
-    call book_energies(method, model, now)
+    call record_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
     now%stress = struck_stress(model, now%motion%displacement)

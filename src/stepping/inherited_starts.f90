@@ -1,7 +1,7 @@
 !> Start of a run by central differences from the final state of another run: internal forces are computed from that
 !> state, supports and lines start from the present displacement, the ledger from the present energies.
 module inherited_starts
-  use central_difference_energies, only: book_energies
+  use central_difference_energies, only: record_energies
   use errors, only: error_t
   use initial_state_parameters, only: motion_rest
   use layer_switches, only: move_with_plate
@@ -36,7 +36,7 @@ contains
       call explicit%renew_forces(model, now)
       now%deflection = model%deflection(now%motion%displacement)
       now%patch_mean = now%contact_deflection(model)
-      call book_energies(explicit, model, now)
+      call record_energies(explicit, model, now)
       now%ledger%initial = now%ledger%initial + now%ledger%error()
       call stepper%complete_state(model, error)
     end associate

@@ -15,14 +15,14 @@ module line_columns
   character(len=result_row_length), parameter, public :: line_column_rows(*) = [character(len=result_row_length) :: &
     'load_factor | real | - | Ramps of lines, and the pressure of a static analysis, over their full values; only with &
       &&line.', &
-    'line_force_N | real | force | Force on the plate of the N-th &line, of the whole line, along its component; of a &
-      &rotation the moment.', &
+    'line_force_N | real | force | Total force on the plate of the N-th &line along its component; for a rotation the &
+      &moment.', &
     'line_displacement_N | real | length | Mean displacement or rotation of the N-th &line along its component.']
 
   !> Columns of a plate whose ends are compressed or pulled by lines.
   character(len=result_row_length), parameter, public :: end_rows(*) = [character(len=result_row_length) :: &
     'far_field_stress | real | pressure | Load over the width and thickness of the plate, positive in compression, the &
-      &mean of the ends that lines move; only with lines that move ends of the plate in its plane.', &
+      &mean of the ends that lines displace; only with lines that displace ends of the plate.', &
     'shortening | real | length | Reduction of the distance between the ends of the plate.', &
     'nominal_strain | real | - | Shortening over the length of the plate.']
 

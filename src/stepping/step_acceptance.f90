@@ -2,7 +2,7 @@
 module step_acceptance
   use kinds, only: wp
   use crack_flaws, only: update_flaws
-  use energy_balance, only: book_failures
+  use energy_balance, only: record_failures
   use errors, only: error_t, fail, exit_convergence
   use models, only: model_t
   use states, only: state_t
@@ -53,7 +53,7 @@ contains
     call model%profile%enter('ply criteria')
     call self%trial%plies%grow(model, self%trial%motion%displacement)
     call model%profile%leave()
-    if (self%trial%plies%softened) call book_failures(model, self%now, self%trial)
+    if (self%trial%plies%softened) call record_failures(model, self%now, self%trial)
     call update_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
     call self%kind%complete_trial(self, model)
     associate (interfaces => self%trial%interfaces)

@@ -12,7 +12,7 @@ module step_columns
 
   !> Motion of impactor and plate. These columns and their order are the public interface.
   character(len=result_row_length), parameter, public :: motion_rows(*) = [character(len=result_row_length) :: &
-    'time | real | time | Time at the end of the step; in a static analysis the load over the full load.', &
+    'time | real | time | Time at the end of the step; in a static analysis the load relative to the full load.', &
     'step | integer | - | Accepted steps so far.', &
     'force | real | force | Contact force between impactor and plate, positive where they press on each other.', &
     'indentation | real | length | Displacement of the impactor less the mean deflection of the patch; &
@@ -27,34 +27,34 @@ module step_columns
       &at first contact.', &
     'energy_kinetic | real | energy | Kinetic energy of the plate.', &
     'energy_strain | real | energy | Strain energy of the plate with its damaged stiffness.', &
-    'energy_indentation | real | energy | Work of the contact force on the indentation so far, stored and lost.', &
-    'energy_delamination | real | energy | Fracture energy of the delaminated cells: critical energy release &
-      &rate times area.', &
+    'energy_indentation | real | energy | Work of the contact force on the indentation, stored and dissipated.', &
+    'energy_delamination | real | energy | Fracture energy of delaminations: dissipated by cohesive laws, &
+      &or critical energy release rate times area of the cells released by fronts.', &
     'energy_ply_damage | real | energy | Energy dissipated by the failure of plies.', &
-    'energy_contact | real | energy | Energy lost as surfaces, or plate and frame, meet: minus the work of &
-      &contact forces; with penalty ties also their energy.', &
+    'energy_contact | real | energy | Energy lost in contact of surfaces, and of plate and frame: minus the &
+      &work of contact forces; with penalty ties also their energy.', &
     'energy_algorithmic | real | energy | Algorithmic (numerical) dissipation by time integrators, implicit &
       &interface forces and released ties, without the energy_delamination of fronts.', &
     'energy_error | real | energy | Energy imbalance: the sum of the eight energies before, &
-      &energy_friction, energy_layers and energy_damping, less work_external and the energy at the start.']
+      &energy_friction, energy_layers and energy_damping, minus work_external and the energy at the start.']
 
   !> Other quantities of the state, and the length of the step.
   character(len=result_row_length), parameter, public :: step_rows(*) = [character(len=result_row_length) :: &
     'patch_deflection | real | length | Mean deflection of the patch since first contact, along the impact.', &
-    'work_external | real | energy | Work so far of pressure and lines, and of what moves an impactor whose travel &
-      &is given.', &
+    'work_external | real | energy | Work so far of pressure and lines, and of the force that moves an impactor &
+      &with a prescribed travel.', &
     'step_length | real | time | Length of the step; 0 in a static analysis.', &
-    'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged laminate around the struck point, which the &
-      &adaptive step follows.']
+    'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged laminate around the struck point, used by &
+      &rule = ''stress_rate'' of &adapt.']
 
   !> Iterations.
   character(len=result_row_length), parameter, public :: iteration_rows(*) = [character(len=result_row_length) :: &
-    'iterations | integer | - | Corrections of the displacement in the step; after growth those of its last &
-      &computation.', &
+    'iterations | integer | - | Corrections of the displacement in the step; after growth of fronts those &
+      &of its last solution.', &
     'force_iterations | integer | - | Newton and bisection steps for the contact force in the step, &
-      &counted likewise.', &
+      &counted as `iterations`.', &
     'contact_iterations | integer | - | Updates of contact pressures in the step before they converged, &
-      &counted likewise.', &
+      &counted as `iterations`.', &
     'total_iterations | integer | - | Sum of iterations over the accepted steps.', &
     'total_force_iterations | integer | - | Sum of force_iterations over the accepted steps.', &
     'total_contact_iterations | integer | - | Sum of contact_iterations over the accepted steps.', &
@@ -63,8 +63,8 @@ module step_columns
   !> Further entries of the ledger.
   character(len=result_row_length), parameter, public :: heat_rows(*) = [character(len=result_row_length) :: &
     'energy_friction | real | energy | Heat of sliding by friction between surfaces.', &
-    'energy_layers | real | energy | Strain and kinetic energy lost where layers replaced the plate as a zone grew: &
-      &round-off.']
+    'energy_layers | real | energy | Strain and kinetic energy lost where elements are split into layers as a zone &
+      &grows: round-off.']
 
   !> Damping.
   character(len=result_row_length), parameter, public :: damping_rows(*) = [character(len=result_row_length) :: &
@@ -72,8 +72,8 @@ module step_columns
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &
-    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it that its nose &
-      &touches.']
+    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it in contact with &
+      &its nose.']
 
 contains
 

@@ -17,7 +17,7 @@ module solver_deck
   character(len=*), parameter, public :: solver_group = 'solver'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: solver_group_row = &
-    'solver | settings | Convergence of equilibrium and linear algebra.'
+    'solver | settings | Tolerance of equilibrium, and the linear solver.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: solver_rows(*) = [character(len=key_row_length) :: &
     'solver | tolerance | real | 1 | - | 1e-6 | >= 1e-13, <= 0.01 | &
@@ -25,7 +25,7 @@ module solver_deck
     'solver | max_iterations | integer | 1 | - | 30 | >= 1, <= 10000 | &
       &Iterations before a step is tried again with half its length.', &
     'solver | factorization | choice | 1 | - | ''automatic'' | automatic mumps cholmod | &
-      &Direct solver; automatic takes cholmod where no load step buckles or softens and ranks share no large model.', &
+      &Direct solver; automatic: cholmod for positive definite matrices, unless several ranks share a large model.', &
     'solver | petsc_options | text | 1 | - | '''' | any text | &
       &Options passed to PETSc.']
 

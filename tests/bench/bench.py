@@ -266,7 +266,7 @@ def fronts(program, arguments):
     from solver_runs import change_deck
     deck = pathlib.Path(__file__).parents[2].joinpath('input/reference/threshold_1mm.nml').read_text()
     print('| cell, mm | starter, mm | first growth | least, mean, largest after steps with growth | largest step of '
-          'the growth, mm^2 | released over booked | processor, s |')
+          'the growth, mm^2 | released over recorded | processor, s |')
     print('|---|---|---|---|---|---|---|')
     for cell, starter in itertools.product(arguments.cell, arguments.starter):
         elements = round(20/cell) + 6
@@ -289,7 +289,7 @@ def growth(program, arguments):
     crossply = crossply.replace("'two_state'", "'vcct'").replace("'one_per_step'", "'equilibrium'")
     runs = [('threshold_1mm', decks.joinpath('reference/threshold_1mm.nml').read_text())]
     runs += [('crossply_2mm', re.sub(r'step=\S+', f'step={step}e-6', crossply)) for step in arguments.step]
-    print('| deck | step, us | force in steps with growth, N | area, mm^2 | released over booked | algorithmic, J |')
+    print('| deck | step, us | force in steps with growth, N | area, mm^2 | released over recorded | algorithmic, J |')
     print('|---|---|---|---|---|---|')
     for name, deck in runs:
         with tempfile.TemporaryDirectory() as folder:
@@ -317,7 +317,7 @@ def one_deck(program, arguments):
     sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
     from solver_runs import change_deck
     print('| set | G = G_c, first growth by, N | peak force, N | mean force of growth, N | area, mm^2 | '
-          'released over booked | algorithmic, J | fibre failures, cracks | steps, factorizations | processor, s |')
+          'released over recorded | algorithmic, J | fibre failures, cracks | steps, factorizations | processor, s |')
     print('|---|---|---|---|---|---|---|---|---|---|')
     for settings in arguments.set or [[]]:
         with tempfile.TemporaryDirectory() as name:

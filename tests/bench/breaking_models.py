@@ -68,4 +68,6 @@ def main(implam, count="20"):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 2 or "--help" in sys.argv:
+        raise SystemExit(__doc__)
     main(*sys.argv[1:])

@@ -207,4 +207,6 @@ def main(implam, count="40", first="1", left_out=""):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 2 or "--help" in sys.argv:
+        raise SystemExit(__doc__)
     main(*sys.argv[1:])

@@ -125,7 +125,7 @@ def thresholds(program, options):
 
 def damaging(program, options):
     """Random models whose interfaces delaminate."""
-    ended = quick = booked = worked = closed = 0
+    ended = quick = recorded = worked = closed = 0
     for seed in range(options.first, options.first + options.count):
         model = damaging_models.model(seed)
         run = Run(program, explicit(damaging_models.deck(model)), seconds=600)
@@ -138,21 +138,21 @@ def damaging(program, options):
         area = last['delaminated_area'] - (run.rows[0]['delaminated_area'] if model['starter'] else 0)
         cost, energy = model['G_c']*area, last['energy_delamination']
         right = abs(energy - cost) <= 1e-6*max(cost, 1e-12)
-        # What the tractions did beyond what is stored, booked as fracture, friction or lost where surfaces meet.
+        # What the tractions did beyond what is stored, recorded as fracture, friction or lost where surfaces meet.
         beyond = last['energy_algorithmic']/energy if energy > 0 else 0
         smallest, largest, contact = run.ledger()
         good = smallest > -2e-3 and largest < 5e-4
         quick += fast
-        booked += right
+        recorded += right
         worked += abs(beyond) <= .01
         closed += good
-        row(f'damaging {seed}', f'{1e6*area:.1f} mm2, booked over G_c area - 1 '
+        row(f'damaging {seed}', f'{1e6*area:.1f} mm2, recorded over G_c area - 1 '
             f'{energy/cost - 1 if cost > 0 else 0:.1e}, algorithmic {100*beyond:+.2f} % of fracture, ledger '
             f'{100*smallest:.4f} to {100*largest:+.4f} %, contact {100*contact:.2f} %, {last["step"]:.0f} steps, '
             f'{run.seconds:.1f} s', '', right and good and fast and abs(beyond) <= .01)
     row('damaging: end, under 20 s, G_c area to 1e-6, tractions to 1 %, ledger',
-        f'{ended}, {quick}, {booked}, {worked}, {closed}', f'{options.count} each',
-        min(ended, quick, booked, worked, closed) == options.count)
+        f'{ended}, {quick}, {recorded}, {worked}, {closed}', f'{options.count} each',
+        min(ended, quick, recorded, worked, closed) == options.count)
 
 
 def breaking(program, options):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Holds all places that state the version against CMakeLists.txt, and deprecated keys that are due to go.
+"""Compares all places that state the version with CMakeLists.txt, and the citation that the program prints with
+CITATION.cff; finds deprecated keys that are due to be removed.
 
 Usage: check_version.py [ROOT]
 """
@@ -18,6 +19,7 @@ PLACES = {
     "doc/limits.md": r"What version (\S+) does not model",
 }
 
+CITED = "src/results/run_provenance.f90"
 DEPRECATED = "src/case/deprecated_keys.f90"
 # Rows of it: group, key, value, replacement, first version that warns.
 ROW = re.compile(r"'(\w+) *\| *(\w+) *\| *[^|']+\| *[^|']+\| *(\d+)\.(\d+)\.\d+ *'")
@@ -32,6 +34,15 @@ def overdue(text, version):
             yield f"{DEPRECATED}: &{group} {key} has warned since {since_major}.{since_minor}; remove its row"
 
 
+def differing_citation(cff, source):
+    """Sentences on a title or a year of CITATION.cff that the citation in the program does not have."""
+    title = re.search(r'^title: "Implam: ([^"]+)"$', cff, re.MULTILINE).group(1)
+    year = re.search(r"^date-released: (\d+)", cff, re.MULTILINE).group(1)
+    for part in (title, f"({year})"):
+        if part not in source:
+            yield f"{CITED} does not cite {part} as CITATION.cff does"
+
+
 def breaches(root):
     """Sentences on versions that differ."""
     project = (root / "CMakeLists.txt").read_text(encoding="utf-8")
@@ -42,6 +53,8 @@ def breaches(root):
             yield f"{name} states no version"
         elif found.group(1) != declared:
             yield f"{name} is of version {found.group(1)}, CMakeLists.txt of {declared}"
+    cff, source = ((root / name).read_text(encoding="utf-8") for name in ("CITATION.cff", CITED))
+    yield from differing_citation(cff, source)
     yield from overdue((root / DEPRECATED).read_text(encoding="utf-8"), declared)
 
 

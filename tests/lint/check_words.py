@@ -62,6 +62,13 @@ WORDS = {
     r"followers?": "dependent points, next case",
     r"stands? beside|lawful|astray|tales?|meanwhile|in vain": "next to; allowed; wrong; note; until then; rejected",
     r"begins? anew": "start again, start from zero",
+    r"book(?:s|ed)?": "record, add to the ledger",
+    r"judge[sd]?": "evaluate, compute, compare",
+    r"leaves? no trace": "has no effect, does not contribute",
+    r"there from the start": "constant, full value, existing from the start",
+    r"fall(?:s)? through": "not supported",
+    r"(?:here stands?|should stand|stands? (?:where|without|outside))": "is, is expected, has",
+    r"rounding spoils": "round-off dominates",
     r"first touch(?:es)?": "first contact",
     r"in the plane(?! (?:of|x|y|z)(?!\w))": "in-plane",
 }
@@ -77,6 +84,7 @@ NAMES = {
     r"learn|learnt|seen": "update, record",
     r"borne|bears?": "supported, on frame",
     r"look|looks|looked": "check, observe",
+    r"deepest|steepest|likeliest": "max_ or most probable of what",
 }
 # Names of decks, results and libraries that stay, as they stand in the text.
 PUBLIC = (

@@ -52,6 +52,12 @@ class CheckWords(unittest.TestCase):
         self.assertEqual(found('"""A fall\nof much."""\nmuch = 1  # much\nrounds = "much"\n', "a.py"),
                          [(3, "much"), (4, "rounds")])  # fmt: skip
 
+    def test_ledgers_and_places_have_their_terms(self):
+        """Energies are recorded, not booked; a key is, and does not stand, in a place."""
+        self.assertEqual(found("Booked energy leaves no trace.\na comma stands where a key is", "page.md"),
+                         [(1, "Booked"), (1, "leaves no trace"), (2, "stands where")])  # fmt: skip
+        self.assertEqual(found("handbook, bookmark; it stands alone", "page.md"), [])
+
     def test_advice_is_printed(self):
         """A breach says what to write instead."""
         self.assertEqual(str(check_words.check_text("a tup", "page.md")[0]), "page.md:1: tup: impactor")

@@ -188,7 +188,7 @@ def check_energy_release(implam, folder):
     for i in np.flatnonzero(ratio > 0):
         common = np.minimum(results.high[i], results.high) - np.maximum(results.low[i], results.low)
         beside = np.all(common > -tiny, axis=1) & (np.sum(common > tiny, axis=1) == 1)
-        require(below[i] and not apart[i], "A rate stands where the interface isn't intact.")
+        require(below[i] and not apart[i], "There is a rate where the interface isn't intact.")
         require(np.any(apart & beside), "A rate stands away from the front.")
     print(f"energy release: {np.count_nonzero(ratio)} cells ahead of the front, G/G_c up to {np.max(ratio):.3f}")
 
@@ -335,7 +335,7 @@ def check_columns(implam, folder):
         require(np.all(np.cumsum(history[name]) == history[f"total_{name}"]), f"total_{name} isn't the sum.")
     grown = history["delaminated_area"] - history["delaminated_area"][0]
     fracture = deck.number("delamination", "G_c") * grown
-    require(np.allclose(history["energy_delamination"], fracture, rtol=1e-12) and grown[-1] > 0, "G_c A isn't booked.")
+    require(np.allclose(history["energy_delamination"], fracture, rtol=1e-12) and grown[-1] > 0, "G_c A is missing.")
     released = history["energy_released"][-1] / fracture[-1]
     require(0.5 < released < 1.5, f"{released} of G_c A is set free.")
     require(np.all(history["solves"] >= history["total_iterations"]), "There are fewer solves than iterations.")

@@ -29,7 +29,7 @@ from solver_runs import ENERGIES, TrialError, change_deck, exit_code_of, read_hi
 
 LONGEST_ROW = 60  # seconds of the processor: a run that hangs ends
 LEDGER = 1e-4  # of the largest energy
-BOOKED = 1e-6  # relative error of an energy that is a toughness times an area
+RECORDED = 1e-6  # relative error of an energy that is a toughness times an area
 SAME = 1e-6  # relative difference of a run in other units
 MAX_STEPS = 1e6  # of a run by central differences
 LEDGER_EXPLICIT = 1e-2  # of the largest energy, by central differences
@@ -221,7 +221,7 @@ def check_first(row, tolerance):
 def check_fracture(row, starter):
     """Energy of fracture: toughness times what has delaminated beyond the starter."""
     expected = row.key("delamination", "G_c") * (row.history["delaminated_area"][-1] - starter)
-    return compare("energy of fracture", row.history["energy_delamination"][-1], expected, BOOKED)
+    return compare("energy of fracture", row.history["energy_delamination"][-1], expected, RECORDED)
 
 
 def check_within(row, bounds):

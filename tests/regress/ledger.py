@@ -60,7 +60,7 @@ def deck_of(load, parts, steps=5):
     return "\n".join(groups) + "\n"
 
 
-# What has to break in at least one case with it, so that what that sets free is booked.
+# What has to break in at least one case with it, so that what that sets free is recorded.
 BREAKS = {"plies": "energy_ply_damage", "softening": "energy_ply_damage", "interface": "energy_delamination"}
 
 

@@ -271,4 +271,6 @@ def main(trial, implam, folder, count, *launcher):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 5 or "--help" in sys.argv:
+        raise SystemExit(__doc__)
     raise SystemExit(main(*sys.argv[1:]))

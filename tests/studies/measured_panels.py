@@ -151,4 +151,6 @@ def main(*arguments):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 3 or "--help" in sys.argv:
+        raise SystemExit(__doc__)
     main(*sys.argv[1:])

@@ -70,4 +70,6 @@ def main(arguments):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 4 or "--help" in sys.argv:
+        raise SystemExit(__doc__)
     main(sys.argv[1:])

@@ -25,7 +25,7 @@ DECKS = {"chatter": ("verify/chatter.nml", SHORT), "front": ("small/delamination
 # Constant: source, value as it is written there, other values, decks.
 CONSTANTS = {
     "moving_stiffness": ("delamination/surface_contact", "2.0e6_wp", ("2.0e5_wp", "2.0e7_wp"), "chatter front"),
-    "steepest": ("delamination/surface_contact", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "penalty"),
+    "max_tail_slope": ("delamination/surface_contact", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "penalty"),
     "open_fraction": ("delamination/surface_contact", "1.0e-9_wp", ("1.0e-8_wp", "1.0e-10_wp"), "chatter penalty"),
     "distance_tolerance": ("delamination/front_smoothing", "1.0e-6_wp", ("1.0e-5_wp", "1.0e-7_wp"), "chatter front"),
     "held_stiffness": ("interfaces/contact_and_ties", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "chatter front"),
@@ -101,4 +101,6 @@ def main():
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 2 or "--help" in sys.argv:
+        raise SystemExit(__doc__)
     main()

@@ -4,7 +4,7 @@ Usage: unwarned_energies.py FOLDER...
 
 Reads every NAME_summary.json below the folders, such as build/tests/regress after ctest, or the results of a sweep.
 What integrators or load steps created or took, and what no entry accounts for, is compared with the largest energy at
-the end. Fronts book fracture before the motion has lost it: what they book is left out of what counts as created."""
+the end. Fronts record fracture before the motion has lost it: this energy does not count as created."""
 
 import json
 import sys

@@ -12,7 +12,7 @@ from implam_post.io.fields import Fields, struck_point
 from implam_post.io.history import History
 from implam_post.io.quantities import impact_energy, peak
 
-# Corner frequency, Hz, of the low pass before the force is looked at: the least natural frequency that ASTM D7136 lets
+# Corner frequency, Hz, of the low-pass filter of the force: the least natural frequency that ASTM D7136 lets
 # a load cell with its impactor have. A deck's own force_filter goes before it.
 CORNER = 6e3
 # A fall counts from this part of the force on, and if plies and interfaces took at least this part of what the fall

@@ -24,7 +24,7 @@ ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "ene
                 "energy_ply_damage": "ply damage", "energy_contact": "contact",
                 "energy_algorithmic": "algorithmic dissipation", "energy_friction": "friction",
                 "energy_layers": "layers", "energy_damping": "damping"}
-UNACCOUNTED = "not accounted for"
+ENERGY_ERROR = "energy error"
 _ENDING = "_history.csv"
 
 

@@ -51,7 +51,7 @@ def read_namelist(text: str, name: str = "deck") -> dict[str, list[Group]]:
         token = tokens[position]
         position += 1
         if token.kind != "group":
-            raise DeckError(f"{name}:{token.line}: '{token.text}' stands outside any group.")
+            raise DeckError(f"{name}:{token.line}: '{token.text}' is outside of a group.")
         group, position = _read_group(tokens, position, token, name)
         groups.setdefault(token.text[1:].strip().lower(), []).append(group)
     return groups

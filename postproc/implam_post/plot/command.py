@@ -130,7 +130,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
                         "force, indentation or deflection, in the units of the results")
     parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
-                        "compression: its strength is drawn, and the share that is left given")
+                        "compression: its strength is drawn, and the retained fraction given")
     parser.add_argument("--projected", choices=("depth", "time"), default="depth", help="colour of NAME_projected: the "
                         "first delaminated interface, or when the first one delaminated (default: depth)")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")

@@ -50,7 +50,7 @@ def axis_of_column(name: str, values: Sequence[float] | np.ndarray, history: His
 
 
 def in_contact(history: History) -> History:
-    """Return the rows up to the end of the last contact, after which the impactor flies off; all if there is none."""
+    """Return the rows up to the end of the last contact, after which the impactor moves away; all if there is none."""
     touching = np.flatnonzero(history["force"] > 0)
     return history.until(history.time[min(touching[-1] + 1, len(history.time) - 1)]) if len(touching) else history
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from implam_post.io.errors import FileError, reason
 from implam_post.io.fields import Fields
-from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
+from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES, History
 from implam_post.io.quantities import growth_rows
 from implam_post.plot.compression import compression_figure, is_compressed, remark_of
 from implam_post.plot.curves import AXES, in_contact
@@ -124,7 +124,7 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
                            labels=names, colors=colours, alpha=0.8)
     axes.axhline(energy.factor * start, color="black", linestyle="--", linewidth=1, label="total at the start")
     axes.plot(time.factor * history.time, energy.factor * history["energy_error"], color="black", linewidth=1,
-              label=UNACCOUNTED)
+              label=ENERGY_ERROR)
     axes.set(xlabel=time.label, ylabel=energy.label, title=Path(history.name).stem.removesuffix("_history"))
     axes.locator_params(axis="x", nbins=6)
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))

@@ -36,8 +36,8 @@ class ImpactCase:
     def default_step(self) -> float:
         """Return a step of a thousandth of the contact time on a rigid base, kept to sensible numbers of steps."""
         speed = abs(self.impactor.velocity) or np.finfo(float).tiny**0.25
-        deepest = (1.25 * self.impactor.mass * speed**2 / self.law.stiffness)**0.4
-        contact = 2.943 * deepest / speed
+        max_indentation = (1.25 * self.impactor.mass * speed**2 / self.law.stiffness)**0.4
+        contact = 2.943 * max_indentation / speed
         return float(np.clip(contact / _STEPS_A_CONTACT, self.end / _MAX_STEPS, self.end / _MIN_STEPS))
 
     def default_modes(self) -> list[int]:

@@ -113,11 +113,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="folders of decks and expectations, or files of expectations; the format is given below")
     parser.add_argument("--decks", type=Path, metavar="DIR", help="folder of the decks (default: beside each file)")
     parser.add_argument("--output", type=Path, metavar="DIR",
-                        help="folder of the runs (default: one of its own, which stays if something failed)")
+                        help="folder of the runs (default: a temporary one, kept after a failure)")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
                         help="runs at a time (default: the number of processors)")
-    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="longest time a run may take")
+    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="longest time of a run (default: no limit)")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the results as JUnit XML")
     parser.add_argument("--accept", action="store_true",
                         help="replace expected values that are not met by the results; tolerances stay, and "

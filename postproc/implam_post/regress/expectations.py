@@ -40,10 +40,10 @@ The file of expectations, of which at least one is needed:
     value = 0.0                      # if it isn't there, beside the history; deck.nml there is the deck of the run
     absolute = 0.01                  # l2_force: relative L2 difference over the reference's time, as of a measured one
 
-    [[curve]]                        # if wanted: a measured curve for --plot, a CSV beside this file; its first two
+    [[curve]]                        # optional: a measured curve for --plot, a CSV beside this file; its first two
     file = "measured.csv"            # columns are columns of the history: time, force, deflection, ...
 
-    [[variant]]                      # if wanted: runs of the deck with keys set anew
+    [[variant]]                      # optional: runs of the deck with other keys
     name = "fast"
     set = ["impactor%velocity=30", "laminate%angles=0,90,0", "delamination[2]%G_c=400"]
     [[variant.expect]]               # of this variant, besides those at the top

@@ -11,7 +11,7 @@ from implam_post.io.counts import counted
 from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import refuse_equal_names, write_text
-from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED
+from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES
 from implam_post.io.run import FIELDS, SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.io.summary_shape import missing_member
@@ -63,7 +63,7 @@ def report(run: Run, undamaged: float | None = None) -> str:
     found = resistance(run)
     mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
     mark = None if mark is None or math.isnan(mark[0]) else mark
-    energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+    energies = {name: summary[key] for key, name in (ENERGY_NAMES | {"energy_error": ENERGY_ERROR}).items()
                 if key in summary}
     axis = style.axis("energy", "energy", [*energies.values()])
     remark = remark_of(summary, style, undamaged)
@@ -265,7 +265,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="NAME_summary.json, a folder with such files, or the folder of a sweep")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
     parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
-                        "compression: the page then has the share of its strength that is left")
+                        "compression: the page then has the retained fraction of its strength")
     return run(_command, parser, arguments)
 
 

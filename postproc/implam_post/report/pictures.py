@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter
 from implam_post.io.deck import recorded_deck
 from implam_post.io.errors import ImplamError
 from implam_post.io.fields import Fields
-from implam_post.io.history import ENERGY_NAMES, UNACCOUNTED, History
+from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES, History
 from implam_post.io.quantities import growth_rows
 from implam_post.io.run import material_of
 from implam_post.plot.compression import compression_figure, is_compressed
@@ -109,7 +109,7 @@ def history_pictures(history: History, style: PictureStyle, threshold: tuple[flo
              if name.startswith("area_below_")}
     if areas:
         yield f"delaminated area against {clock}", _curves(history, areas, "delaminated area", "area", style)
-    energies = {column: name for column, name in (ENERGY_NAMES | {"energy_error": UNACCOUNTED}).items()
+    energies = {column: name for column, name in (ENERGY_NAMES | {"energy_error": ENERGY_ERROR}).items()
                 if column in history.columns and np.any(history[column])}
     yield f"energies against {clock}", _curves(history, energies, "energy", "energy", style)
 
@@ -142,7 +142,7 @@ def _curves(history: History, columns: Mapping[str, str], label: str, dimension:
     up = style.axis(label, dimension, np.concatenate([[0.0], *(history[column] for column in columns)]))
     for column, name in columns.items():
         axes.plot(along.factor * history.time, up.factor * history[column], label=name,
-                  color="black" if name == UNACCOUNTED else None)
+                  color="black" if name == ENERGY_ERROR else None)
     axes.set(xlabel=along.label, ylabel=up.label)
     axes.grid(alpha=0.3)
     if columns:

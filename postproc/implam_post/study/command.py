@@ -111,7 +111,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of runs and table, instead of the file's")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=1, metavar="N",
-                        help="runs at a time (default: 1, since runs beside each other falsify times)")
+                        help="runs at a time (default: 1, since parallel runs falsify times)")
     parser.add_argument("--error", choices=ERRORS, help="error of the plot and of the front, instead of the file's")
     parser.add_argument("--format", choices=FORMATS, default="png", help="kind of the plot's file (default: png)")
     parser.add_argument("--table", action="store_true", help="run nothing; write tables and plot of existing results")

@@ -32,7 +32,7 @@ The file of a study:
     part = [1, 2, 4]
 
     [list]                                    # methods: side by side
-    method = ["Gear", "trapezoidal rule"]     # what the table and the plot call them, if wanted
+    method = ["Gear", "trapezoidal rule"]     # names in table and plot, optional
     "impactor.integrator" = ["gear4", "trapezoidal"]
 
     [derived]                                 # in this order, from names, keys of the case's deck, and numbers

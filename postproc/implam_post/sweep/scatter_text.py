@@ -40,7 +40,7 @@ def statistics_text(plan: Plan, groups: Sequence[Group], style: PictureStyle) ->
 def variants_table(groups: Sequence[Group], style: PictureStyle) -> list[tuple[str, ...]]:
     """Return names, and below them a row for each variant: means and standard errors of the figures compared.
 
-    A star stands where the difference from the first variant is larger than the scatter of its mean.
+    A star marks a difference from the first variant larger than the scatter of its mean.
     """
     paired = {id(group): found for group, found in pairs_of(groups)}
     found_of = [(group, spreads(group.numbers)) for group in groups]

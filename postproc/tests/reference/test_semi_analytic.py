@@ -89,9 +89,9 @@ class ClosedFormTest(unittest.TestCase):
         """On a plate that doesn't move: Hertz' peak and contact time, rebound at the speed of approach."""
         history = semi_analytic(deck(KARAS, ("E=206.8e9", "E=206.8e17"), ("density=7833", "density=7833e6")))
         expected = 1.49595e10**0.4 * (1.25 * 0.0328108)**0.6
-        deepest = (expected / 1.49595e10)**(2 / 3)
+        max_indentation = (expected / 1.49595e10)**(2 / 3)
         self.assertAlmostEqual(peak(history, "force").value / expected, 1, delta=2e-6)
-        self.assertAlmostEqual(contact(history, 0).end / (2.9432 * deepest), 1, delta=1e-4)
+        self.assertAlmostEqual(contact(history, 0).end / (2.9432 * max_indentation), 1, delta=1e-4)
         self.assertAlmostEqual(rebound_velocity(history), -1, delta=1e-5)
 
     def test_gravity(self) -> None:

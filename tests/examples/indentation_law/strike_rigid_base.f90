@@ -83,15 +83,16 @@ contains
   end function simpson
 
   !> Energy lost between no indentation and no indentation again, by hand: way in less way back.
-  pure real(wp) function closed_path(deepest) result(lost)
+  pure real(wp) function closed_path(max_indentation) result(lost)
     !> Largest indentation
-    real(wp), intent(in) :: deepest
+    real(wp), intent(in) :: max_indentation
     real(wp) :: way_in, dent, force, plastic
 
-    plastic = deepest - law%yield
+    plastic = max_indentation - law%yield
     way_in = law%k*(0.4_wp*law%yield**2.5_wp + law%yield**1.5_wp*plastic + 0.75_wp*sqrt(law%yield)*plastic**2)
     force = law%k*(law%yield**1.5_wp + 1.5_wp*sqrt(law%yield)*plastic)
-    dent = (deepest**1.5_wp - force/law%k)**(2/3.0_wp)
-    lost = way_in - (force - law%k*deepest**1.5_wp)*(deepest - dent) - 0.4_wp*law%k*(deepest**2.5_wp - dent**2.5_wp)
+    dent = (max_indentation**1.5_wp - force/law%k)**(2/3.0_wp)
+    lost = way_in - (force - law%k*max_indentation**1.5_wp)*(max_indentation - dent) - &
+           0.4_wp*law%k*(max_indentation**2.5_wp - dent**2.5_wp)
   end function closed_path
 end program strike_rigid_base

@@ -1,6 +1,6 @@
 !> Small plates moved by central differences, for the tests of these.
 module explicit_setups
-  use central_difference_energies, only: book_energies
+  use central_difference_energies, only: record_energies
   use central_difference_parameters, only: central_difference_parameters_t
   use central_differences, only: central_difference_t
   use kinds, only: wp
@@ -109,7 +109,7 @@ contains
     !> The run
     class(explicit_run_t), intent(inout) :: self
 
-    call book_energies(self%method, self%model, self%now)
+    call record_energies(self%method, self%model, self%now)
     error = self%now%ledger%error()
   end function ledger_error
 end module explicit_setups
