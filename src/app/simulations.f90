@@ -32,7 +32,7 @@ module simulations
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_checks, only: energy_check_t, new_energy_check
-  use initial_states, only: take_initial_state
+  use initial_states, only: take_initial_state, visit_incomplete_start
   use adaptive_zones, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
@@ -240,6 +240,7 @@ contains
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call self%record%visit(archive)
     call self%energy_check%visit(archive)
+    call visit_incomplete_start(self%deck, archive)
     call archive%item('history/rows', rows)
     call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
