@@ -370,7 +370,8 @@ contains
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
-    if (self%deck%output%fields_every <= 0) &
+    ! A complete run that is continued in another folder has no step that would write them.
+    if (self%deck%output%fields_every <= 0 .or. self%fields%is_empty()) &
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
