@@ -173,7 +173,7 @@ contains
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
     self%energy_check = new_energy_check(deck)
-    call log_model(self%model, self%stepper, self%log)
+    call log_model(self%deck, self%model, self%stepper, self%log)
     call start_progress(self%progress, self%stepper, end_of(self))
   end subroutine prepare
 
