@@ -8,13 +8,14 @@ module adaptive_zones
   use layer_switches, only: advance_with_layers
   use logger, only: log_t
   use models, only: model_t
+  use plies, only: plies_text
   use run_moments, only: moment
   use short_numbers, only: short_text
-  use text, only: to_text
+  use text, only: append, line_t
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: advance, visit_evolving, visit_zones
+  public :: advance, visit_evolving, visit_zones, zone_notes
 
 contains
 
@@ -32,19 +33,41 @@ contains
     type(log_t), intent(inout) :: log
     !> Set if the smallest step fails or the model cannot be built
     type(error_t), allocatable, intent(out) :: error
+    type(line_t), allocatable :: notes(:)
     logical :: switched
-    integer :: zone
+    integer :: i
 
     call advance_with_layers(model, stepper, deck%linear_solver, event, switched, error)
     if (allocated(error) .or. .not. switched) return
-    do zone = 1, size(model%mesh%zones)
-      associate (interface => model%setup%delaminations(zone))
-        if (interface%is_adaptive) call log%note('Layers below ply '//to_text(interface%below_ply)//': '// &
-                                             short_text(interface%zone(1))//' x '//short_text(interface%zone(2))// &
-                                             ' from '//moment(deck, stepper%now%time)//' on.')
-      end associate
+    notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time))
+    do i = 1, size(notes)
+      call log%note(notes(i)%text)
     end do
   end subroutine advance
+
+  !> A note on each extent of the adaptive zones, with all plies above zones of that extent.
+  pure function zone_notes(delaminations, since) result(notes)
+    !> The interfaces
+    type(delamination_t), intent(in) :: delaminations(:)
+    !> Since when, such as time 0.001
+    character(len=*), intent(in) :: since
+    !> One line each
+    type(line_t), allocatable :: notes(:)
+    logical, dimension(size(delaminations)) :: noted, alike
+    integer :: first, zone
+
+    allocate (notes(0))
+    noted = .not. delaminations%is_adaptive
+    do first = 1, size(delaminations)
+      if (noted(first)) cycle
+      associate (extent => delaminations(first)%zone)
+        alike = [(all(abs(delaminations(zone)%zone - extent) <= 0), zone=1, size(delaminations))] .and. .not. noted
+        call append(notes, 'Layers below '//plies_text(pack(delaminations%below_ply, alike))//': '// &
+                    short_text(extent(1))//' x '//short_text(extent(2))//' from '//since//' on.')
+      end associate
+      noted = noted .or. alike
+    end do
+  end function zone_notes
 
   !> Saves or loads the state and the parts of the model that depend on it.
   subroutine visit_evolving(model, stepper, archive, error)

@@ -8,10 +8,11 @@ module compression_summary
   use json_text, only: json_t
   use kinds, only: wp
   use placed_gauges, only: back_to_back
+  use plies, only: plies_text
   use run_figures, only: run_figures_t
   use run_moments, only: moment
   use run_records, only: run_record_t
-  use text, only: rounded_text, to_text
+  use text, only: rounded_text
   implicit none
   private
   public :: put_compression, put_collapse, compression_text, collapse_text
@@ -139,22 +140,8 @@ contains
     end if
     text = failure%code//' by ASTM D7137'
     if (any(failure%interfaces)) text = text//'; delaminated across the width below '// &
-      listed(pack(below_plies, failure%interfaces))
+      plies_text(pack(below_plies, failure%interfaces))
     if (any(failure%plies)) text = text//'; fibres failed across the width in '// &
-      listed(pack([(i, i=1, size(failure%plies))], failure%plies))
+      plies_text(pack([(i, i=1, size(failure%plies))], failure%plies))
   end function collapse_text
-
-  !> Plies in a sentence.
-  pure function listed(numbers) result(text)
-    !> Their numbers, at least one
-    integer, intent(in) :: numbers(:)
-    !> Such as `ply 2` or `plies 2, 4, 6`
-    character(len=:), allocatable :: text
-    integer :: i
-
-    text = trim(merge('plies', 'ply  ', size(numbers) > 1))//' '//to_text(numbers(1))
-    do i = 2, size(numbers)
-      text = text//', '//to_text(numbers(i))
-    end do
-  end function listed
 end module compression_summary

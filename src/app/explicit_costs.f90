@@ -9,9 +9,10 @@ module explicit_costs
   use plate_options, only: kinematics_von_karman
   use setup_scales, only: free_span
   use text, only: counted, rounded_text, to_text
+  use time_deck, only: key_step, time_group
   implicit none
   private
-  public :: explicit_sentence, duration_text
+  public :: explicit_sentence, duration_text, untaken_step
 
   !> Processor seconds for an element of one layer in a step, the additional time of cohesive interfaces, and that of
   !> softening plies in the mean over an impact with much ply failure. Measured on one core of an AMD EPYC: Sun and
@@ -40,6 +41,22 @@ contains
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '//bound// &
                duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
   end function explicit_sentence
+
+  !> Sentence on the step of the deck where it is longer than that taken; else empty.
+  function untaken_step(deck, step) result(sentence)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The step that is taken
+    real(wp), intent(in) :: step
+    !> One sentence
+    character(len=:), allocatable :: sentence
+    real(wp) :: given
+
+    sentence = ''
+    if (.not. deck%settings%is_given(time_group, key_step)) return
+    given = deck%settings%real_of(time_group, key_step)/2**deck%refine
+    if (given > step) sentence = 'The step of the deck, '//rounded_text(given)//', is longer and is not taken.'
+  end function untaken_step
 
   !> Ratio of the stable step of the flat plate to that of the deflected one, with the largest slope of half a sine.
   real(wp) function shortened(deck) result(ratio)

@@ -1,6 +1,7 @@
 !> Initial state from the end of another run: it is read from that run's checkpoint, compared with the deck, and
 !> transferred to the model.
 module initial_states
+  use archives, only: archive_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending
   use cell_grids, only: cell_edges
   use communicators, only: communicator_t
@@ -9,7 +10,7 @@ module initial_states
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck_text
   use errors, only: error_t, exit_deck, exit_files, fail
-  use files, only: file_exists
+  use files, only: file_exists, is_same_file
   use inherited_starts, only: begin_inherited
   use inherited_states, only: visit_inheritance
   use initial_state_deck, only: initial_state_group
@@ -33,7 +34,7 @@ module initial_states
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: fit_initial_state, take_initial_state
+  public :: fit_initial_state, take_initial_state, visit_incomplete_start
 
 contains
 
@@ -48,6 +49,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     !> Returns true instead of an error if there is no such file, as the other run may be pending
     logical, intent(out), optional :: lacks
+    logical :: is_own
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: old
     character(len=:), allocatable :: objection
@@ -57,13 +59,17 @@ contains
 
     if (present(lacks)) lacks = .false.
     if (.not. deck%initial%is_inherited) return
-    if (.not. present(lacks) .and. without_dot(deck%initial%from) == &
-        without_dot(deck%output%directory//'/'//deck%name//checkpoint_ending)) then
-      call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; allowed: '// &
-                  'another &case name or &output directory', error)
-      return
-    end if
-    if (present(lacks)) then
+    if (.not. present(lacks)) then
+      is_own = .false.
+      if (communicator%is_root()) is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name// &
+                                                        checkpoint_ending)
+      call communicator%broadcast(is_own)
+      if (is_own) then
+        call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; allowed: '// &
+                    'another &case name or &output directory', error)
+        return
+      end if
+    else
       if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
       call communicator%broadcast(lacks)
       if (lacks) return
@@ -86,38 +92,50 @@ contains
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
     if (time < merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())) then
-      call remark_stopped(deck, moment(old, time), remark)
+      deck%initial%stopped_at = moment(old, time)
+      call remark_stopped(deck, remark)
       call print_lines(communicator, [remark])
     end if
   end subroutine fit_initial_state
 
-  !> A path without a leading ./ .
-  pure function without_dot(path) result(rest)
-    !> The path
-    character(len=*), intent(in) :: path
-    !> What follows
-    character(len=:), allocatable :: rest
-
-    rest = path
-    if (index(path, './') == 1) rest = path(3:)
-  end function without_dot
-
   !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
-  subroutine remark_stopped(deck, at, remark)
+  subroutine remark_stopped(deck, remark)
     !> The deck; the summary of its run repeats the warning
     type(deck_t), intent(inout) :: deck
-    !> Time of that state, such as time 0.001
-    character(len=*), intent(in) :: at
     !> The warning, with file and line
     type(line_t), intent(out) :: remark
     character(len=:), allocatable :: line, sentence
 
     line = to_text(deck%settings%line_of_group(initial_state_group))
-    sentence = '&'//initial_state_group//' from = '''//deck%initial%from//''': is of a run that was stopped at '//at// &
-               ', before its end: later damage is missing; complete it first.'
+    sentence = '&'//initial_state_group//' from = '''//deck%initial%from//''': is of a run that was stopped at '// &
+               deck%initial%stopped_at//', before its end: later damage is missing; complete it first.'
     remark = line_t(deck%source//':'//line//': warning: '//sentence)
     call append(deck%remarks, 'line '//line//': '//sentence)
   end subroutine remark_stopped
+
+  !> Saves or loads when the other run was stopped before its end: a restart does not read that run's checkpoint again,
+  !> and its summary repeats the warning.
+  subroutine visit_incomplete_start(deck, archive)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Archive of the checkpoint
+    class(archive_t), intent(inout) :: archive
+    integer, allocatable :: codes(:)
+    type(line_t) :: remark
+    integer :: i
+
+    if (.not. deck%initial%is_inherited) return
+    allocate (codes(0))
+    if (allocated(deck%initial%stopped_at)) &
+      codes = [(iachar(deck%initial%stopped_at(i:i)), i=1, len(deck%initial%stopped_at))]
+    call archive%item('initial_state/stopped_at', codes)
+    if (.not. archive%loading .or. size(codes) == 0) return
+    deck%initial%stopped_at = repeat(' ', size(codes))
+    do i = 1, size(codes)
+      deck%initial%stopped_at(i:i) = achar(codes(i))
+    end do
+    call remark_stopped(deck, remark)
+  end subroutine visit_incomplete_start
 
   !> Refuses the checkpoint of the initial state.
   subroutine refuse(deck, reason, error)

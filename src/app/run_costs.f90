@@ -1,7 +1,7 @@
 !> Cost of a run, for `implam check`: steps and processor time.
 module run_costs
   use deck_contents, only: deck_t
-  use explicit_costs, only: explicit_sentence, duration_text
+  use explicit_costs, only: duration_text, explicit_sentence, untaken_step
   use kinds, only: wp
   use model_sizes, only: model_size_t
   use plate_options, only: kinematics_linear
@@ -41,6 +41,8 @@ contains
       return
     else if (is_explicit(deck%stepping)) then
       call append(lines, explicit_sentence(deck, model_size))
+      if (untaken_step(deck, deck%stepping%time%step) /= '') &
+        call append(lines, untaken_step(deck, deck%stepping%time%step))
     else
       call append(lines, implicit_sentence(deck, model_size))
     end if

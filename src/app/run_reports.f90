@@ -11,6 +11,7 @@ module run_reports
   use scale_tables, only: scale_lines, strength_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
+  use explicit_costs, only: untaken_step
   use indentation_deck, only: echo_without_group
   use kinds, only: wp
   use tangent_operators, only: tangent_operator_t
@@ -42,7 +43,9 @@ contains
   end subroutine log_echo
 
   !> Reports the size of the model and the factorization package. Collective.
-  subroutine log_model(model, stepper, log)
+  subroutine log_model(deck, model, stepper, log)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
@@ -61,7 +64,7 @@ contains
       call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
                     counted(to_text(stepper%unknowns), 'unknown')//', '// &
                     counted(to_text(model%communicator%size), 'rank')//shares//'.')
-      call log_stable_step(stepper, log)
+      call log_stable_step(deck, stepper, log)
       return
     end if
     associate (operator => stepper%operator)
@@ -73,19 +76,24 @@ contains
   end subroutine log_model
 
   !> Reports the element that determines the stable step, and whether the deck's step is longer.
-  subroutine log_stable_step(stepper, log)
+  subroutine log_stable_step(deck, stepper, log)
+    !> The deck
+    type(deck_t), intent(in) :: deck
     !> The time stepper, by central differences
     type(time_stepper_t), intent(in) :: stepper
     !> The log
     type(log_t), intent(inout) :: log
-    real(wp) :: stable
+    character(len=:), allocatable :: untaken
+    real(wp) :: stable, longest
 
     associate (explicit => stepper%explicit, parameters => stepper%explicit%parameters)
       stable = 2/explicit%frequency
       call log%note('Stable step '//rounded_text(stable)//' by element '//to_text(explicit%element)// &
                     ', shorter during contact; steps are at most '//rounded_text(parameters%step_factor)//' of it.')
-      if (parameters%longest > parameters%step_factor*stable) &
-        call log%note('The step of the deck, '//rounded_text(parameters%longest)//', is longer and is not taken.')
+      longest = parameters%step_factor*stable
+      if (parameters%longest > 0) longest = min(longest, parameters%longest)
+      untaken = untaken_step(deck, longest)
+      if (untaken /= '') call log%note(untaken)
     end associate
   end subroutine log_stable_step
 

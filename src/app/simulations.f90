@@ -32,7 +32,7 @@ module simulations
   use queue_signals, only: stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_checks, only: energy_check_t, new_energy_check
-  use initial_states, only: take_initial_state
+  use initial_states, only: take_initial_state, visit_incomplete_start
   use adaptive_zones, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
   use field_results, only: field_rows, part_of, write_fields, write_mesh
@@ -173,7 +173,7 @@ contains
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
     self%energy_check = new_energy_check(deck)
-    call log_model(self%model, self%stepper, self%log)
+    call log_model(self%deck, self%model, self%stepper, self%log)
     call start_progress(self%progress, self%stepper, end_of(self))
   end subroutine prepare
 
@@ -240,6 +240,7 @@ contains
     call self%checkpoint_clock%visit(archive, 'checkpoint')
     call self%record%visit(archive)
     call self%energy_check%visit(archive)
+    call visit_incomplete_start(self%deck, archive)
     call archive%item('history/rows', rows)
     call archive%item('history/last_row', self%history%last_row)
   end subroutine visit
@@ -369,7 +370,8 @@ contains
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
-    if (self%deck%output%fields_every <= 0) &
+    ! A complete run that is continued in another folder has no step that would write them.
+    if (self%deck%output%fields_every <= 0 .or. self%fields%is_empty()) &
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)

@@ -1,10 +1,11 @@
-/* Age and kind of files. They are in structures that each system lays out in its own way, so this is written in
-   its language. */
+/* Age, kind and identity of files, and space on disks. They are in structures that each system lays out in its own
+   way, so this is written in its language. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 
 struct entry {
   struct timespec time;
@@ -61,4 +62,19 @@ int implam_is_pipe(const char *path)
 {
   struct stat status;
   return stat(path, &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
+/* 1: both paths, behind all links, lead to one file. */
+int implam_is_same_file(const char *a, const char *b)
+{
+  struct stat first, second;
+  if (stat(a, &first) != 0 || stat(b, &second) != 0) return 0;
+  return first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+/* 1: the disk of this folder has no room for as many bytes. */
+int implam_lacks_space(const char *folder, int bytes)
+{
+  struct statvfs disk;
+  return statvfs(folder, &disk) == 0 && disk.f_bavail < (fsblkcnt_t)bytes / disk.f_frsize;
 }

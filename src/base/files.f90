@@ -5,7 +5,8 @@ module files
   use text, only: to_text
   implicit none
   private
-  public :: file_exists, is_directory, is_pipe, is_readable, rename_file, remove_file, make_directory, read_whole_file
+  public :: file_exists, is_directory, is_pipe, is_readable, is_same_file, lacks_space, rename_file, remove_file, &
+            make_directory, read_whole_file
 
   !> Permissions of new folders before the user's mask: rwx for all (octal 777).
   integer(c_int), parameter :: all_permissions = 511_c_int
@@ -51,6 +52,22 @@ module files
       !> Zero-terminated path
       character(kind=c_char), intent(in) :: path(*)
     end function implam_is_pipe
+
+    !> 1: both paths lead to one file.
+    integer(c_int) function implam_is_same_file(a, b) bind(c)
+      import :: c_char, c_int
+      !> Zero-terminated paths
+      character(kind=c_char), intent(in) :: a(*), b(*)
+    end function implam_is_same_file
+
+    !> 1: the disk of a folder has no room for as many bytes.
+    integer(c_int) function implam_lacks_space(folder, bytes) bind(c)
+      import :: c_char, c_int
+      !> Zero-terminated path
+      character(kind=c_char), intent(in) :: folder(*)
+      !> Number of bytes
+      integer(c_int), value :: bytes
+    end function implam_lacks_space
 
     !> C library: opens a file.
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
@@ -112,6 +129,26 @@ contains
     is_readable = .false.
     if (.not. is_directory(path)) is_readable = c_access(path//c_null_char, may_read) == 0
   end function is_readable
+
+  !> True: both paths, behind all links, lead to one file that exists.
+  logical function is_same_file(a, b)
+    !> The paths
+    character(len=*), intent(in) :: a, b
+
+    is_same_file = implam_is_same_file(a//c_null_char, b//c_null_char) == 1
+  end function is_same_file
+
+  !> True: the disk of a file has no room for as many bytes.
+  logical function lacks_space(path, bytes)
+    !> Path of the file, which may not exist
+    character(len=*), intent(in) :: path
+    !> Number of bytes
+    integer, intent(in) :: bytes
+    integer :: slash
+
+    slash = index(path, '/', back=.true.)
+    lacks_space = implam_lacks_space(trim(merge('./', '  ', slash == 0))//path(:slash)//c_null_char, bytes) == 1
+  end function lacks_space
 
   !> Renames a file atomically: other processes find either the old file of that name or the new one.
   subroutine rename_file(from, to, error)

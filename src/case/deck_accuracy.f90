@@ -48,11 +48,11 @@ module deck_accuracy
 contains
 
   !> Checks keys that are optional only with `accuracy`.
-  subroutine check_left_out(settings, no_step, problems)
+  subroutine check_left_out(settings, needs_lengths, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> True: no length and end of steps are needed, as central differences choose them and load steps have none
-    logical, intent(in) :: no_step
+    !> True: length and end of the steps are needed
+    logical, intent(in) :: needs_lengths
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
@@ -63,7 +63,7 @@ contains
       call problems%error(0, mesh_group, '', '&'//mesh_group//' is missing; `implam explain '//mesh_group// &
                           '` shows what it takes.')
     end if
-    if (no_step .or. .not. settings%has_group(time_group)) return
+    if (.not. (needs_lengths .and. settings%has_group(time_group))) return
     call require(time_group, key_end, '1 real value > 0')
     call require(time_group, key_step, '1 real value > 0')
 

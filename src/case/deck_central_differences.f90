@@ -1,6 +1,7 @@
 !> Defaults for central differences: end, factor of in-plane and rotary inertia, rows of the history, and the stable
 !> step.
 module deck_central_differences
+  use central_difference_parameters, only: central_difference_parameters_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: report
@@ -33,9 +34,9 @@ module deck_central_differences
   !> Approximate number of rows of a history, enough for a plot. They are written at the ends of steps, which are not
   !> shortened for them.
   real(wp), parameter :: rows = 2000
-  !> Longest step over the time in which the force of first contact rises: 15 steps in a contact. The energy of a mass
-  !> on Hertz' spring is then within 1 % in all steps, and its rebound velocity within .1 %. The stable step leaves 3
-  !> steps, with which the mass gains 12 % (`ctest -R extremes`).
+  !> Longest step over the time in which the force of first contact rises, with the default `step_factor`: 15 steps in a
+  !> contact. The energy of a mass on Hertz' spring is then within 1 % in all steps, and its rebound velocity within
+  !> .1 %. The stable step leaves 3 steps, with which the mass gains 12 % (`ctest -R extremes`).
   real(wp), parameter :: part_of_rise = 2/15.0_wp
 
 contains
@@ -141,18 +142,19 @@ contains
   end subroutine find_stable_step
 
   !> Shortens the step for the contact of an impactor so light that the waves of the plate last longer. The stable step
-  !> allows for the contact's stiffness so far, of which Hertz' law has none before the first step.
+  !> allows for the contact's stiffness so far, of which Hertz' law has none before the first step. `step_factor`
+  !> shortens this step as it does the stable one.
   subroutine limit_by_contact(deck, step)
     !> The deck; receives its longest step where the contact decides
     type(deck_t), intent(inout) :: deck
     !> Step of the plate; shortened where the contact decides
     real(wp), intent(inout) :: step
     type(setup_scales_t) :: scales
+    type(central_difference_parameters_t) :: usual
     real(wp) :: longest
 
     scales = scales_of(deck%setup_t)
-    ! Refinements halve this step, too.
-    longest = part_of_rise*scales%contact_time/2**deck%refine
+    longest = part_of_rise*scales%contact_time*(deck%stepping%central%step_factor/usual%step_factor)
     if (.not. (longest > 0 .and. longest < step)) return
     step = longest
     if (deck%stepping%central%longest > 0) step = min(step, deck%stepping%central%longest)

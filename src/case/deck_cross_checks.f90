@@ -4,6 +4,7 @@ module deck_cross_checks
   use adapt_deck, only: adapt_group, key_growth_step
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_integrators, only: softening_part
   use deck_line_supports, only: check_line_supports, check_in_plane_balance, check_moved_lines
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: report, remark, remark_idle, are_clear
@@ -165,7 +166,7 @@ contains
 
     if (problems%concern(static_group)) return
     if (.not. (deck%has_time .or. problems%concern(time_group))) call problems%error(0, time_group, '', &
-      '&time is missing; give end and step, or &static for load steps in equilibrium.')
+      '&time is missing; '//needed_of_time(deck)//', or &static for load steps in equilibrium.')
     call require_densities(deck%settings, problems)
     if (.not. deck%has_time) return
     if (.not. problems%concern(time_group)) &
@@ -175,6 +176,20 @@ contains
     call remark_idle(deck%settings, problems, adapt_group, key_growth_step, &
                      'has no effect without growth = ''one_per_step''.')
   end subroutine check_transient
+
+  !> What to give of &time: central differences, the default where plies or interfaces soften, choose the step, and for
+  !> an impact the end, too.
+  function needed_of_time(deck) result(clause)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Such as give end and step
+    character(len=:), allocatable :: clause
+
+    clause = 'give end and step'
+    if (softening_part(deck) == '') return
+    clause = 'give end'
+    if (deck%is_impact()) clause = 'give &'//time_group//' /, whose end and step follow from the impact'
+  end function needed_of_time
 
   !> Impactor, its patch and its contact stiffness.
   subroutine check_impact(deck, problems)

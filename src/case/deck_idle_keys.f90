@@ -5,8 +5,10 @@ module deck_idle_keys
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, remark_idle
+  use interface_places, only: interfaces_between
   use impactor_deck, only: impactor_group, key_rise, key_travel
-  use material_deck, only: material_group, key_expansion, key_shear_strain, toughness_keys
+  use material_deck, only: material_group, key_expansion, key_shear_strain, of_interfaces, &
+                           strength_keys, toughness_keys
   use output_deck, only: output_group, key_force_filter
   use plate_deck, only: key_imperfection, plate_group
   use plate_options, only: kinematics_linear
@@ -59,8 +61,6 @@ contains
     integer, intent(in) :: place
     !> Receives the remarks
     type(problems_t), intent(inout) :: problems
-    integer :: mode
-
     if (allocated(deck%laminate%material)) then
       if (.not. any(deck%laminate%material == place) .and. problems%errors() == 0) then
         call remark(deck%settings, problems, material_group, '', ''''//deck%materials(place)%name// &
@@ -70,15 +70,43 @@ contains
     end if
     if (.not. deck%has_thermal) call remark_idle(deck%settings, problems, material_group, key_expansion, &
                                                  'has no effect without &'//thermal_group//'.', place)
-    if (deck%has_ply_damage) return
+    if (deck%has_ply_damage .or. problems%concern(ply_damage_group)) return
     call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
                      'has no effect without &'//ply_damage_group//': shear is linear.', place)
-    do mode = 1, size(toughness_keys)
-      if (.not. deck%settings%is_given(material_group, toughness_keys(mode), place)) cycle
-      call remark_idle(deck%settings, problems, material_group, toughness_keys(mode), &
-                       'fracture energies have no effect without &'//ply_damage_group//': the plies do not fail.', &
-                       place)
+    call remark_first(deck, place, pack(strength_keys, .not. (of_interfaces .and. has_interfaces(deck))), 'strengths', &
+                      problems)
+    call remark_first(deck, place, toughness_keys, 'fracture energies', problems)
+  end subroutine check_material
+
+  !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.
+  pure logical function has_interfaces(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    has_interfaces = size(deck%delaminations) > 0
+    if (.not. (allocated(deck%laminate%angle) .and. allocated(deck%laminate%material))) return
+    associate (laminate => deck%laminate)
+      has_interfaces = has_interfaces .or. size(interfaces_between(laminate%angle, laminate%material)) > 0
+    end associate
+  end function has_interfaces
+
+  !> Remarks on the first given key of several without effect where plies do not fail.
+  subroutine remark_first(deck, place, keys, quantities, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the material
+    integer, intent(in) :: place
+    !> The keys, and what they are
+    character(len=*), intent(in) :: keys(:), quantities
+    !> Receives the remark
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    do i = 1, size(keys)
+      if (.not. deck%settings%is_given(material_group, keys(i), place)) cycle
+      call remark_idle(deck%settings, problems, material_group, keys(i), quantities//' have no effect without &'// &
+                       ply_damage_group//': the plies do not fail.', place)
       exit
     end do
-  end subroutine check_material
+  end subroutine remark_first
 end module deck_idle_keys

@@ -8,7 +8,7 @@ module deck_reader
   use deck_crack_bands, only: check_crack_bands
   use deck_central_differences, only: choose_for_central_differences, find_stable_step
   use deck_cross_checks, only: check_across_groups
-  use deck_integrators, only: choose_integrator
+  use deck_integrators, only: choose_integrator, needs_lengths
   use deck_initial_states, only: check_initial_state
   use deck_interface_remarks, only: check_interfaces
   use deck_library, only: take_library
@@ -117,7 +117,7 @@ contains
     call note_groups(deck)
     call fill_model(deck, problems)
     call choose_integrator(deck)
-    call check_left_out(deck%settings, is_explicit(deck%stepping) .or. deck%settings%has_group(static_group), problems)
+    call check_left_out(deck%settings, needs_lengths(deck, problems), problems)
     call fill_loads(deck, problems)
     call fill_steps(deck)
     call refine(deck)

@@ -78,6 +78,8 @@ module material_deck
   !> Keys of the strengths.
   character(len=*), parameter, public :: strength_keys(7) = [character(len=4) :: 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', &
                                                              'Sm23']
+  !> Those that are also strengths of the interfaces between plies.
+  logical, parameter, public :: of_interfaces(7) = strength_keys == 'YT' .or. strength_keys == 'S12'
   !> Keys of the fracture energies in the order of the modes.
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 

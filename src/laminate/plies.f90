@@ -3,10 +3,11 @@ module plies
   use kinds, only: wp
   use mathematical_constants, only: degree
   use material_parameters, only: material_t
+  use text, only: to_text
   implicit none
   private
   public :: elasticity_t, ply_t, elasticity_of, material_objection
-  public :: reduced_stiffness, in_plane_stiffness, shear_stiffness, set_angle
+  public :: reduced_stiffness, in_plane_stiffness, shear_stiffness, set_angle, plies_text
 
   !> Elastic constants of a ply in plane stress; damage reduces them (nu23 has no effect).
   type :: elasticity_t
@@ -162,4 +163,18 @@ contains
       stiffness = [c*c*g13 + s*s*g23, c*s*(g13 - g23), s*s*g13 + c*c*g23]
     end associate
   end function shear_stiffness
+
+  !> Plies in a sentence.
+  pure function plies_text(numbers) result(text)
+    !> Their numbers, at least one
+    integer, intent(in) :: numbers(:)
+    !> Such as `ply 2` or `plies 2, 4, 6`
+    character(len=:), allocatable :: text
+    integer :: i
+
+    text = trim(merge('plies', 'ply  ', size(numbers) > 1))//' '//to_text(numbers(1))
+    do i = 2, size(numbers)
+      text = text//', '//to_text(numbers(i))
+    end do
+  end function plies_text
 end module plies

@@ -13,6 +13,8 @@ module initial_state_parameters
     logical :: is_inherited = .false.
     !> Checkpoint of the other run; unallocated: the plate is undamaged, flat and at rest
     character(len=:), allocatable :: from
+    !> Moment at which the other run was stopped before its end, such as time 0.001; unallocated: it was complete
+    character(len=:), allocatable :: stopped_at
     !> motion_rest or motion_kept
     integer :: motion = motion_rest
   end type initial_state_t

@@ -9,6 +9,7 @@ module placed_gauges
   use models, only: model_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
+  use roundings, only: rounding
   use strain_recovery, only: nodal_strains
   implicit none
   private
@@ -72,7 +73,8 @@ contains
     if (abs(sum(strains)) > 0) bending = 100*(strains(1) - strains(2))/sum(strains)
   end function percent_bending
 
-  !> Adds the strain of a gauge if its element is one of this rank's.
+  !> Adds the strain of a gauge: of the cell that it is in, or the mean of those that meet there, as far as they are
+  !> this rank's.
   subroutine add_strain(model, gauge, motion, total)
     type(model_t), intent(in) :: model
     !> The gauge
@@ -81,23 +83,48 @@ contains
     real(wp), intent(in) :: motion(:, :)
     !> Receives the strain
     type(exact_sum_t), intent(inout) :: total
-    real(wp) :: at(2), angle, place(2), all(lanes, 9, 8), strain(6), shape(4), direction(3), z
-    integer :: cell(2), element, ply
+    real(wp) :: at(2), angle, direction(3)
+    integer, allocatable :: columns(:), rows(:)
+    integer :: element, ply, i, j
 
     call find_place(model, gauge, at, angle)
-    cell = [cell_at(model%mesh%x_edges, at(1)), cell_at(model%mesh%y_edges, at(2))]
-    ply = merge(size(model%plies), 1, gauge%face == face_back)
-    element = model%mesh%element_at(cell(1) + (cell(2) - 1)*model%mesh%cells(1), ply)
-    element = findloc(model%distribution%elements, element, dim=1)
-    if (element == 0) return
-    call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
-    place = [part_of(model%mesh%x_edges, cell(1), at(1)), part_of(model%mesh%y_edges, cell(2), at(2))]
-    shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
-    strain = matmul(shape, all(lane_of(element), corners, :6))
-    z = merge(model%plies(ply)%z_bottom, model%plies(ply)%z_top, gauge%face == face_back)
     direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
-    call total%add(dot_product(direction, strain(1:3) + z*strain(4:6)))
+    columns = cells_at(model%mesh%x_edges, at(1))
+    rows = cells_at(model%mesh%y_edges, at(2))
+    ply = merge(size(model%plies), 1, gauge%face == face_back)
+    do j = 1, size(rows)
+      do i = 1, size(columns)
+        element = model%mesh%element_at(columns(i) + (rows(j) - 1)*model%mesh%cells(1), ply)
+        element = findloc(model%distribution%elements, element, dim=1)
+        if (element == 0) cycle
+        call total%add(dot_product(direction, surface_strain(model, gauge, motion, element, &
+          [part_of(model%mesh%x_edges, columns(i), at(1)), part_of(model%mesh%y_edges, rows(j), at(2))]))/ &
+          (size(columns)*size(rows)))
+      end do
+    end do
   end subroutine add_strain
+
+  !> Strain of a surface in an element.
+  function surface_strain(model, gauge, motion, element, place) result(strain)
+    type(model_t), intent(in) :: model
+    !> The gauge, on one of the surfaces
+    type(gauge_t), intent(in) :: gauge
+    !> Motion of the layers, (5, points)
+    real(wp), intent(in) :: motion(:, :)
+    !> Index of the element among those of this rank
+    integer, intent(in) :: element
+    !> Fractions of the element before the point, along x and y
+    real(wp), intent(in) :: place(2)
+    !> Along x and y, and shear
+    real(wp) :: strain(3)
+    real(wp) :: all(lanes, 9, 8), shape(4), mean(6), z
+
+    call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
+    shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
+    mean = matmul(shape, all(lane_of(element), corners, :6))
+    z = merge(model%plies(size(model%plies))%z_bottom, model%plies(1)%z_top, gauge%face == face_back)
+    strain = mean(1:3) + z*mean(4:6)
+  end function surface_strain
 
   !> Position of a gauge or its image in the modelled part, and its direction there.
   pure subroutine find_place(model, gauge, at, angle)
@@ -120,15 +147,20 @@ contains
     end do
   end subroutine find_place
 
-  !> Cell of a coordinate, the first of two at an edge.
-  pure integer function cell_at(edges, at) result(cell)
+  !> Cell of a coordinate, both beside an edge.
+  pure function cells_at(edges, at) result(cells)
     !> Edges of the cells, ascending
     real(wp), intent(in) :: edges(:)
     !> The coordinate, on the plate
     real(wp), intent(in) :: at
+    !> One or two
+    integer, allocatable :: cells(:)
+    real(wp) :: same
+    integer :: cell
 
-    cell = max(1, min(size(edges) - 1, count(edges < at)))
-  end function cell_at
+    same = rounding*(edges(size(edges)) - edges(1))
+    cells = [(cell, cell=max(1, count(edges < at - same)), min(size(edges) - 1, count(edges <= at + same)))]
+  end function cells_at
 
   !> Fraction of a cell before a coordinate.
   pure real(wp) function part_of(edges, cell, at) result(part)

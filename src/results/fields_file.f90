@@ -57,20 +57,13 @@ module fields_file
     integer :: global_cells = 0
   contains
     procedure :: describe
-    procedure :: create
+    procedure :: create, resume
     procedure, nopass :: check_deck
-    procedure :: resume
     procedure :: write_mesh
-    procedure :: is_on
-    procedure :: begin
-    procedure :: write_point_field
-    procedure :: write_cell_field
-    procedure :: write_figures
-    procedure :: finish
-    procedure, private :: name_files
-    procedure, private :: open_file
-    procedure, private :: close_file
-    procedure, private :: drop_times_after
+    procedure :: is_on, is_empty
+    procedure :: begin, finish
+    procedure :: write_point_field, write_cell_field, write_figures
+    procedure, private :: name_files, open_file, close_file, drop_times_after
   end type fields_file_t
 
 contains
@@ -228,6 +221,14 @@ contains
 
     is_on = self%global_points == points
   end function is_on
+
+  !> True: the file has no time yet.
+  pure logical function is_empty(self)
+    !> The fields
+    class(fields_file_t), intent(in) :: self
+
+    is_empty = size(self%grids) == 0
+  end function is_empty
 
   !> Starts a time.
   subroutine begin(self, time, step, error)

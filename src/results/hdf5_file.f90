@@ -8,6 +8,7 @@ module hdf5_file
     h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, &
     h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, h5pset_fapl_mpio_f, &
     h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
+  use files, only: lacks_space
   use mpi, only: mpi_info_null
   use output_streams, only: output_stream_t
   use text, only: line_t
@@ -241,8 +242,15 @@ contains
     !> The error, if any; equal on all ranks
     character(len=*), intent(in) :: failure
 
+    logical :: is_full
+
     if (allocated(self%failure)) return
-    if (self%communicator%any(status < 0)) self%failure = failure
+    if (.not. self%communicator%any(status < 0)) return
+    self%failure = failure
+    ! While data are written the reserve is there: less than its size was left for them.
+    is_full = .false.
+    if (allocated(self%reserve)) is_full = lacks_space(self%reserve, reserved_bytes)
+    if (self%communicator%any(is_full)) self%failure = 'no space is left on the disk'
   end subroutine check_status
 
   !> True if there was no error so far.

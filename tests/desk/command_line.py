@@ -111,6 +111,19 @@ def check_interrupt(implam, folder):
     print(f"interrupt: reported after {answered:.2f} s, ended after {ended:.1f} s")
 
 
+def check_cut_step(implam, folder):
+    """Check and run say in one sentence that the stable step is shorter than the deck's."""
+    deck = folder / "cut.nml"
+    text = (HERE.parents[1] / "input" / "small" / "cohesive.nml").read_text(encoding="utf-8").partition("&time")[0]
+    sentence = "The step of the deck, 1e-5, is longer and is not taken.\n"
+    for end, is_cut in (("end=20e-6 step=10e-6", True), ("end=2e-6 step=10e-9", False)):
+        deck.write_text(text + f"&time integrator='central_difference' {end} /\n", encoding="utf-8")
+        for verb in ("check", "run"):
+            printed = output_of(implam, verb, str(deck), cwd=folder)
+            require((sentence in printed) == is_cut, f"implam {verb}: {printed}")
+    print("cut step: done")
+
+
 def check_pages(implam, folder):
     """The manual page has every key; bash completes commands, groups, keys and decks."""
     page = output_of(implam, "man")
@@ -216,6 +229,7 @@ def main():
     check_explain(implam)
     check_slips(implam, folder)
     check_interrupt(implam, folder)
+    check_cut_step(implam, folder)
     check_pages(implam, folder)
     check_zsh(implam, folder)
     check_new(implam, folder)

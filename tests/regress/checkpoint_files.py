@@ -131,7 +131,9 @@ def check_full(implam, folder, _):
     for number in random.Random(3).sample(range(1, writes + 1), 12):
         said, checkpoints = run_with(number, EXIT_FILES)
         require(not checkpoints, f"Write {number} of {writes} failed, and a checkpoint is left.")
-        print(f"write {number} of {writes}: {one_sentence_of(said, number)}")
+        sentence = one_sentence_of(said, number)
+        print(f"write {number} of {writes}: {sentence}")
+        require("no space is left on the disk" in sentence or "could not be closed" in sentence, "The reason lacks.")
 
 
 TRIALS = {"found": check_found, "mixed": check_mixed, "damaged": check_damaged, "full": check_full}

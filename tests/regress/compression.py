@@ -274,7 +274,9 @@ def check_refused(implam, folder, _):
         (["initial_state%from='damaged.h5'"], ["damaged"], EXIT_FILES),
         (["initial_state%from='newer.h5'"], ["another version"], EXIT_FILES),
     ]
-    cases.append(([f"case%name='{IMPACT}'"], ["writes its own end"], EXIT_DECK))
+    (folder / "link.h5").symlink_to(CHECKPOINT)
+    for path in (CHECKPOINT, f"./{CHECKPOINT}", f".//{CHECKPOINT}", folder.resolve() / CHECKPOINT, "link.h5"):
+        cases.append(([f"case%name='{IMPACT}'", f"initial_state%from='{path}'"], ["writes its own end"], EXIT_DECK))
     before = (folder / CHECKPOINT).read_bytes()
     for settings, words, code in cases:
         said = run([implam, deck_of(folder, COMPRESSION, settings)], code, folder)
@@ -286,6 +288,11 @@ def check_refused(implam, folder, _):
     require("was stopped at" not in run(check, folder=folder), "A complete impact is called stopped.")
     run([implam, f"{IMPACT}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     require("was stopped at time" in run(check, folder=folder), "An incomplete impact is not warned of.")
+    run([implam, f"{COMPRESSION}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
+    (folder / f"{COMPRESSION}_summary.json").unlink()
+    run([implam, "restart", f"{COMPRESSION}_restart.h5", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
+    warned = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["warnings"]
+    require(any("was stopped at time" in warning["text"] for warning in warned), f"After a restart: {warned}")
 
 
 def southwell(rows):

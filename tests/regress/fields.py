@@ -49,11 +49,25 @@ def check_ended(implam, folder):
     require(len(stored) == 1 and abs(stored[0] - TIMES[-1]) < 1e-12 * TIMES[-1], f"{base}.h5 has the times {stored}.")
 
 
+def check_moved(implam, folder):
+    """An ended run that is continued in another folder has its last fields there, in both files."""
+    deck = write_deck(folder, "sun_chen_tan_sun.nml", SETTINGS[:3])
+    name = run_deck(implam, deck).name.removesuffix("_history.csv")
+    away = folder / "away"
+    said = run([implam, "restart", checkpoint_of(folder), "--output", away])
+    require(f"{away}/{name}.xdmf" in said, said)
+    with meshio.xdmf.TimeSeriesReader(away / f"{name}.xdmf") as reader:
+        reader.read_points_cells()
+        times = [reader.read_data(number)[0] for number in range(reader.num_steps)]
+    require(len(times) == 1 and abs(times[0] - TIMES[-1]) < 1e-12 * TIMES[-1], f"{name}.xdmf has the times {times}.")
+
+
 def check_both(implam, folder):
     """Run, restart and read."""
     for history in run_split(implam, folder / "run", "sun_chen_tan_sun.nml", SETTINGS):
         check_fields(history)
     check_ended(implam, folder / "ended")
+    check_moved(implam, folder / "moved")
     print(f"{len(TIMES)} times, the deflection of the history in each")
 
 
