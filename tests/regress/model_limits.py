@@ -26,7 +26,7 @@ ZONE = "&delamination below_ply=2  G_c=1  zone=40e-3, 40e-3  starter=15e-3 /\n"
 # What is passed, and the rest of the deck.
 MODELS = {
     "slope of the plate has exceeded": "&impactor mass=2  velocity=14  radius=10e-3 /\n&time end=1e-3  step=10e-6 /\n",
-    "indentation exceeds the thickness": "&impactor mass=0.05  velocity=10 /\n&indentation law='hertz'  k=2e6 /\n"
+    "indentation has exceeded the thickness": "&impactor mass=0.05  velocity=10 /\n&indentation law='hertz'  k=2e6 /\n"
                              "&time end=1e-3  step=10e-6 /\n",
     # .69 mm at most, less than the thickness.
     "or the radius of the impactor": "&impactor mass=0.005  velocity=2  radius=1e-4 /\n"
@@ -64,7 +64,7 @@ def main(implam, folder):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)
         deck = here / "deck.nml"
-        breaking = ("over an area as large", "failed fibres", "&adapt", "travel")
+        breaking = ("over an area as large", "3 thicknesses", "&adapt", "travel")
         fails = any(words in sentence + rest for words in breaking)
         plate = WEAK if fails else BEGINNING
         deck.write_text("&case name='limits' /\n" + plate + rest, "utf-8")
