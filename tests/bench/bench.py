@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures what a run costs. See README.md beside this file."""
+"""Measures the cost of runs. See README.md beside this file."""
 import argparse
 import csv
 import itertools

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Random models whose plies break: the energy that integrators lose, and what half the step changes.
+"""Random models with failing plies: energy dissipated by the integrators, and its change with half the step.
 Usage: breaking_models.py IMPLAM [COUNT]
 
-Prints a line a run: model, 1 for half the step, energy_algorithmic at the end, least and largest, energy_ply_damage
-(all in % of the impact), fibre failures, steps, steps tried again, peak force."""
+Prints a line for each run: model, 1 for half the step, energy_algorithmic at the end, its minimum and maximum,
+energy_ply_damage (all in % of the impact energy), fibre failures, steps, rejected steps, peak force."""
 
 import csv
 import random

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
-"""Random impacts whose interfaces delaminate by the cohesive law, each run in several ways that must not matter.
-Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways to leave out, as two_ranks,three_ranks)
+"""Random impacts with cohesive interfaces that delaminate; each is run in several ways that must give the same results.
+Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways left out, such as two_ranks,three_ranks)
 
-A model is run as it is, and in the ways two_ranks, three_ranks, units (mm-t-s), turned by a right angle, mirrored,
-stopped and gone on with, and perturbed: with G_c larger by 1e-12. What differs there is chaotic: a rounding elsewhere
-does the same. A model passes if the run ends with 0, or with 3 and a sentence; if the energy dissipated is G_c times
-the area to 1e-6; if it takes under a minute of the processor;
-and if all ways part the same points of the interfaces, fail the same plies of the same elements, and give its
-delaminated area. How far the areas are apart is reported."""
+Each model is run unchanged, and then on two and three ranks, in other units (mm-t-s), rotated by 90 degrees, mirrored,
+stopped and restarted, and with G_c larger by 1e-12. Differences of this perturbed run are those of round-off. A model
+passes if the run ends with exit code 0, or with 3 and a message; if the dissipated energy is G_c times the delaminated
+area to 1e-6; if it takes less than a minute of processor time; and if all ways give the same failed points of the
+interfaces, the same failed plies of each element and the same delaminated area. Differences of the area are printed."""
 
 import csv
 import os

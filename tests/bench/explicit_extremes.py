@@ -1,4 +1,4 @@
-"""A model of breaking plies and interfaces by central differences, at extremes of its keys."""
+"""A model with failing plies and interfaces by central differences, with extreme values of its keys."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Runs by central differences on several ranks: histories byte for byte, messages and bytes of a step."""
+"""Central differences on several ranks: bytewise comparison of histories, and messages and bytes of a step."""
 
 import pathlib
 import re

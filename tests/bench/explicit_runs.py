@@ -1,4 +1,4 @@
-"""Runs by central differences, and the rows of the table that explicit_table.py prints of them."""
+"""Runs by central differences, and their rows in the table of explicit_table.py."""
 
 import csv
 import json

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What central differences are to hold, as a table: a row a figure, with its bound. See README.md.
+"""Requirements on central differences as a table: each row has a figure and its bound. See README.md.
 Usage: explicit_table.py IMPLAM PART...     (with Python of .venv; PARTs with --list)"""
 
 import argparse

@@ -1,9 +1,8 @@
 """Semi-analytic response of an elastic impact: a ball on a simply supported cross-ply plate, by Navier's modes.
 
 The plate is Mindlin's with rotary inertia, the force is spread over a square patch in the middle, and the indentation
-is measured from the patch's mean deflection. Each mode moves exactly under a force that is linear over a step, and so
-does the ball; the force at the end of a step is the one root of a scalar equation. Modes too fast for the force to
-excite act by their stiffness alone.
+is measured from the patch's mean deflection. Modes and ball move exactly under a force that is linear over a step; the
+force at the end of a step is the root of a scalar equation. Modes far above the frequencies of the force are static.
 """
 import dataclasses
 import math

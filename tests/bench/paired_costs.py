@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What implicit runs cost over those of an older program: steps of large plates, Sun and Chen's plate, peanut,
-thresholds, specimens under load steps. Both programs run in turns. See README.md."""
+"""Cost of implicit runs relative to an older program: steps of large plates, Sun and Chen's plate, peanut,
+thresholds, specimens under load steps. Both programs run alternately. See README.md."""
 import argparse
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How much faster two ranks are than one: implicit steps of plates of 200 000 unknowns, and the measured 25 J panel,
-which goes by central differences, on its cells of 1.5 mm up to .72 ms. See README.md."""
+"""Speed-up of two ranks over one: implicit steps of plates of 200 000 unknowns, and the measured 25 J panel
+by central differences, on its cells of 1.5 mm up to .72 ms. See README.md."""
 import argparse
 import os
 import pathlib

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""The cohesive interface against closed forms and an independent calculation: one row of a table a run.
+"""The cohesive interface against closed forms and an independent calculation: one row of a table for each run.
 Usage: cohesive_study.py IMPLAM STUDY...
 
 thresholds  a clamped isotropic plate on cells of 2, 1 and .5 mm, with and without a starter, strengths of 60 MPa: force
             while the delamination grows over the closed form, its scatter, and the radius along x and a diagonal
 steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
-impact      input/crossply_threshold.nml, from nothing: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
+impact      input/crossply_threshold.nml, no starter: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
 strips      pure end moments on strips of two arms, shear and opening, fine and coarse cells: moment over the exact one
 
 Fields are read with h5py."""

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What mesh, step, damping, numerical keys and material figures make of input/peanut.nml: one row of a table each.
+"""Effect of mesh, step, damping, numerical keys and material data on input/peanut.nml: one row of a table each.
 
-Those are by implicit steps of 16 us; `integrators` holds them against central differences.
+These runs have implicit steps of 16 us; `integrators` compares them with central differences.
 """
 
 import argparse

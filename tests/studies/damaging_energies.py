@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Where the energy goes in the models of damaging_models.py, and what step and damping change of it.
+"""Energy balance of the models of damaging_models.py, and its change with step and damping.
 Usage: damaging_energies.py IMPLAM SEED ...
 
-Prints a line a run: as it is, with half the step, with rho_inf=.99. Each has what integrators, plies and delaminations
-took in % of the impact, the delaminated area in mm2, fibre failures, peak force in N, steps, steps tried again,
-iterations and processor time in s."""
+Prints a line for each run: unchanged, with half the step, with rho_inf=.99. Each has the energies dissipated by
+integrators, plies and delaminations in % of the impact energy, the delaminated area in mm2, fibre failures, peak force
+in N, steps, rejected steps, iterations and processor time in s."""
 
 import csv
 import sys

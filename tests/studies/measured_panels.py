@@ -3,13 +3,13 @@
 Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...] [+'GROUP' ...]
        measured_panels.py FOLDER 6.5J|25J
 
-Runs the deck of input/experiments in FOLDER with the keys given, without the groups whose beginning stands behind a
-dash (those of one line, such as -ply_damage or '-support clamps') and with the groups written out behind a plus, such
-as +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the impactor, end of contact,
-projected area, absorbed energy, the forces at some displacements as the impactor goes in, for 25 J the relative L2
-error of the force history and the forces at some times, each beside the measured ones, what plies and delaminations
-took, steps and cost. Beside the projected area by the dissipated toughness it reports the area in which an interface
-has lost half its stiffness, which includes the process zones. Without IMPLAM it reads the results in FOLDER."""
+Runs the deck of input/experiments in FOLDER with the keys given, without the groups given by a dash and their
+beginning (those of one line, such as -ply_damage or '-support clamps') and with the groups given after a plus, such as
++'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the impactor, end of contact, projected
+area, absorbed energy, the forces at some displacements up to the largest, for 25 J the relative L2 error of the force
+history and the forces at some times, each beside the measured ones, the energies of plies and delaminations, steps and
+cost. Beside the projected area by the dissipated toughness it reports the area in which an interface has lost half its
+stiffness, which includes the process zones. Without IMPLAM it reads the results in FOLDER."""
 
 import csv
 import json

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""What a tenth of each input does to a measured panel (doc/studies/measured_panels.md).
+"""Sensitivity of a measured panel to 10 % of each input (doc/studies/measured_panels.md).
 Usage: panel_sensitivity.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...]
 
-Runs the deck of measured_panels.py as it is and with each figure of material, interface and indentation 10 %
-larger, each in a folder of its own, and prints a row of a table: peak force, largest displacement and projected area,
-for the changed ones in per cent of the deck's. The first rows change one figure by parts of a million, which shows what
-rounding does. With time%end=2e-3 behind it a run ends when the impactor has turned back.
-What has ended in FOLDER is not run again."""
+Runs the deck of measured_panels.py unchanged and with each value of material, interface and indentation 10 % larger,
+each in its own folder, and prints a row of a table: peak force, largest displacement and projected area, of the changed
+decks in per cent of the unchanged one. The first rows change one value by 1e-6, which shows the effect of round-off.
+With time%end=2e-3 a run ends after the largest displacement. Complete runs in FOLDER are not repeated."""
 
 import re
 import subprocess

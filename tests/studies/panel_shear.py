@@ -2,17 +2,17 @@
 """Part of the force that transverse shear carries on the 25 J panel (doc/studies/measured_panels.md).
 Usage: panel_shear.py FOLDER
 
-Reads what measured_panels.py has left there of a run of 25J with output%fields='stress','ply_damage' and
+Reads the results that measured_panels.py wrote there for 25J with output%fields='stress','ply_damage' and
 output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the struck point
 
-- the force that transverse shear carries there, in kN: plies add up their stresses on a circle. Slowly, the force is
-  this and the part of membrane forces along the slope;
+- the force carried by transverse shear, in kN: the stresses of all plies summed over a circle. In slow motion the
+  contact force is the sum of this and of the membrane forces along the slope;
 - the radial membrane force, in N/mm;
-- root mean square and largest size of s23 over all plies, in MPa.
+- root mean square and largest magnitude of s23 over all plies, in MPa.
 
-Plies of a cell have the stresses of its middle. Rings begin 5.5 mm from the struck point: nearer, within the nose's
-contact of 3 to 3.6 mm and half a thickness of the panel, the load spreads through the thickness, of which plate
-theory knows nothing. Needs h5py."""
+Stresses are those at the centre of each cell. Rings begin 5.5 mm from the struck point: nearer, within the contact
+radius of 3 to 3.6 mm and half the thickness of the panel, the load spreads through the thickness, which plate theory
+does not describe. Needs h5py."""
 
 import re
 import sys

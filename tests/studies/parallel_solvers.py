@@ -4,13 +4,13 @@ Usage: parallel_solvers.py PROGRAM [--cells N ...] [--ranks N ...] [--methods NA
 
 PROGRAM is built by `cmake --build build --target parallel_solvers`. It assembles the tangent of a step of 1 us of a
 laminate with von Karman's strains, five unknowns a node, on the ranks of METIS' decomposition; with --static the
-tangent of a load step. Prints a row a method and number of ranks:
+tangent of a load step. Prints a row for each method and number of ranks:
 
 unknowns, method, ranks; processor time of a factorization and of a solve to 1e-6, s; iterations of a solve; operations
 of both on the busiest rank, 1e9; messages and MB that the busiest rank sends in both, and sums over all ranks, counted
 by Open MPI's monitoring and PETSc's log; memory of all ranks, MB; residual over load. Times hold for at most one rank a
-core; with more they include waiting. The factorization is a second one of a run, for which the pattern has been
-analysed. Operations of methods with Schur complements are wrong: PETSc 3.18 takes other figures of MUMPS for them."""
+core; with more they include waiting. The factorization is the second one of a run, whose symbolic phase is done.
+Operations of methods with Schur complements are wrong, since PETSc 3.18 reads other counters of MUMPS."""
 
 import argparse
 import os

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""What the constants of the iteration change: each halved and doubled, on small decks.
+"""Effect of the constants of the iteration: each halved and doubled, on small decks.
 Usage: solution_controls.py IMPLAM [CONSTANT or DECK ...]     (about six minutes)
        solution_controls.py IMPLAM own [CONSTANT ...]         (about two minutes)
 
 The constants are those of the group &controls, which `implam explain controls` lists. Without a name all are varied,
 on all decks.
-Prints a row a variant: the constant, its value, and for each deck the ratio of its cost to that of the deck as it is,
-and the largest change of the force in the history over the peak force (of the energies, where no impactor presses), in
-%. The cost is the number of solves plus 30 for each factorization, which takes about as long as 30 solves. A dash is a
-run that has not ended.
+Prints a row for each variant: the constant, its value, and for each deck the ratio of its cost to that of the unchanged
+deck, and the largest change of the force in the history over the peak force (of the energies, without an impactor), in
+%. The cost is the number of solves plus 30 for each factorization, which takes about as long as 30 solves. A dash marks
+a run that did not end.
 
 With `own` those constants are varied that few decks use, each on decks that use it: a row has constant, deck, and for
 each other value ratio and change."""

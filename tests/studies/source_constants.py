@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What constants of single modules change that no deck can set: each with two other values, on small decks.
+"""Effect of constants of single modules that no deck can set: each with two other values, on small decks.
 Usage: source_constants.py BUILD [CONSTANT ...]     (about five minutes)
 
 BUILD is the folder of a build by Ninja. For each value the one source is compiled with it and linked with the objects

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs whose ledger leaves more than 1 % of the energy open although nothing was warned of.
+"""Runs with more than 1 % of energy error or algorithmic dissipation and without a warning of it.
 Usage: unwarned_energies.py FOLDER...
 
 Reads every NAME_summary.json below the folders, such as build/tests/regress after ctest, or the results of a sweep.
-What integrators or load steps created or took, and what no entry accounts for, is compared with the largest energy at
-the end. Fronts record fracture before the motion has lost it: this energy does not count as created."""
+The energy created or dissipated by integrators or load steps, and the energy error, are compared with the largest
+energy at the end. Fronts record fracture energy before the motion has lost it; this does not count as created."""
 
 import json
 import sys
