@@ -230,8 +230,7 @@ contains
     real(wp), contiguous, intent(in) :: v(:, :)
     !> -1 before the step, 1 after it
     integer, intent(in) :: sign
-
-    real(wp) :: change(size(self%force, 2))
+    real(wp), allocatable :: change(:)
 
     if (.not. abs(self%steps%now - self%steps%last) > 0) return
     change = sign*(self%steps%now - self%steps%last)/4*sum(self%force*model%motion_of(v), 1)

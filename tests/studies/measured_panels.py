@@ -24,6 +24,8 @@ import numpy as np
 DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
 TIMES = (0.4, 0.6, 0.8, 1.0, 1.1, 1.2, 1.6, 2.0, 2.5, 3.0)
 DISPLACEMENTS = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
+INTACT = 0.9e-3  # s; fibres of the 25 J panel fail later
+FIBRES_FAIL = 1.0  # J in fibre tension; they fail within .1 ms
 
 
 def rows_of(path):
@@ -62,6 +64,17 @@ def forces_over(rows, name):
     curve = [row[0] for row in measured], [row[1] for row in measured]
     return {at: [value_at(1e-3*at, *computed)/1e3, value_at(1e-3*at, *curve)/1e3] for at in DISPLACEMENTS
             if 1e-3*at <= computed[0][-1]}
+
+
+def mean_force(rows):
+    """Mean force, N, until fibres of the 25 J panel fail."""
+    curve = [row["time"] for row in rows], [row["force"] for row in rows]
+    return sum(value_at(INTACT * (i + 0.5) / 1000, *curve) for i in range(1000)) / 1000
+
+
+def failure_displacement(rows):
+    """Displacement, m, at which fibres fail in tension; NaN where they do not."""
+    return next((row["impactor_displacement"] for row in rows if row["energy_fibre_tension"] > FIBRES_FAIL), np.nan)
 
 
 def history_error(rows):
@@ -128,6 +141,8 @@ def show(name, folder):
     for at, pair in forces_over(rows, name).items():
         figures[f"force at {at} mm, kN"], figures[f"measured at {at} mm, kN"] = pair
     if name == "25J":
+        figures[f"mean force to {1e3 * INTACT:g} ms, kN"] = mean_force(rows) / 1e3
+        figures["fibres fail at, mm"] = 1e3 * failure_displacement(rows)
         figures["force history, relative L2, %"] = 100 * history_error(rows)
         for time, (force, measured) in forces_at(rows).items():
             figures[f"force at {time} ms, kN"], figures[f"measured at {time} ms, kN"] = force, measured

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from measured_panels import FIBRES_FAIL
 from scipy.special import stdtrit
 
 DISSIPATED = ("indentation", "delamination", "ply_damage", "contact", "friction", "algorithmic")
@@ -23,7 +24,6 @@ DISSIPATED = ("indentation", "delamination", "ply_damage", "contact", "friction"
 ESTIMATES = {"absorbed energy, J": lambda d, v: -1.115 + 1.064 * d,
              "end of contact, ms": lambda d, v: 2.977 + 0.0818 * d + 0.3485 * v}
 MOMENT = 2e-3
-FIBRES_FAIL = 1.0  # J in fibre tension; they fail within .1 ms
 
 
 def figures_of(folder):
