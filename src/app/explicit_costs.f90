@@ -31,16 +31,32 @@ contains
     !> One sentence
     character(len=:), allocatable :: sentence
     real(wp) :: steps, step
-    character(len=:), allocatable :: bound
+    character(len=:), allocatable :: bound, time_bound
+    logical :: lengthened
 
     steps = deck%stepping%time%end/deck%stepping%time%step*shortened(deck)
     step = deck%stepping%time%end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
+    ! Damage lengthens the contact by an unknown time.
+    lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
+    time_bound = bound
+    if (lengthened) time_bound = 'about '
     sentence = 'About '//counted(rounded_text(steps), 'step')//' of '//rounded_text(step)//' for '// &
-               bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '//bound// &
-               duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor.'
+               bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
+               time_bound//duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor'
+    if (lengthened) &
+      sentence = sentence//', more where damage lengthens the contact beyond that of an undamaged plate'
+    sentence = sentence//'.'
   end function explicit_sentence
+
+  !> True: an interface is cohesive.
+  pure logical function has_cohesive(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    has_cohesive = any(deck%delaminations%law == law_cohesive)
+  end function has_cohesive
 
   !> Sentence on the step of the deck where it is longer than that taken; else empty.
   function untaken_step(deck, step) result(sentence)
@@ -77,7 +93,7 @@ contains
     type(deck_t), intent(in) :: deck
 
     seconds = of_elements
-    if (any(deck%delaminations%law == law_cohesive)) seconds = seconds + of_interfaces
+    if (has_cohesive(deck)) seconds = seconds + of_interfaces
     if (deck%has_crack_bands()) seconds = seconds + of_crack_bands
   end function seconds_of_element
 
