@@ -16,6 +16,7 @@ module deck_cross_checks
   use impact_parameters, only: law_hertz
   use indentation_deck, only: indentation_group, key_k, key_alpha_critical
   use kinds, only: wp
+  use laminate_deck, only: laminate_group
   use line_deck, only: line_group, key_rise
   use line_loads, only: line_load_t
   use material_deck, only: material_group, require_densities
@@ -259,6 +260,8 @@ contains
     do i = 1, size(deck%delaminations)
       associate (place => deck%delaminations(i)%group)
         if (.not. are_clear(deck%settings, problems, delamination_group, key_below_ply, place)) cycle
+        ! 'between_angles' and 'all' find no interface in a laminate with errors.
+        if (deck%delaminations(i)%below_ply < 1 .and. problems%concern(laminate_group)) cycle
         if (interface_objection(deck%delaminations(i), size(deck%laminate%angle)) /= '') &
           call report(deck%settings, problems, delamination_group, '', &
                     interface_objection(deck%delaminations(i), size(deck%laminate%angle))//'.', place)
