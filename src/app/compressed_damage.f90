@@ -131,7 +131,7 @@ contains
 
     allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
     if (.not. model%setup%has_ply_damage) return
-    associate (failed => now%plies%failed(ply), mesh => model%mesh)
+    associate (failed => now%plies%failed_in_elements(model, ply), mesh => model%mesh)
       do i = 1, model%elements%elements
         if (.not. failed(fibre_failure, i)) cycle
         call add_cell(collected, model, along, mesh%place_of(mesh%element_cell(model%distribution%elements(i))))

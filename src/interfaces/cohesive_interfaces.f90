@@ -262,7 +262,9 @@ contains
     dissipated_fractions = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) dissipated_fractions(i) = dissipated_fraction(self%law_at(model, i), self%points(i)%damage)
+      if (.not. self%cohesive(i)) cycle
+      if (self%points(i)%damage > 0) &
+        dissipated_fractions(i) = dissipated_fraction(self%law_at(model, i), self%points(i)%damage)
     end do
   end function dissipated_fractions
 

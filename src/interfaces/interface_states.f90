@@ -152,17 +152,17 @@ contains
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     real(wp) :: area
-    real(wp), allocatable :: areas(:, :)
+    real(wp), allocatable :: areas(:)
     type(exact_sum_t) :: sum
     real(wp) :: largest
     integer :: i
 
     area = 0
     if (.not. model%map%layered) return
-    areas = delaminated_areas(self, model)
+    areas = largest_areas(self, model)
     largest = 0
     do i = 1, model%distribution%owned
-      largest = max(largest, maxval(areas(:, i)))
+      largest = max(largest, areas(i))
       if (i < model%distribution%owned) then
         if (node_of(i + 1) == node_of(i)) cycle
       end if
@@ -181,6 +181,22 @@ contains
       node_of = model%mesh%point_node(model%distribution%points(i))
     end function node_of
   end function projected_area
+
+  !> Largest delaminated area of all zones at each point. Collective.
+  function largest_areas(self, model) result(areas)
+    !> The state
+    class(interface_state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> (local points)
+    real(wp), allocatable :: areas(:)
+
+    if (any(model%setup%delaminations%law /= law_cohesive)) then
+      areas = maxval(delaminated_areas(self, model), dim=1)
+    else
+      ! A point has the cohesive interface below it only.
+      areas = merge(self%cohesive%dissipated_fractions(model)*model%contact_area, 0.0_wp, model%zone > 0)
+    end if
+  end function largest_areas
 
   !> Delaminated area of each zone at each point: area times dissipated fraction of the toughness with a cohesive law,
   !> or the point's part of delaminated cells where fronts release ties. Their sums are the areas of the interfaces.

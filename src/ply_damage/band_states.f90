@@ -4,7 +4,8 @@ module band_states
   use crack_bands, only: band_state_t, is_damaged
   use kinds, only: wp
   use models, only: model_t
-  use ply_damage_parameters, only: energy_modes, matrix_compression, matrix_tension
+  use ply_damage_parameters, only: energy_modes, failure_modes, matrix_compression, matrix_cracking, &
+                                   matrix_crushing, matrix_tension
   implicit none
   private
   public :: band_states_t, new_band_states
@@ -23,11 +24,8 @@ module band_states
     !> Accepted states of an element; true if one has damage.
     procedure :: of_element
     procedure :: damaged
-    !> Elements with failed fibres or matrix of a ply, and with matrix failure mostly in compression.
-    procedure :: failed_parts
-    procedure :: mostly_compressed
-    !> True if a ply lies in an element.
-    procedure, private :: has_ply
+    !> Failed modes of a ply of an element.
+    procedure :: failed_modes
     !> Damage of a ply of an element, and the stresses that its closed cracks carry.
     procedure :: accepted_damage
     procedure :: carried_by_cracks
@@ -90,50 +88,23 @@ contains
     damaged = any(is_damaged(self%of_element(element)))
   end function damaged
 
-  !> Elements of this rank with failed fibres and with failed matrix of a ply.
-  pure function failed_parts(self, ply)
+  !> Failed modes of a ply of an element in the trial: it has failed where its stress is zero, its matrix by crushing
+  !> where it has dissipated more energy in transverse compression than in tension.
+  pure function failed_modes(self, ply, element) result(failed)
     !> The states
     class(band_states_t), intent(in) :: self
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> True for fibres, and for the matrix, (2, elements)
-    logical :: failed_parts(2, size(self%offset))
-    integer :: element
-
-    failed_parts = .false.
-    do element = 1, size(self%offset)
-      if (self%has_ply(ply, element)) failed_parts(:, element) = self%trial(self%offset(element) + ply)%damage >= 1
-    end do
-  end function failed_parts
-
-  !> True if the matrix of a ply has dissipated more energy in transverse compression than in tension.
-  pure function mostly_compressed(self, ply)
-    !> The states
-    class(band_states_t), intent(in) :: self
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> (elements)
-    logical :: mostly_compressed(size(self%offset))
-    integer :: element
-
-    mostly_compressed = .false.
-    do element = 1, size(self%offset)
-      if (.not. self%has_ply(ply, element)) cycle
-      associate (dissipated => self%trial(self%offset(element) + ply)%dissipated)
-        mostly_compressed(element) = dissipated(matrix_compression) > dissipated(matrix_tension)
-      end associate
-    end do
-  end function mostly_compressed
-
-  !> True if a ply lies in an element.
-  pure logical function has_ply(self, ply, element)
-    !> The states
-    class(band_states_t), intent(in) :: self
-    !> Ply of the laminate, and element of this rank
+    !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
+    !> True for failed modes
+    logical :: failed(failure_modes)
 
-    has_ply = self%range(1, element) <= ply .and. ply <= self%range(2, element)
-  end function has_ply
+    associate (state => self%trial(self%offset(element) + ply))
+      failed = state%damage([1, 2, 2]) >= 1
+      if (.not. failed(matrix_cracking)) return
+      failed(matrix_crushing) = state%dissipated(matrix_compression) > state%dissipated(matrix_tension)
+      failed(matrix_cracking) = .not. failed(matrix_crushing)
+    end associate
+  end function failed_modes
 
   !> Damage of fibres and matrix of a ply of an element in the last accepted state.
   pure function accepted_damage(self, ply, element) result(damage)

@@ -23,7 +23,7 @@ module failed_modes
     !> Reduced elastic constants of a ply of an element, and of all its plies.
     procedure :: elasticity
     procedure :: elasticities
-    !> Failed modes of a ply.
+    !> Failed modes of a ply of an element.
     procedure :: failed
     !> Saves or loads.
     procedure :: visit
@@ -106,16 +106,16 @@ contains
     end associate
   end function elasticities
 
-  !> Failed modes of a ply.
-  pure function failed(self, ply)
+  !> Failed modes of a ply of an element.
+  pure function failed(self, ply, element)
     !> The modes
     class(failed_modes_t), intent(in) :: self
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> True for failed modes, (modes, elements)
-    logical, allocatable :: failed(:, :)
+    !> Ply of the laminate, and element of this rank
+    integer, intent(in) :: ply, element
+    !> True for failed modes
+    logical :: failed(failure_modes)
 
-    failed = self%occurred(:, ply, :)
+    failed = self%occurred(:, ply, element)
   end function failed
 
   !> Saves or loads the modes.

@@ -19,19 +19,21 @@ contains
     type(ply_failure_t), intent(in) :: failures
     !> (modes, plies)
     real(wp) :: areas(failure_modes, size(model%plies))
-    real(wp) :: cells(model%elements%elements)
+    real(wp) :: area
+    logical :: failed(failure_modes)
     type(exact_sum_t) :: sums(failure_modes, size(model%plies))
     integer :: ply, mode, i
 
     areas = 0
     if (.not. model%setup%has_ply_damage) return
-    do i = 1, size(cells)
-      cells(i) = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
-    end do
-    do ply = 1, size(model%plies)
-      associate (failed => failures%failed(ply))
-        do mode = 1, failure_modes
-          call sums(mode, ply)%add(pack(cells, failed(mode, :)))
+    do i = 1, model%elements%elements
+      area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(i)))
+        do ply = range(1), range(2)
+          failed = failures%failed(ply, i)
+          do mode = 1, failure_modes
+            if (failed(mode)) call sums(mode, ply)%add(area)
+          end do
         end do
       end associate
     end do

@@ -7,7 +7,7 @@ module ply_failures
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t, ply_t
-  use ply_damage_parameters, only: failure_modes, fibre_failure, matrix_cracking, matrix_crushing, energy_modes
+  use ply_damage_parameters, only: energy_modes, failure_modes
   use stacking, only: in_plane_section, layer_stiffness
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
@@ -57,8 +57,9 @@ module ply_failures
     procedure :: strained_plies
     !> Stresses that closed cracks of a ply carry.
     procedure :: carried_by_cracks
-    !> Failed modes and reduced constants of a ply.
+    !> Failed modes of a ply, of one element or of all, and its reduced constants.
     procedure :: failed
+    procedure :: failed_in_elements
     procedure :: elasticity
     procedure :: elasticities
     !> Finds new failures in an accepted state and reduces the stiffness.
@@ -181,26 +182,40 @@ contains
                                                      tiny(energy)**0.5_wp)
   end subroutine measure_lag
 
-  !> Failed modes of a ply; a softening ply has failed where its stress is zero.
-  pure function failed(self, ply)
+  !> Failed modes of a ply of an element.
+  pure function failed(self, ply, element)
     !> The failures
     class(ply_failure_t), intent(in) :: self
+    !> Ply of the laminate, and element of this rank that has it
+    integer, intent(in) :: ply, element
+    !> True for failed modes
+    logical :: failed(failure_modes)
+
+    if (allocated(self%bands)) then
+      failed = self%bands%states%failed_modes(ply, element)
+    else
+      failed = self%modes%failed(ply, element)
+    end if
+  end function failed
+
+  !> Failed modes of a ply in all elements.
+  pure function failed_in_elements(self, model, ply) result(failed)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    type(model_t), intent(in) :: model
     !> Ply of the laminate
     integer, intent(in) :: ply
-    !> True for failed modes, (modes, elements)
-    logical, allocatable :: failed(:, :)
+    !> True for failed modes, (modes, elements); false in elements without this ply
+    logical :: failed(failure_modes, model%elements%elements)
+    integer :: element
 
-    if (.not. allocated(self%bands)) then
-      failed = self%modes%failed(ply)
-      return
-    end if
-    associate (failed_parts => self%bands%states%failed_parts(ply), pressed => self%bands%states%mostly_compressed(ply))
-      allocate (failed(failure_modes, size(pressed)))
-      failed(fibre_failure, :) = failed_parts(1, :)
-      failed(matrix_cracking, :) = failed_parts(2, :) .and. .not. pressed
-      failed(matrix_crushing, :) = failed_parts(2, :) .and. pressed
-    end associate
-  end function failed
+    failed = .false.
+    do element = 1, size(failed, 2)
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        if (range(1) <= ply .and. ply <= range(2)) failed(:, element) = self%failed(ply, element)
+      end associate
+    end do
+  end function failed_in_elements
 
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
@@ -334,12 +349,16 @@ contains
     type(model_t), intent(in) :: model
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)
-    integer :: ply, mode
+    integer :: element, ply, mode
 
     counts = 0
     if (.not. model%setup%has_ply_damage) return
-    do ply = 1, size(model%plies)
-      counts = counts + count(self%failed(ply), dim=2)*model%mesh%multiplicity
+    do element = 1, model%elements%elements
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        do ply = range(1), range(2)
+          where (self%failed(ply, element)) counts = counts + model%mesh%multiplicity
+        end do
+      end associate
     end do
     do mode = 1, failure_modes
       call model%communicator%sum(counts(mode))

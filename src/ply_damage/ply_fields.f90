@@ -62,7 +62,7 @@ contains
     do ply = 1, size(model%plies)
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
-          call fields%write_cell_field(name//'failure', failure_code(plies%failed(ply)), error)
+          call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
           lost = stiffness_lost(model, plies, ply)
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
           call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)

@@ -32,70 +32,79 @@ contains
     integer :: zone, ply
 
     if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
-    if (any(model%setup%delaminations%shear_cracks)) strains = element_strains(model, plies, displacement)
     do zone = 1, size(model%mesh%zones)
       associate (delamination => model%setup%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
-        if (delamination%law /= law_cohesive) cycle
+        if (delamination%law /= law_cohesive .or. delamination%flaw_strength >= 1) cycle
         do ply = below, below + 1
-          associate (reach => block_thickness(model%plies, ply))
-            if (delamination%flaw_strength < 1) &
-              call weaken_beside(interfaces%cohesive, model, zone, cracked_cells(model, plies, ply), reach, &
-                                 delamination%flaw_strength)
-            if (delamination%shear_cracks) &
-              call weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
-          end associate
+          call weaken_beside(interfaces%cohesive, model, zone, cracked_cells(model, plies, ply), &
+                             block_thickness(model%plies, ply), delamination%flaw_strength)
         end do
       end associate
     end do
+    if (.not. any(model%setup%delaminations%shear_cracks)) return
+    strains = element_strains(model, plies, displacement)
+    do ply = 1, size(model%plies)
+      call weaken_by_shear(model, plies, strains, ply, interfaces)
+    end do
   end subroutine update_flaws
 
-  !> Reduces the strength of an interface beside cracks by transverse shear in a ply: a cracked ply transmits no more
-  !> than its own shear strength. Collective.
-  subroutine weaken_by_shear(model, plies, strains, zone, ply, reach, interfaces)
+  !> Reduces the strengths of the interfaces of a ply beside its cracks by transverse shear: a cracked ply transmits no
+  !> more than its own shear strength. Collective.
+  subroutine weaken_by_shear(model, plies, strains, ply, interfaces)
     type(model_t), intent(in) :: model
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Those of element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Index of the zone, and ply of the laminate
-    integer, intent(in) :: zone, ply
-    !> Distance from a crack within which strengths are reduced
-    real(wp), intent(in) :: reach
+    !> Ply of the laminate
+    integer, intent(in) :: ply
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
     type(matrix_strengths_t) :: strengths
-    real(wp) :: part
+    real(wp) :: parts(size(model%mesh%zones)), reach
+    logical :: beside(size(parts)), cracked(product(model%mesh%cells))
+    integer :: zone
 
-    associate (setup => model%setup)
+    reach = block_thickness(model%plies, ply)
+    associate (setup => model%setup, below => model%mesh%zones%below_ply)
       strengths = crack_strengths(model%plies, ply, setup%materials, setup%ply_damage)
-      part = shear_across_strength(strengths)/setup%delaminations(zone)%strength_shear
+      beside = (below == ply .or. below == ply - 1) .and. setup%delaminations%law == law_cohesive .and. &
+               setup%delaminations%shear_cracks
+      parts = 1
+      where (beside) parts = shear_across_strength(strengths)/setup%delaminations%strength_shear
+      beside = parts < 1
     end associate
-    if (part < 1) call weaken_beside(interfaces%cohesive, model, zone, &
-                                     sheared_cells(model, plies, strains, zone, ply, reach, strengths), &
-                                     reach, part)
+    if (.not. any(beside)) return
+    cracked = .false.
+    do zone = 1, size(beside)
+      if (beside(zone)) cracked = cracked .or. reachable_cells(model%mesh, zone, reach)
+    end do
+    cracked = sheared_cells(model, plies, strains, ply, cracked, strengths)
+    do zone = 1, size(beside)
+      if (beside(zone)) call weaken_beside(interfaces%cohesive, model, zone, cracked, reach, parts(zone))
+    end do
   end subroutine weaken_by_shear
 
   !> Cells in which a ply has started to crack or reaches its strength with transverse shear included, on all ranks.
   !> Collective.
-  function sheared_cells(model, plies, strains, zone, ply, reach, strengths) result(cracked)
+  function sheared_cells(model, plies, strains, ply, reachable, strengths) result(cracked)
     type(model_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Those of element_strains
     real(wp), intent(in) :: strains(:, :)
-    !> Index of the zone, and ply of the laminate
-    integer, intent(in) :: zone, ply
-    !> Distance from a crack within which strengths are reduced
-    real(wp), intent(in) :: reach
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> Cells in which a crack affects an interface of the ply, (cells of the mesh)
+    logical, intent(in) :: reachable(:)
     !> The ply's strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> (cells of the mesh)
     logical, allocatable :: cracked(:)
-    logical :: cracks(size(strains, 2)), reachable(product(model%mesh%cells))
+    logical :: cracks(size(strains, 2))
     type(elasticity_t) :: left
     integer :: i
 
-    reachable = reachable_cells(model%mesh, zone, reach)
     do i = 1, size(cracks)
       cracks(i) = reachable(model%mesh%element_cell(model%distribution%elements(i)))
       if (cracks(i)) cracks(i) = has_ply(model, ply, i)
@@ -119,7 +128,7 @@ contains
     logical, allocatable :: cracked(:)
     logical, allocatable :: failed(:, :)
 
-    failed = plies%failed(ply)
+    failed = plies%failed_in_elements(model, ply)
     cracked = cells_of(model, failed(matrix_cracking, :) .or. failed(matrix_crushing, :))
   end function cracked_cells
 
