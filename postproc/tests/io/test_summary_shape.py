@@ -86,7 +86,7 @@ class SummaryShapeTest(unittest.TestCase):
         columns = ("time", "force", "deflection", "indentation", "impactor_velocity", "impactor_displacement",
                    *(f"energy_{name}" for name in ENERGIES if name not in ("impact", "absorbed")), *COMPRESSION_COLUMNS)
         rows = [",".join([str(1e-4 * place), *["1.0"] * (len(columns) - 1)]) for place in range(4)]
-        self.path.with_name("case_history.csv").write_text("\n".join([",".join(columns), *rows]), encoding="utf-8")
+        self.path.with_name("case_history.csv").write_text("\n".join([",".join(columns), *rows, ""]), encoding="utf-8")
         whole = SUMMARY | COMPRESSION
         for name in whole:
             self.write({key: value for key, value in whole.items() if key != name})
