@@ -105,7 +105,7 @@ contains
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
     if (.not. allocated(error) .and. deck%initial%is_inherited) &
-      call take_initial_state(deck, self%model, self%stepper, self%record%mapping, self%log, error)
+      call take_initial_state(deck, self%model, self%stepper, self%record, self%log, error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')

@@ -121,6 +121,10 @@ def check_chain(implam, folder, _):
     summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
     require(summary["has_failed"] and summary["residual_strength"] >= rows["far_field_stress"][strongest] > 100e6,
             "It does not fail, or not at its largest stress.")
+    require(all(place["area"] > 0 and place["onset"] is place["first_growth"] is None
+                for place in summary["interfaces"]), "Delaminations of the impact are events of the compression.")
+    require("onset before this run" in (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8"),
+            "The log does not say that they are older.")
     collapse = summary["collapse"]
     print(f"failure {summary['failure_code']}")
     # Whether fibres fail across beside the delaminations differs by rounding.
