@@ -29,7 +29,7 @@ module simulations
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
   use wall_limits, only: wall_limit_t
-  use queue_signals, only: stop_signal
+  use queue_signals, only: announce_stop, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_checks, only: energy_check_t, new_energy_check
   use initial_states, only: take_initial_state, visit_incomplete_start
@@ -294,6 +294,7 @@ contains
     signalled = self%communicator%any(stop_signal() /= 0)
     late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
     if (.not. (signalled .or. late)) return
+    if (signalled .and. self%communicator%is_root()) call announce_stop()
     call save_checkpoint(self, error)
     call fail(error, exit_stopped, 'Stopped '//trim(causes(merge(2, 1, signalled)))//' at '// &
               moment(self%deck, self%stepper%now%time)//'; continue with: implam restart '//self%base// &
