@@ -128,10 +128,10 @@ def check_chain(implam, folder, _):
     collapse = summary["collapse"]
     print(f"failure {summary['failure_code']}")
     # Whether fibres fail across beside the delaminations differs by rounding.
-    torn = any(entry["went_across"] for entry in collapse["fibres"])
+    torn = any(entry["failed_across_width"] for entry in collapse["fibres"])
     require(summary["failure_code"] == ("M(DL)DM" if torn else "DDV"), "The code is not that of what went across.")
     for entry, place in zip(collapse["interfaces"], summary["interfaces"], strict=True):
-        require(entry["went_across"] and entry["width_before"] < 1 and 0 < entry["area_before"] < entry["area"]
+        require(entry["failed_across_width"] and entry["width_before"] < 1 and 0 < entry["area_before"] < entry["area"]
                 and place["ply_above"] == entry["ply_above"], "Interfaces do not grow across.")
     require(sum(entry["area"] for entry in collapse["fibres"]) > 0
             and not any(entry["area_before"] for entry in collapse["fibres"]), "Fibres do not fail in the collapse.")
