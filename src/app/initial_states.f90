@@ -55,7 +55,7 @@ contains
     type(deck_t) :: old
     character(len=:), allocatable :: objection
     type(line_t) :: remark
-    real(wp) :: time, contact_end
+    real(wp) :: time, contact_end, force
     integer :: i
 
     if (present(lacks)) lacks = .false.
@@ -79,11 +79,17 @@ contains
     if (allocated(error)) return
     call archive%item(time_item, time)
     call archive%item('record/contact_end', contact_end)
+    call archive%item('record/force', force)
     call archive%close(error)
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
       call refuse(deck, 'the plate there is another one, '//objection, error)
+      return
+    end if
+    if (is_mapped(deck, old) .and. force > 0) then
+      call refuse(deck, 'the impactor is in contact at the end of that run, and under its load the state of a plate '// &
+                  'is not mapped to other cells; let the impact end, or give the mesh of that run', error)
       return
     end if
     do i = 1, size(deck%delaminations)

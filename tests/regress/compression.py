@@ -24,6 +24,7 @@ from pathlib import Path
 from solver_runs import (
     DECKS,
     EXIT_DECK,
+    EXIT_DONE,
     EXIT_FILES,
     EXIT_STOPPED,
     change_deck,
@@ -297,6 +298,12 @@ def check_refused(implam, folder, _):
     run([implam, "restart", f"{COMPRESSION}_restart.h5", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     warned = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["warnings"]
     require(any("was stopped at time" in warning["text"] for warning in warned), f"After a restart: {warned}")
+    short = deck_of(folder, IMPACT, ["time%end=0.15e-3", "case%name='pressed'", "output%fields_every=1"])
+    run([implam, short], folder=folder)
+    for mesh, code in ((FINER, EXIT_DECK), ([], EXIT_DONE)):
+        pressed = deck_of(folder, COMPRESSION, [*mesh, "initial_state%from='pressed_restart.h5'"])
+        said = run([implam, "check", pressed], code, folder)
+        require(("the impactor is in contact" in said) == bool(mesh), f"A plate under load is mapped:\n{said}")
 
 
 def southwell(rows):
