@@ -88,8 +88,8 @@ contains
       return
     end if
     if (is_mapped(deck, old) .and. force > 0) then
-      call refuse(deck, 'the impactor is in contact at the end of that run, and under its load the state of a plate '// &
-                  'is not mapped to other cells; let the impact end, or give the mesh of that run', error)
+      call refuse(deck, 'the impactor is in contact at the end of that run, and under its load the state of a '// &
+                  'plate is not mapped to other cells; let the impact end, or give the mesh of that run', error)
       return
     end if
     do i = 1, size(deck%delaminations)

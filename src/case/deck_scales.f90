@@ -2,7 +2,7 @@
 module deck_scales
   use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cell_edges
-  use damped_motions, only: least_periods
+  use damped_motions, only: min_periods
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
@@ -67,10 +67,10 @@ contains
     !> A warning is added
     type(problems_t), intent(inout) :: problems
 
-    associate (settle => deck%stepping%central%settle)
-      if (settle > 0 .and. settle < least_periods*period) call remark(deck%settings, problems, time_group, &
-        key_settle, 'is too short to bring the plate to rest: take at least '//short_text(least_periods*period)// &
-        ', '//short_text(least_periods)//' periods of the first bending mode.')
+    associate (duration => deck%stepping%central%settle)
+      if (duration > 0 .and. duration < min_periods*period) call remark(deck%settings, problems, time_group, &
+        key_settle, 'is too short to bring the plate to rest: take at least '//short_text(min_periods*period)// &
+        ', '//short_text(min_periods)//' periods of the first bending mode.')
     end associate
   end subroutine check_settling
 

@@ -15,7 +15,7 @@ module damped_motions
   real(wp), parameter :: final_ratio = 3.0e-4_wp
   !> Periods of a vibration that its damping to this ratio lasts at least: in fewer it is damped beyond the critical
   !> value and returns more slowly.
-  real(wp), parameter, public :: least_periods = -log(final_ratio)/(2*pi)
+  real(wp), parameter, public :: min_periods = -log(final_ratio)/(2*pi)
 
 contains
 

@@ -1,6 +1,7 @@
 !> An HDF5 file of a run. Every routine is collective, but the first rank alone opens the file and calls HDF5: where
 !> several ranks write through MPI, HDF5 waits for ever if the metadata cannot be written on one of them. Errors are
-!> stored and agreed on by all ranks; after an error the routines do nothing, and the owner of the file checks at the end.
+!> stored and agreed on by all ranks; after an error the routines do nothing, and the owner of the file checks at the
+!> end.
 module hdf5_file
   use communicators, only: communicator_t
   use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_obj_all_f, h5f_obj_file_f, &

@@ -20,26 +20,26 @@ PLATE = """&mesh elements=10,8 patch=8e-3 /
 NOSE = """&impactor mass=0.1e-3 velocity=60 radius=8e-3 at=4e-3,-3e-3 contact_area='sphere' /
 &indentation law='hertz' /
 """
-INTERFACES = "&delamination below_ply='all' law='cohesive' G_Ic=100 G_IIc=100 strength_opening=5e6 strength_shear=10e6 friction=0.3 {zone} /\n"
+INTERFACES = """&delamination below_ply='all' law='cohesive' G_Ic=100 G_IIc=100 strength_opening=5e6 strength_shear=10e6
+              friction=0.3 {zone} /
+"""
+DAMPED = "&time integrator='central_difference' end=60e-6 settle={settle} mass_scaling=10 /\n"
 DECKS = {
     "rig": f"""&plate length=80e-3,70e-3 edges='free' in_plane='free' imperfection=0.1e-3 half_waves=2,1 /
 &support shape='circle' radius=30e-3 unilateral=.true. /
 &support clamps=35e-3,25e-3, -35e-3,25e-3, 35e-3,-25e-3, -35e-3,-25e-3 clamp_force=2 /
-{PLATE.format(strengths="")}{NOSE}{INTERFACES.format(zone="")}&time integrator='central_difference' end=60e-6 settle=30e-6 mass_scaling=10 /
-""",
+{PLATE.format(strengths="")}{NOSE}{INTERFACES.format(zone="")}{DAMPED.format(settle='30e-6')}""",
     "elastic": f"""&plate length=80e-3,70e-3 edges='elastic','elastic','clamped','elastic' imperfection=0.1e-3
        edge_stiffness=1e8 edge_rotation_stiffness=500 /
 {PLATE.format(strengths=STRENGTHS)}{NOSE}&ply_damage criteria='hashin' /
-&time integrator='central_difference' end=60e-6 settle=30e-6 mass_scaling=10 /
-""",
+{DAMPED.format(settle='30e-6')}""",
     "line": f"""&plate length=80e-3,70e-3 edges='free' in_plane='free' imperfection=0.1e-3 /
 &support shape='circle' radius=30e-3 /
 {PLATE.format(strengths="")}{INTERFACES.format(zone="zone=30e-3,30e-3")}&pressure value=2e3 /
 &line at=40e-3 component='u' displacement=-0.1e-3 /
 &line at=-40e-3 component='u' displacement=0.1e-3 /
 &line at=0 direction='x' component='v' displacement=0 /
-&time integrator='central_difference' end=60e-6 settle=20e-6 mass_scaling=10 /
-"""}
+{DAMPED.format(settle='20e-6')}"""}
 
 
 def check(implam, folder, launcher):

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from implam_post.io.compression import kinetic_share, failed_across_width
+from implam_post.io.compression import failed_across_width, kinetic_share
 from implam_post.io.run import Run
 from implam_post.plot.compression import is_compressed
 from implam_post.plot.style import PictureStyle

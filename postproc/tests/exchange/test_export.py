@@ -254,7 +254,7 @@ class MeshTest(ExportTest):
         self.assertEqual({abs(y) for _, y, _ in shared}, {1.0})
 
     def test_imperfection(self) -> None:
-        """The initial deflection of the whole plate, towards the back, is in the grids; not with linear strains."""
+        """The initial deflection of the full plate, towards the back, is in the grids; not with linear strains."""
         deck = DECK.replace("symmetry='quarter'", "symmetry='quarter' imperfection=0.5 half_waves=1, 3")
         self.keep_deck(deck)
         x, y, z = self.mesh().coordinates.T

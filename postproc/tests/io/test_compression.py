@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.compression import kinetic_share, row_of_strength, strength_of, failed_across_width
+from implam_post.io.compression import failed_across_width, kinetic_share, row_of_strength, strength_of
 from implam_post.io.errors import FileError
 from implam_post.io.history import History
 from tests.io.test_summary_shape import SUMMARY
