@@ -137,6 +137,8 @@ class DamagedFilesTest(unittest.TestCase):
             path = Path(folder) / "case_history.csv"
             for rows, expected in (("0,1\n1,\n", "a cell in line 4 that is no number"),
                                ("0,1\n1,2\n\n2\n", "1 cells under 2 names in line 6"),
+                               ("0,1\n1,2.5e-", "cut off in line 4"),
+                               ("0,1\n1,2", "is cut off in line 4, which has no end"),
                                ("", "has no rows")):
                 path.write_text(f"# a comment\ntime, force\n{rows}", encoding="utf-8")
                 with self.subTest(rows), self.assertRaisesRegex(FileError, expected):

@@ -115,7 +115,7 @@ contains
       call json%put('mean_distance', after(figure_mean))
       call json%put('width_before', before(figure_width))
       call json%put('width', after(figure_width))
-      call json%put('went_across', across)
+      call json%put('failed_across_width', across)
       call json%close()
     end subroutine put_place
   end subroutine put_collapse

@@ -28,6 +28,7 @@ module initial_states
   use models, only: model_t
   use root_output, only: print_lines
   use run_moments, only: moment
+  use run_records, only: run_record_t
   use states, only: new_state, state_t, time_item
   use stepping_parameters, only: end_of_run
   use text, only: append, line_t, rounded_text, to_text
@@ -54,7 +55,7 @@ contains
     type(deck_t) :: old
     character(len=:), allocatable :: objection
     type(line_t) :: remark
-    real(wp) :: time, contact_end
+    real(wp) :: time, contact_end, force
     integer :: i
 
     if (present(lacks)) lacks = .false.
@@ -78,11 +79,17 @@ contains
     if (allocated(error)) return
     call archive%item(time_item, time)
     call archive%item('record/contact_end', contact_end)
+    call archive%item('record/force', force)
     call archive%close(error)
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
       call refuse(deck, 'the plate there is another one, '//objection, error)
+      return
+    end if
+    if (is_mapped(deck, old) .and. force > 0) then
+      call refuse(deck, 'the impactor is in contact at the end of that run, and under its load the state of a '// &
+                  'plate is not mapped to other cells; let the impact end, or give the mesh of that run', error)
       return
     end if
     do i = 1, size(deck%delaminations)
@@ -197,15 +204,15 @@ contains
   end subroutine open_checkpoint
 
   !> Transfers the end of the other run to this one. Collective.
-  subroutine take_initial_state(deck, model, stepper, mapping, log, error)
+  subroutine take_initial_state(deck, model, stepper, record, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The model
     type(model_t), intent(in) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
-    !> Receives the quantities before and after mapping
-    type(mapped_figures_t), intent(inout) :: mapping
+    !> Receives the quantities before and after mapping, and what had failed
+    type(run_record_t), intent(inout) :: record
     !> Receives a note
     type(log_t), intent(inout) :: log
     !> Set if the checkpoint can't be read, or has damage where the deck has no interface
@@ -213,16 +220,18 @@ contains
     class(layer_transfer_t), allocatable :: transfer
     type(deck_t) :: old
 
-    call load_transfer(deck, model, stepper, transfer, mapping, old, error)
+    call load_transfer(deck, model, stepper, transfer, record%mapping, old, error)
     if (allocated(error)) return
     call log%note('The plate starts from the end of the run of '//deck%initial%from//'.')
     call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
     if (allocated(error)) return
+    call record%inherit(model, stepper%now)
     if (is_mapped(deck, old)) then
-      call mapping%note(model, stepper%now, after_mapping)
-      call log%note(mapping%line(deck%delaminations%below_ply))
-      if (mapping%first_loss() > 0) then
-        call refuse(deck, 'the interface below ply '//to_text(deck%delaminations(mapping%first_loss())%below_ply)// &
+      call record%mapping%note(model, stepper%now, after_mapping)
+      call log%note(record%mapping%line(deck%delaminations%below_ply))
+      if (record%mapping%first_loss() > 0) then
+        call refuse(deck, 'the interface below ply '// &
+                    to_text(deck%delaminations(record%mapping%first_loss())%below_ply)// &
                     ' has delaminated beyond the '//key_zone//' that it has here', error)
         return
       end if

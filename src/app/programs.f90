@@ -12,6 +12,7 @@ module programs
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
+  use files, only: ignore_size_signal
   use hdf5_file, only: files_left_open
   use initial_states, only: fit_initial_state
   use build_information, only: version, commit, compiler, petsc_version
@@ -50,6 +51,7 @@ contains
     type(error_t), allocatable :: error
 
     code = exit_done
+    call ignore_size_signal()
     if (launched()) call start_mpi(communicator)
     if (command_argument_count() == 0) call print_usage(communicator)
     call read_command_line(command, error)

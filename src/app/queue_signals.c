@@ -1,6 +1,7 @@
 /* Signals that ask the program to stop. main holds them back (held_signals.c), so that they stay pending. */
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <time.h>
 #include <unistd.h>
@@ -25,15 +26,24 @@ void implam_release_stop_signals(void)
   sigprocmask(SIG_UNBLOCK, &set, NULL);
 }
 
+/* By the first of both threads that notices the signal: the run may end before the other one looks. */
+void implam_announce_stop(void)
+{
+  static atomic_flag said = ATOMIC_FLAG_INIT;
+  static const char words[] = "\nimplam: signal received. The step in progress is being finished; then a checkpoint is "
+                              "written and the run ends.\n";
+  if (atomic_flag_test_and_set(&said)) return;
+  if (write(STDERR_FILENO, words, sizeof words - 1) < 0) return;
+}
+
 /* Looks ten times a second, which a reader takes for at once: a signal that is held back stays pending and wakes no
  * thread, and one that were waited for would be gone when the run asks for it. */
 static void *watch(void *unused)
 {
-  static const char words[] = "\nimplam: signal received. The step in progress is being finished; then a checkpoint is "
-                              "written and the run ends.\n";
   const struct timespec pause = {0, 100000000};
+  (void)unused;
   while (implam_stop_signal() == 0) nanosleep(&pause, NULL);
-  if (write(STDERR_FILENO, words, sizeof words - 1) < 0) return unused;
+  implam_announce_stop();
   return NULL;
 }
 

@@ -25,6 +25,9 @@ module run_records
                                 warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
                                 warning_scaled = 12
 
+  !> Time of an event before the run.
+  real(wp), parameter :: before_run = -1
+
   !> Record of a run. It has many components because each item of the summary is one.
   type :: run_record_t
     !> Largest contact force and its time
@@ -43,7 +46,8 @@ module run_records
     real(wp) :: time = 0, force = 0
     !> Stage of failure of each interface, (zones)
     integer, allocatable :: stage(:)
-    !> Time, contact force and deflection at the onset and at the first growth of each interface, (3, zones)
+    !> Time, contact force and deflection at the onset and at the first growth of each interface, (3, zones); time 0:
+    !> never, negative: before the run
     real(wp), allocatable :: onset(:, :), growth(:, :)
     !> Record of a compression by lines
     type(compression_record_t) :: compression
@@ -58,6 +62,8 @@ module run_records
     !> Their times
     real(wp), allocatable :: warning_times(:)
   contains
+    !> Notes what had failed before the run.
+    procedure :: inherit
     !> Updates the record with an accepted step.
     procedure :: observe
     !> Updates the record with a complete state.
@@ -88,6 +94,20 @@ contains
     allocate (self%onset(3, zones), self%growth(3, zones), source=0.0_wp)
     allocate (self%warning_kinds(0), self%warning_zones(0), self%warning_times(0))
   end function new_run_record
+
+  !> Notes interfaces that had failed before the run: their onset and first growth are not those of this run.
+  !> Collective.
+  subroutine inherit(self, model, now)
+    !> The record
+    class(run_record_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state inherited from another run
+    type(state_t), intent(in) :: now
+
+    self%stage = stages_of(model, now%interfaces)
+    where (self%stage >= stage_damaged) self%onset(1, :) = before_run
+    where (self%stage >= stage_grown) self%growth(1, :) = before_run
+  end subroutine inherit
 
   !> Updates the record with an accepted step. Collective.
   subroutine observe(self, model, now, between_stages)

@@ -29,7 +29,7 @@ module simulations
   use fields_file, only: fields_file_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending, retire_checkpoint
   use wall_limits, only: wall_limit_t
-  use queue_signals, only: stop_signal
+  use queue_signals, only: announce_stop, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
   use energy_checks, only: energy_check_t, new_energy_check
   use initial_states, only: take_initial_state, visit_incomplete_start
@@ -105,7 +105,7 @@ contains
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
     if (.not. allocated(error) .and. deck%initial%is_inherited) &
-      call take_initial_state(deck, self%model, self%stepper, self%record%mapping, self%log, error)
+      call take_initial_state(deck, self%model, self%stepper, self%record, self%log, error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
     if (retired /= '') call self%log%note('The checkpoint of an earlier run is now '//retired//'.')
@@ -294,6 +294,7 @@ contains
     signalled = self%communicator%any(stop_signal() /= 0)
     late = self%communicator%any(self%wall_limit%is_up(wall_time())) .and. self%stepper%now%time < end_of(self)
     if (.not. (signalled .or. late)) return
+    if (signalled .and. self%communicator%is_root()) call announce_stop()
     call save_checkpoint(self, error)
     call fail(error, exit_stopped, 'Stopped '//trim(causes(merge(2, 1, signalled)))//' at '// &
               moment(self%deck, self%stepper%now%time)//'; continue with: implam restart '//self%base// &

@@ -244,7 +244,7 @@ contains
     type(json_t), intent(inout) :: json
     !> Its name
     character(len=*), intent(in) :: name
-    !> Time, contact force, deflection; time 0: never
+    !> Time, contact force, deflection; time 0: never, negative: before the run
     real(wp), intent(in) :: event(3)
     !> The deck
     type(deck_t), intent(in) :: deck

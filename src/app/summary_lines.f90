@@ -239,10 +239,12 @@ contains
     subroutine add_event(name, event)
       !> Its name
       character(len=*), intent(in) :: name
-      !> Time, contact force, deflection; time 0: never
+      !> Time, contact force, deflection; time 0: never, negative: before the run
       real(wp), intent(in) :: event(3)
 
-      if (.not. event(1) > 0) then
+      if (event(1) < 0) then
+        call add_figure(lines, '', name//' before this run')
+      else if (.not. event(1) > 0) then
         call add_figure(lines, '', 'no '//name)
       else if (deck%has_impactor) then
         call add_figure(lines, '', name//' at force '//rounded_text(event(2))//', '//moment(deck, event(1)))

@@ -1,11 +1,14 @@
-/* Age, kind and identity of files, and space on disks. They are in structures that each system lays out in its own
-   way, so this is written in its language. */
+/* Age, kind and identity of files, and reasons of failed writes. They are in structures and numbers that each system
+   lays out in its own way, so this is written in its language. */
 #define _POSIX_C_SOURCE 200809L
 #include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <sys/statvfs.h>
+#include <unistd.h>
 
 struct entry {
   struct timespec time;
@@ -72,9 +75,36 @@ int implam_is_same_file(const char *a, const char *b)
   return first.st_dev == second.st_dev && first.st_ino == second.st_ino;
 }
 
-/* 1: the disk of this folder has no room for as many bytes. */
-int implam_lacks_space(const char *folder, int bytes)
+/* Writes blocks into a new file, from the place where the other one ends; returns the number of the error, or 0. */
+static int extend(const char *trial, off_t place, int bytes)
 {
-  struct statvfs disk;
-  return statvfs(folder, &disk) == 0 && disk.f_bavail < (fsblkcnt_t)bytes / disk.f_frsize;
+  static const char zeros[65536];
+  const int file = open(trial, O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
+  int error = file < 0 ? errno : 0;
+  if (file < 0) return error;
+  for (int done = 0; done < bytes && error == 0; done += (int)sizeof zeros)
+    if (pwrite(file, zeros, sizeof zeros, place + done) < 0) error = errno;
+  /* Network file systems may report a used up quota here only. */
+  if (error == 0 && fsync(file) != 0) error = errno;
+  if (close(file) != 0 && error == 0) error = errno;
+  return error;
 }
+
+/* Why as many bytes more cannot be written to a file: 1 no space, 2 quota, 3 limit of the size of files, 4 another
+   reason; 0: they can be. They are written to another file, which is removed. */
+int implam_write_obstacle(const char *path, const char *trial, int bytes)
+{
+  struct stat status;
+  const int error = extend(trial, stat(path, &status) == 0 ? status.st_size : 0, bytes);
+  unlink(trial);
+  switch (error) {
+  case 0: return 0;
+  case ENOSPC: return 1;
+  case EDQUOT: return 2;
+  case EFBIG: return 3;
+  default: return 4;
+  }
+}
+
+/* A write beyond the limit of the size of files then fails, as on a full disk, and does not end the program. */
+void implam_ignore_size_signal(void) { signal(SIGXFSZ, SIG_IGN); }

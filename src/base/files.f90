@@ -5,8 +5,8 @@ module files
   use text, only: to_text
   implicit none
   private
-  public :: file_exists, is_directory, is_pipe, is_readable, is_same_file, lacks_space, rename_file, remove_file, &
-            make_directory, read_whole_file
+  public :: file_exists, is_directory, is_pipe, is_readable, is_same_file, rename_file, remove_file, &
+            make_directory, read_whole_file, write_obstacle, ignore_size_signal
 
   !> Permissions of new folders before the user's mask: rwx for all (octal 777).
   integer(c_int), parameter :: all_permissions = 511_c_int
@@ -60,14 +60,19 @@ module files
       character(kind=c_char), intent(in) :: a(*), b(*)
     end function implam_is_same_file
 
-    !> 1: the disk of a folder has no room for as many bytes.
-    integer(c_int) function implam_lacks_space(folder, bytes) bind(c)
+    !> Number of the reason why a file cannot be extended; 0: it can be.
+    integer(c_int) function implam_write_obstacle(path, trial, bytes) bind(c)
       import :: c_char, c_int
-      !> Zero-terminated path
-      character(kind=c_char), intent(in) :: folder(*)
+      !> Zero-terminated paths of the file and of one that is written instead
+      character(kind=c_char), intent(in) :: path(*), trial(*)
       !> Number of bytes
       integer(c_int), value :: bytes
-    end function implam_lacks_space
+    end function implam_write_obstacle
+
+    !> Writes beyond the limit of the size of files (`ulimit -f`) fail from now on; the Fortran library would end the
+    !> program.
+    subroutine ignore_size_signal() bind(c, name='implam_ignore_size_signal')
+    end subroutine ignore_size_signal
 
     !> C library: opens a file.
     type(c_ptr) function c_fopen(path, mode) bind(c, name='fopen')
@@ -138,17 +143,27 @@ contains
     is_same_file = implam_is_same_file(a//c_null_char, b//c_null_char) == 1
   end function is_same_file
 
-  !> True: the disk of a file has no room for as many bytes.
-  logical function lacks_space(path, bytes)
+  !> Why a file cannot be extended, as the end of a sentence; empty if it can be, or if the system gives another reason.
+  !> It is asked after a failure, since libraries do not return the reason.
+  function write_obstacle(path, bytes) result(reason)
     !> Path of the file, which may not exist
     character(len=*), intent(in) :: path
     !> Number of bytes
     integer, intent(in) :: bytes
-    integer :: slash
+    !> The reason
+    character(len=:), allocatable :: reason
 
-    slash = index(path, '/', back=.true.)
-    lacks_space = implam_lacks_space(trim(merge('./', '  ', slash == 0))//path(:slash)//c_null_char, bytes) == 1
-  end function lacks_space
+    select case (implam_write_obstacle(path//c_null_char, path//'.trial'//c_null_char, bytes))
+    case (1)
+      reason = 'no space is left on the disk'
+    case (2)
+      reason = 'the quota of this user on the disk is used up'
+    case (3)
+      reason = 'the limit of the size of files (ulimit -f) is reached'
+    case default
+      reason = ''
+    end select
+  end function write_obstacle
 
   !> Renames a file atomically: other processes find either the old file of that name or the new one.
   subroutine rename_file(from, to, error)

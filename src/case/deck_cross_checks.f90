@@ -5,7 +5,7 @@ module deck_cross_checks
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_integrators, only: softening_part
-  use deck_line_supports, only: check_line_supports, check_in_plane_balance, check_moved_lines
+  use deck_line_supports, only: check_in_plane_balance, check_line_strains, check_line_supports, check_moved_lines
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: report, remark, remark_idle, are_clear
   use interface_places, only: delamination_group, key_below_ply
@@ -52,6 +52,7 @@ contains
     end if
     if (.not. (problems%concern(line_group) .or. problems%concern(support_group) .or. problems%concern(plate_group))) &
       call check_moved_lines(deck, problems)
+    call check_line_strains(deck, problems)
     call check_symmetry(deck, problems)
     call check_impact(deck, problems)
     call check_interfaces(deck, problems)

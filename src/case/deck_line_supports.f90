@@ -5,17 +5,19 @@ module deck_line_supports
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark
   use kinds, only: wp
-  use line_deck, only: line_group, key_displacement
+  use line_deck, only: line_group, key_displacement, key_force
   use line_loads, only: line_load_t, along_x, along_y
   use material_parameters, only: largest_strain
   use mesh_parameters, only: is_mirrored, symmetry_point, edge_clamped, edge_elastic, edge_free
   use model_building, only: unrestrained
+  use packed_matrices, only: inverse, unpacked
   use roundings, only: rounding
+  use stacking, only: section_of, section_t, stacked_plies
   use support_parameters, only: support_t, bearing_face, window_none, window_circle, window_rectangle
   use text, only: rounded_text
   implicit none
   private
-  public :: check_line_supports, check_in_plane_balance, check_moved_lines
+  public :: check_line_supports, check_in_plane_balance, check_moved_lines, check_line_strains
 
 contains
 
@@ -109,6 +111,30 @@ contains
       end associate
     end do
   end subroutine check_moved_lines
+
+  !> Reports in-plane forces of lines under which the laminate, free to deform, has strains that are not small.
+  subroutine check_line_strains(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Remarks are added
+    type(problems_t), intent(inout) :: problems
+    type(section_t) :: section
+    real(wp) :: compliance(3, 3), strain
+    integer :: line
+
+    if (problems%errors() > 0) return
+    section = section_of(stacked_plies(deck%laminate, deck%materials), deck%laminate%shear_correction)
+    compliance = inverse(unpacked(section%stiffness(1:6)))
+    do line = 1, size(deck%lines)
+      associate (l => deck%lines(line), normal => merge(1, 2, deck%lines(line)%direction == along_y))
+        if (l%prescribed .or. l%component > 2) cycle
+        strain = abs(l%value)/deck%plate%length(3 - normal)*merge(compliance(normal, normal), compliance(3, 3), &
+                                                                  l%component == normal)
+        if (strain > largest_strain) call remark(deck%settings, problems, line_group, key_force, 'strains the '// &
+          'laminate by '//rounded_text(100*strain)//' %, and the model assumes small strains.', line)
+      end associate
+    end do
+  end subroutine check_line_strains
 
   !> True: an edge constrains the deflection.
   elemental logical function holds(edge, stiffness)

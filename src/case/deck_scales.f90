@@ -2,6 +2,7 @@
 module deck_scales
   use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cell_edges
+  use damped_motions, only: min_periods
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
@@ -11,7 +12,7 @@ module deck_scales
   use setup_scales, only: setup_scales_t, scales_of
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit, expected_response_t
-  use time_deck, only: time_group, key_step
+  use time_deck, only: key_settle, key_step, time_group
   implicit none
   private
   public :: check_scales
@@ -54,7 +55,24 @@ contains
       call check_accuracy(deck, problems)
     end if
     deck%expected%scales = scales
+    if (deck%has_time .and. is_explicit(deck%stepping)) call check_settling(deck, scales%first_period, problems)
   end subroutine check_scales
+
+  !> Warns of a damping too short for the first bending mode.
+  subroutine check_settling(deck, period, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Period of this mode; 0: not known
+    real(wp), intent(in) :: period
+    !> A warning is added
+    type(problems_t), intent(inout) :: problems
+
+    associate (duration => deck%stepping%central%settle)
+      if (duration > 0 .and. duration < min_periods*period) call remark(deck%settings, problems, time_group, &
+        key_settle, 'is too short to bring the plate to rest: take at least '//short_text(min_periods*period)// &
+        ', '//short_text(min_periods)//' periods of the first bending mode.')
+    end associate
+  end subroutine check_settling
 
   !> Warns of a step, a mesh and a patch that don't resolve the impact.
   subroutine check_resolution(deck, problems)

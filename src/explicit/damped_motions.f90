@@ -4,6 +4,7 @@ module damped_motions
   use central_difference_energies, only: kinetic_energy
   use central_differences, only: central_difference_t
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use models, only: model_t
   use states, only: state_t
   implicit none
@@ -12,6 +13,9 @@ module damped_motions
 
   !> What is left of an amplitude at the end: of energies a ten-millionth, below the usual tolerance of 1e-6.
   real(wp), parameter :: final_ratio = 3.0e-4_wp
+  !> Periods of a vibration that its damping to this ratio lasts at least: in fewer it is damped beyond the critical
+  !> value and returns more slowly.
+  real(wp), parameter, public :: min_periods = -log(final_ratio)/(2*pi)
 
 contains
 

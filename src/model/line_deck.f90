@@ -13,7 +13,8 @@ module line_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: line_group = 'line', key_at = 'at', key_layer = 'layer', &
-                                         key_rise = 'rise', key_displacement = 'displacement'
+                                         key_rise = 'rise', key_displacement = 'displacement', &
+                                         key_force = 'force'
   !> Keys of values, displacements first.
   character(len=*), parameter :: value_keys(4) = [character(len=12) :: 'force', 'displacement', 'moment', 'rotation']
   !> Row of the group.

@@ -1,15 +1,15 @@
-!> An HDF5 file shared by all ranks, on one rank without MPI. Every routine is collective. Errors are stored and agreed
-!> on by all ranks; after an error the routines do nothing, and the owner of the file checks at the end.
+!> An HDF5 file of a run. Every routine is collective, but the first rank alone opens the file and calls HDF5: where
+!> several ranks write through MPI, HDF5 waits for ever if the metadata cannot be written on one of them. Errors are
+!> stored and agreed on by all ranks; after an error the routines do nothing, and the owner of the file checks at the
+!> end.
 module hdf5_file
   use communicators, only: communicator_t
   use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_obj_all_f, h5f_obj_file_f, &
-    h5fclose_f, h5fcreate_f, h5fd_mpio_collective_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
-    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, &
-    h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, &
-    h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, h5pset_fapl_mpio_f, &
-    h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
-  use files, only: lacks_space
-  use mpi, only: mpi_info_null
+    h5fclose_f, h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, &
+    h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, &
+    h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_obj_track_times_f, &
+    h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
+  use files, only: write_obstacle
   use output_streams, only: output_stream_t
   use text, only: line_t
   implicit none
@@ -26,16 +26,16 @@ module hdf5_file
     character(len=:), allocatable :: failure
     !> The ranks that share the file
     type(communicator_t) :: communicator
-    !> Handle of the file
+    !> Handle of the file, on the first rank
     integer(hid_t) :: id = -1
-    !> Property list: all ranks transfer together; negative between closing and opening
-    integer(hid_t) :: together = -1
-    !> Property list: missing groups of a path are made
+    !> Property list: missing groups of a path are made; on the first rank, negative between closing and opening
     integer(hid_t) :: with_groups = -1
     !> Property list: datasets carry no dates, so equal runs give equal files
     integer(hid_t) :: undated = -1
     !> The file is open
     logical :: is_open = .false.
+    !> Path of the file, on the first rank; not allocated if it is read only
+    character(len=:), allocatable, private :: path
     !> Path of the reserve file, on the first rank; not allocated if there is none
     character(len=:), allocatable, private :: reserve
   contains
@@ -71,14 +71,17 @@ contains
     call start_over(self, communicator)
     call self%write_reserve(path)
     if (allocated(self%failure)) return
-    call prepare(self, access_list)
-    call h5pcreate_f(h5p_file_create_f, creation_list, status)
-    call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
-    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, creation_list, access_list)
-    self%is_open = status == 0
-    call h5pclose_f(creation_list, closed)
-    call h5pclose_f(access_list, closed)
+    status = 0
+    if (communicator%is_root()) then
+      call prepare(self, access_list)
+      call h5pcreate_f(h5p_file_create_f, creation_list, status)
+      call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
+      call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, creation_list, access_list)
+      call h5pclose_f(creation_list, closed)
+      call h5pclose_f(access_list, closed)
+    end if
     call self%check_status(status, 'the file could not be created')
+    self%is_open = .not. allocated(self%failure)
   end subroutine create
 
   !> Opens a file that is there.
@@ -97,11 +100,14 @@ contains
     call start_over(self, communicator)
     if (writable) call self%write_reserve(path)
     if (allocated(self%failure)) return
-    call prepare(self, access_list)
-    call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
-    self%is_open = status == 0
-    call h5pclose_f(access_list, closed)
+    status = 0
+    if (communicator%is_root()) then
+      call prepare(self, access_list)
+      call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
+      call h5pclose_f(access_list, closed)
+    end if
     call self%check_status(status, 'the file could not be opened')
+    self%is_open = .not. allocated(self%failure)
   end subroutine open
 
   !> Resets the error and the file.
@@ -112,6 +118,7 @@ contains
     type(communicator_t), intent(in) :: communicator
 
     if (allocated(self%failure)) deallocate (self%failure)
+    if (allocated(self%path)) deallocate (self%path)
     self%communicator = communicator
   end subroutine start_over
 
@@ -124,6 +131,7 @@ contains
     type(output_stream_t) :: stream
 
     if (self%communicator%is_root()) then
+      self%path = path
       self%reserve = path//'.reserve'
       call stream%open(self%reserve, 'w')
       call stream%put(repeat('.', reserved_bytes))
@@ -161,21 +169,14 @@ contains
     if (.not. started) call h5open_f(status)
     call h5eset_auto_f(0, status)
     call h5pcreate_f(h5p_file_access_f, access_list, status)
-    call h5pcreate_f(h5p_dataset_xfer_f, self%together, status)
-    if (self%communicator%size > 1) then
-      call h5pset_fapl_mpio_f(access_list, self%communicator%handle(), mpi_info_null, status)
-      call h5pset_dxpl_mpio_f(self%together, h5fd_mpio_collective_f, status)
-    else
-      call leave_unlocked(access_list)
-    end if
+    call leave_unlocked(access_list)
     call h5pcreate_f(h5p_link_create_f, self%with_groups, status)
     call h5pset_create_inter_group_f(self%with_groups, 1, status)
     call h5pcreate_f(h5p_dataset_create_f, self%undated, status)
     call h5pset_obj_track_times_f(self%undated, .false., status)
   end subroutine prepare
 
-  !> Disables locking of the file, as on several ranks: otherwise a program that reads results while they are written
-  !> would end the run.
+  !> Disables locking of the file: otherwise a program that reads results while they are written would end the run.
   subroutine leave_unlocked(access_list)
     use, intrinsic :: iso_c_binding, only: c_bool, c_int, c_int64_t
     !> Property list for opening the file
@@ -201,15 +202,15 @@ contains
     class(hdf5_file_t), intent(inout) :: self
     integer :: status, closed
 
-    if (self%together < 0) return
     call self%remove_reserve()
     status = 0
-    if (self%is_open) call h5fclose_f(self%id, status)
+    if (self%with_groups >= 0) then
+      if (self%is_open) call h5fclose_f(self%id, status)
+      call h5pclose_f(self%with_groups, closed)
+      call h5pclose_f(self%undated, closed)
+      self%with_groups = -1
+    end if
     self%is_open = .false.
-    call h5pclose_f(self%together, closed)
-    call h5pclose_f(self%with_groups, closed)
-    call h5pclose_f(self%undated, closed)
-    self%together = -1
     call self%check_status(status, 'the file could not be closed')
   end subroutine close
 
@@ -242,15 +243,15 @@ contains
     !> The error, if any; equal on all ranks
     character(len=*), intent(in) :: failure
 
-    logical :: is_full
+    character(len=:), allocatable :: obstacle
 
     if (allocated(self%failure)) return
     if (.not. self%communicator%any(status < 0)) return
     self%failure = failure
-    ! While data are written the reserve is there: less than its size was left for them.
-    is_full = .false.
-    if (allocated(self%reserve)) is_full = lacks_space(self%reserve, reserved_bytes)
-    if (self%communicator%any(is_full)) self%failure = 'no space is left on the disk'
+    obstacle = ''
+    if (allocated(self%path)) obstacle = write_obstacle(self%path, reserved_bytes)
+    if (obstacle /= '') self%failure = obstacle
+    call self%communicator%broadcast_text(self%failure)
   end subroutine check_status
 
   !> True if there was no error so far.
@@ -271,8 +272,11 @@ contains
 
     exists = .false.
     if (.not. self%succeeded()) return
-    call h5lexists_f(self%id, path, exists, status)
-    exists = exists .and. status == 0
+    if (self%communicator%is_root()) then
+      call h5lexists_f(self%id, path, exists, status)
+      exists = exists .and. status == 0
+    end if
+    call self%communicator%broadcast(exists)
   end function exists
 
   !> Makes a group, and those above it that are missing.
@@ -285,8 +289,11 @@ contains
     integer :: status
 
     if (.not. self%succeeded()) return
-    call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
-    if (status == 0) call h5gclose_f(group, status)
+    status = 0
+    if (self%communicator%is_root()) then
+      call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
+      if (status == 0) call h5gclose_f(group, status)
+    end if
     call self%check_status(status, 'group '//path//' could not be made')
   end subroutine make_group
 
@@ -299,7 +306,8 @@ contains
     integer :: status
 
     if (.not. self%succeeded()) return
-    call h5ldelete_f(self%id, path, status)
+    status = 0
+    if (self%communicator%is_root()) call h5ldelete_f(self%id, path, status)
     call self%check_status(status, path//' could not be removed')
   end subroutine remove
 
@@ -312,7 +320,7 @@ contains
     integer :: status
 
     call self%remove_reserve()
-    if (self%is_open) call h5ldelete_f(self%id, path, status)
+    if (self%is_open .and. self%communicator%is_root()) call h5ldelete_f(self%id, path, status)
   end subroutine discard
 
   !> Names of the members of a group, in alphabetical order; none if there is no such group.
@@ -324,19 +332,24 @@ contains
     !> Names of its members
     type(line_t), allocatable, intent(out) :: names(:)
     character(len=256) :: name
-    integer :: count, i, kind, status
+    integer :: count, i, kind, failed, status
 
     count = 0
-    if (self%exists(path)) then
-      call h5gn_members_f(self%id, path, count, status)
-      if (status < 0) count = 0
-      call self%check_status(status, 'group '//path//' could not be listed')
+    failed = 0
+    if (self%exists(path) .and. self%communicator%is_root()) then
+      call h5gn_members_f(self%id, path, count, failed)
+      if (failed < 0) count = 0
     end if
+    call self%communicator%broadcast(count)
     allocate (names(count))
     do i = 1, count
-      call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
+      if (self%communicator%is_root()) then
+        call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
+        failed = min(failed, status)
+      end if
+      call self%communicator%broadcast(name)
       names(i)%text = trim(name)
-      call self%check_status(status, 'group '//path//' could not be listed')
     end do
+    call self%check_status(failed, 'group '//path//' could not be listed')
   end subroutine members
 end module hdf5_file

@@ -18,8 +18,8 @@ contains
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
-    type(exact_sum_t) :: sums(2)
-    integer :: i
+    type(exact_sum_t) :: sums(3)
+    integer :: i, k
 
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
@@ -29,12 +29,14 @@ contains
         else
           call mean_strains(model%elements, batch_of(element), model%setup%kinematics, displacement, strains)
         end if
-        call sums(1)%add(strains(lane_of(element), 4))
-        call sums(2)%add(strains(lane_of(element), 5))
+        do k = 1, 3
+          call sums(k)%add(strains(lane_of(element), 3 + k))
+        end do
       end associate
     end do
-    ! The twist vanishes at the struck point, but not in the mean over the elements of one quarter.
-    curvature = [totals_of(model%communicator, sums)/model%struck_count, 0.0_wp]
+    curvature = totals_of(model%communicator, sums)/model%struck_count
+    ! The twist of a mirrored plate vanishes at the struck point, but not in the mean over the elements of the part.
+    if (any(model%mesh%mirrored)) curvature(3) = 0
     associate (d => model%section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
                 d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &

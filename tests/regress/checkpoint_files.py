@@ -1,11 +1,14 @@
 """Checkpoints that a restart accepts, and those that it refuses.
-Usage: checkpoint_files.py TRIAL IMPLAM FOLDER
+Usage: checkpoint_files.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
 found        without a file the newest complete checkpoint of a folder is read, and results keep the name of the case
 mixed        results of another run are neither continued nor combined with the checkpoint of another
 damaged      a file that is no checkpoint, or incomplete, ends with the exit code of files and a sentence
-full         a disk that is full for one write of a checkpoint ends the run with that code, and leaves no checkpoint"""
+full         a failed write of fields or checkpoint ends the run with that code and the reason, without a checkpoint
+full_ranks   also on two ranks
+size_limit   so does the limit of the size of files"""
 
+import errno
 import os
 import random
 import sys
@@ -13,6 +16,10 @@ from pathlib import Path
 
 from restart import DAMAGE, IMPACT, SHORT, SINGLE_STEP, copy_run, go_on, main, split_at
 from solver_runs import EXIT_FILES, EXIT_STOPPED, checkpoint_of, history_of, require, run, run_deck, write_deck
+
+# What is said of each error of a write.
+REASONS = {errno.ENOSPC: "no space is left on the disk", errno.EDQUOT: "the quota of this user on the disk is used up",
+           errno.EFBIG: "the limit of the size of files (ulimit -f) is reached"}
 
 
 def check_damaged(implam, folder, _):
@@ -114,29 +121,51 @@ def check_mixed(implam, folder, _):
 
 def check_full(implam, folder, _):
     """One write fails, anywhere in fields and checkpoint; afterwards there is space again."""
-    library, count = folder / "full.so", folder / "count"
+    fail_writes(implam, folder, (), 12)
+
+
+def check_full_ranks(implam, folder, launcher):
+    """The same on two ranks, where a rank that waits for the one that failed would never end."""
+    fail_writes(implam, folder, (*launcher, 2), 4)
+
+
+def fail_writes(implam, folder, launcher, times):
+    """Run with one failed write some times, for each of the reasons in turn."""
+    library, count = folder.resolve() / "full.so", folder.resolve() / "count"
     deck = write_deck(folder, DAMAGE)
     source = Path(__file__).resolve().parents[1] / "support/full_disk.c"
     run(["cc", "-shared", "-fPIC", "-o", library, source, "-ldl"])
 
-    def run_with(number, code):
+    def run_with(number, code, error=errno.ENOSPC):
         here = folder / str(number)
-        said = run(["env", f"LD_PRELOAD={library}", f"FULL_AT={number}", f"FULL_COUNT={count}", implam, deck,
-                    "--output", here, *SINGLE_STEP], code)
+        said = run([*launcher, "env", f"LD_PRELOAD={library}", f"FULL_AT={number}", f"FULL_ERROR={error}",
+                    f"FULL_COUNT={count}", implam, deck, "--output", here, *SINGLE_STEP], code)
         return said, list(here.glob("*_restart.h5"))
 
     run_with(0, EXIT_STOPPED)
     writes = int(count.read_text(encoding="utf-8"))
     require(writes > 100, f"There were only {writes} writes.")
-    for number in random.Random(3).sample(range(1, writes + 1), 12):
-        said, checkpoints = run_with(number, EXIT_FILES)
+    for place, number in enumerate(random.Random(3).sample(range(1, writes + 1), times)):
+        error, reason = list(REASONS.items())[place % len(REASONS)]
+        said, checkpoints = run_with(number, EXIT_FILES, error)
         require(not checkpoints, f"Write {number} of {writes} failed, and a checkpoint is left.")
         sentence = one_sentence_of(said, number)
         print(f"write {number} of {writes}: {sentence}")
-        require("no space is left on the disk" in sentence or "could not be closed" in sentence, "The reason lacks.")
+        require(reason in sentence, "The reason lacks.")
 
 
-TRIALS = {"found": check_found, "mixed": check_mixed, "damaged": check_damaged, "full": check_full}
+def check_limit(implam, folder, _):
+    """The limit of the size of files, which by default ends a program by a signal."""
+    deck = write_deck(folder, DAMAGE)
+    for kilobytes in (16, 64):
+        limited = ["bash", "-c", f'ulimit -f {kilobytes}; exec "$@"', "bash"]
+        sentence = one_sentence_of(run([*limited, implam, deck, "--output", folder / "out", *SINGLE_STEP], EXIT_FILES),
+                                   kilobytes)
+        require(REASONS[errno.EFBIG] in sentence, sentence)
+
+
+TRIALS = {"found": check_found, "mixed": check_mixed, "damaged": check_damaged, "full": check_full,
+          "full_ranks": check_full_ranks, "size_limit": check_limit}
 
 
 if __name__ == "__main__":

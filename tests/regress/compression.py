@@ -24,6 +24,7 @@ from pathlib import Path
 from solver_runs import (
     DECKS,
     EXIT_DECK,
+    EXIT_DONE,
     EXIT_FILES,
     EXIT_STOPPED,
     change_deck,
@@ -121,13 +122,17 @@ def check_chain(implam, folder, _):
     summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
     require(summary["has_failed"] and summary["residual_strength"] >= rows["far_field_stress"][strongest] > 100e6,
             "It does not fail, or not at its largest stress.")
+    require(all(place["area"] > 0 and place["onset"] is place["first_growth"] is None
+                for place in summary["interfaces"]), "Delaminations of the impact are events of the compression.")
+    require("onset before this run" in (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8"),
+            "The log does not say that they are older.")
     collapse = summary["collapse"]
     print(f"failure {summary['failure_code']}")
     # Whether fibres fail across beside the delaminations differs by rounding.
-    torn = any(entry["went_across"] for entry in collapse["fibres"])
+    torn = any(entry["failed_across_width"] for entry in collapse["fibres"])
     require(summary["failure_code"] == ("M(DL)DM" if torn else "DDV"), "The code is not that of what went across.")
     for entry, place in zip(collapse["interfaces"], summary["interfaces"], strict=True):
-        require(entry["went_across"] and entry["width_before"] < 1 and 0 < entry["area_before"] < entry["area"]
+        require(entry["failed_across_width"] and entry["width_before"] < 1 and 0 < entry["area_before"] < entry["area"]
                 and place["ply_above"] == entry["ply_above"], "Interfaces do not grow across.")
     require(sum(entry["area"] for entry in collapse["fibres"]) > 0
             and not any(entry["area_before"] for entry in collapse["fibres"]), "Fibres do not fail in the collapse.")
@@ -293,6 +298,12 @@ def check_refused(implam, folder, _):
     run([implam, "restart", f"{COMPRESSION}_restart.h5", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     warned = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["warnings"]
     require(any("was stopped at time" in warning["text"] for warning in warned), f"After a restart: {warned}")
+    short = deck_of(folder, IMPACT, ["time%end=0.15e-3", "case%name='pressed'", "output%fields_every=1"])
+    run([implam, short], folder=folder)
+    for mesh, code in ((FINER, EXIT_DECK), ([], EXIT_DONE)):
+        pressed = deck_of(folder, COMPRESSION, [*mesh, "initial_state%from='pressed_restart.h5'"])
+        said = run([implam, "check", pressed], code, folder)
+        require(("the impactor is in contact" in said) == bool(mesh), f"A plate under load is mapped:\n{said}")
 
 
 def southwell(rows):

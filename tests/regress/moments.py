@@ -56,11 +56,12 @@ class Model:
         """Return the path of the deck in a folder with nothing else in it."""
         return write_deck(self.folder / "disturbed", *self.settings)
 
-    def start(self, deck, **variables):
-        """Start the run, or go on if there is a checkpoint; return the launcher's process, or the program's."""
+    def start(self, deck, errors=subprocess.DEVNULL, **variables):
+        """Start the run, or go on if there is a checkpoint; return the launcher's process, or the program's. `errors`
+        takes what is said on standard error."""
         words = ["restart", deck.parent] if list(deck.parent.glob("*_restart.h5")) else [deck, "--output", deck.parent]
         return subprocess.Popen([str(word) for word in (*self.launcher, self.implam, *words)], start_new_session=True,
-                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors,
                                 env=os.environ | variables)
 
     def ranks(self, process):
@@ -189,8 +190,10 @@ def check_kills(implam, folder, count, launcher):
 
 
 def printed(model, deck, target, stop, times, rows):
-    """Stop a run; return the exit code."""
-    process = model.start(deck)
+    """Stop a run; return the exit code and what it said on standard error."""
+    errors = deck.with_name("errors")
+    with errors.open("w", encoding="utf-8") as file:
+        process = model.start(deck, file)
     wait_until(lambda: list(deck.parent.glob("*.log")), process)
     if rows:
         wait_for_rows(deck, process, rows)
@@ -198,7 +201,9 @@ def printed(model, deck, target, stop, times, rows):
     for _ in range(times):
         send(chosen, stop)
         time.sleep(0.002)
-    return end_of(process)
+    code, said = end_of(process), errors.read_text(encoding="utf-8")
+    errors.unlink()
+    return code, said
 
 
 def check_signals(implam, folder, count, launcher):
@@ -222,12 +227,13 @@ def check_signals(implam, folder, count, launcher):
 def check_signalled(model, target, stop, times, rows, what):
     """Stop a run after some rows and let it go on; return whether it has left a checkpoint."""
     deck = model.fresh()
-    code = printed(model, deck, target, stop, times, rows)
+    code, said = printed(model, deck, target, stop, times, rows)
     saved = bool(list(deck.parent.glob("*_restart.h5")))
     if target == "mpirun" and stop != signal.SIGUSR1:
         require(code == MPIRUN_STOPPED, f"{what}: code {code}, not {MPIRUN_STOPPED}.")
     else:
         require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
+        require(said.count("signal received") == 1, f"{what}: not one line announces the end but\n{said}")
     require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
     model.check_end(deck, what)
     return saved

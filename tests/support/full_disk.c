@@ -1,44 +1,50 @@
-/* Loaded ahead of a program (LD_PRELOAD), the disk is full for one write at a place in a file, as HDF5 writes: that
-   numbered FULL_AT, if it is not 0. From then on the system says that no space is left. The file FULL_COUNT receives
-   the number of writes at the end. */
+/* Loaded ahead of a program (LD_PRELOAD), one write at a place in a file, as HDF5 writes, fails: that numbered FULL_AT, if
+   it is not 0, with the error FULL_ERROR of the system, by default that of a full disk. From then on trial files cannot
+   be written. The file FULL_COUNT receives the number of writes at the end, unless there were none. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/statvfs.h>
+#include <string.h>
 #include <sys/types.h>
+#include <unistd.h>
 
 static long writes;
-static int is_full;
+static int error;
+
+static int is_trial(int file)
+{
+  char link[64], path[4096];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+  const ssize_t length = readlink(link, path, sizeof path - 1);
+  if (length < 6) return 0;
+  path[length] = 0;
+  return strcmp(path + length - 6, ".trial") == 0;
+}
 
 ssize_t pwrite(int file, const void *bytes, size_t length, off_t place)
 {
   ssize_t (*real)(int, const void *, size_t, off_t) =
     (ssize_t (*)(int, const void *, size_t, off_t))dlsym(RTLD_NEXT, "pwrite");
-  const char *at = getenv("FULL_AT");
+  const char *at = getenv("FULL_AT"), *number = getenv("FULL_ERROR");
+  if (error && is_trial(file)) {
+    errno = error;
+    return -1;
+  }
   writes++;
   if (at && writes == atol(at)) {
-    is_full = 1;
-    errno = ENOSPC;
+    error = number ? atoi(number) : ENOSPC;
+    errno = error;
     return -1;
   }
   return real(file, bytes, length, place);
 }
 
-int statvfs(const char *path, struct statvfs *disk)
-{
-  int (*real)(const char *, struct statvfs *) =
-    (int (*)(const char *, struct statvfs *))dlsym(RTLD_NEXT, "statvfs");
-  const int status = real(path, disk);
-  if (status == 0 && is_full) disk->f_bavail = 0;
-  return status;
-}
-
 __attribute__((destructor)) static void at_exit(void)
 {
   const char *path = getenv("FULL_COUNT");
-  FILE *file = path ? fopen(path, "w") : NULL;
+  FILE *file = path && writes ? fopen(path, "w") : NULL;
   if (!file) return;
   fprintf(file, "%ld\n", writes);
   fclose(file);

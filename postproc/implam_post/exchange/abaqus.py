@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Sequence
 
+from implam_post.exchange.nastran import real
 from implam_post.exchange.panel import MaterialState, Panel, Section
 from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
 from implam_post.laminate.sections import Material, direction
@@ -14,7 +15,8 @@ def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
     yield from (f"** {panel.name}: panel from {source}", "** z points from the struck face to the back; the first "
                 "layer of each section is the one nearest to the struck face.", "*HEADING", panel.name)
     yield "*NODE, NSET=PANEL"
-    yield from (f"{number}, {x:.12g}, {y:.12g}, 0." for number, (x, y) in enumerate(mesh.coordinates, 1))
+    yield from (f"{number}, {x:.12g}, {y:.12g}, {real(float(z), 20)}"
+                for number, (x, y, z) in enumerate(mesh.coordinates, 1))
     yield from _elements(panel, mesh, sections)
     names = {state: _material_name(number, state) for number, state in enumerate(panel.materials(), 1)}
     for state, material in panel.materials().items():

@@ -23,6 +23,8 @@ def summary(panel: Panel) -> Iterator[str]:
            f"{counted(len(panel.materials()), 'material')}")
     if panel.pressure is not None:
         yield f"uniform pressure on the struck face: {panel.pressure:g}"
+    if panel.imperfection:
+        yield f"initial deflection in the coordinates of the nodes, amplitude {panel.imperfection:g}"
     for group in panel.unwritten:
         yield f"note: &{group} isn't written: add what it holds or loads."
 

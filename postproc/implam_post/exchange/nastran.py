@@ -23,8 +23,8 @@ def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[s
     if panel.pressure is not None:
         yield f"LOAD = {_LOAD}"
     yield from ("DISPLACEMENT = ALL", "BEGIN BULK")
-    for grid, (x, y) in enumerate(mesh.coordinates, 1):
-        yield from card("GRID", grid, None, float(x), float(y), 0.0)
+    for grid, place in enumerate(mesh.coordinates, 1):
+        yield from card("GRID", grid, None, *map(float, place))
     yield from _elements(panel, mesh, sections, with_z0)
     numbers = {state: number for number, state in enumerate(panel.materials(), 1)}
     for number, section in enumerate(sections, 1):

@@ -1,5 +1,6 @@
 """The panel for other programs: its cells, the layers of plies in each, its supports."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -68,15 +69,16 @@ class Section:
 
 
 def _plain(place: float, thickness: float) -> float:
-    """Return a place without the rounding of sums of thicknesses."""
-    return 0.0 if abs(place) < 1e-9 * thickness else float(f"{place:.12g}")
+    """Return a place without the rounding of sums of thicknesses, or of a zero of a sine."""
+    return 0.0 if abs(place) <= 1e-9 * thickness else float(f"{place:.12g}")
 
 
 @dataclass(frozen=True)
 class Panel:
     """A rectangular panel about its middle in its cells; lines are those between cells, in ascending order.
 
-    `unwritten` names groups of the deck that hold or load the panel and are not exchanged.
+    `unwritten` names groups of the deck that hold or load the panel and are not exchanged. The panel without stress
+    has an initial deflection in half waves along x and y, with the amplitude `imperfection`.
     """
 
     name: str
@@ -89,11 +91,19 @@ class Panel:
     degradation: Degradation
     pressure: float | None = None
     unwritten: tuple[str, ...] = ()
+    imperfection: float = 0.0
+    half_waves: tuple[int, int] = (1, 1)
 
     @property
     def cells(self) -> tuple[int, int]:
         """Numbers of cells along x and y."""
         return len(self.x) - 1, len(self.y) - 1
+
+    def initial_deflection(self, x: float, y: float) -> float:
+        """Return the deflection without stress at a place, towards the back."""
+        waves = [math.sin(count * math.pi * (place - lines[0]) / (lines[-1] - lines[0]))
+                 for count, place, lines in zip(self.half_waves, (x, y), (self.x, self.y), strict=True)]
+        return _plain(self.imperfection * math.prod(waves), abs(self.imperfection))
 
     def section(self, stack: Stack) -> Section:
         """Return plies and place of a stack."""

@@ -126,6 +126,12 @@ def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: d
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
         raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
     fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"
+    half_waves = deck.numbers("plate", "half_waves") or [1, 1]
+    if len(half_waves) != 2 or min(half_waves) < 1 or any(count % 1 for count in half_waves):
+        raise deck.error("plate", "half_waves needs two integers greater than zero.")
+    # Linear strains do not contain the initial deflection.
+    is_deep = deck.choice("case", "kinematics", ("von_karman", "linear")) == "von_karman"
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
     return Panel(deck.name, plies, x, y, stacks, deck.edges(), fixed, degradation_of(deck),
-                 deck.number("pressure", "value") if uniform else None, tuple(filter(deck.has, _UNWRITTEN)))
+                 deck.number("pressure", "value") if uniform else None, tuple(filter(deck.has, _UNWRITTEN)),
+                 deck.number("plate", "imperfection", 0.0) if is_deep else 0.0, tuple(map(int, half_waves)))

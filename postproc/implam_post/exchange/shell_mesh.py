@@ -52,14 +52,14 @@ def shell_mesh(panel: Panel, with_middles: bool) -> ShellMesh:
     return ShellMesh(np.array(coordinates), elements, struck, _supports(panel, numbers))
 
 
-def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, int]], list[tuple[float, float]]]:
+def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, int]], list[tuple[float, float, float]]]:
     """Return the grid that each first ply of a stack has at each place, and the coordinates of the grids.
 
     At the edge of a delamination, where some cell around still holds together, so does the grid.
     """
     x, y = (_halved(lines) for lines in (panel.x, panel.y))
     numbers: dict[Place, dict[int, int]] = {}
-    coordinates: list[tuple[float, float]] = []
+    coordinates: list[tuple[float, float, float]] = []
     for j in range(len(y)):
         for i in range(len(x)):
             if i % 2 and j % 2 and not with_middles:
@@ -67,7 +67,7 @@ def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, i
             delaminated = frozenset.intersection(*(panel.delaminated(cell) for cell in _around(panel, i, j)))
             numbers[i, j] = {}
             for first in (1, *(below + 1 for below in sorted(delaminated))):
-                coordinates.append((float(x[i]), float(y[j])))
+                coordinates.append((float(x[i]), float(y[j]), panel.initial_deflection(x[i], y[j])))
                 numbers[i, j][first] = len(coordinates)
     return numbers, coordinates
 

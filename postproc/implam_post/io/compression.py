@@ -9,6 +9,7 @@ import numpy as np
 from implam_post.io.errors import FileError
 from implam_post.io.history import History
 from implam_post.io.run import read_summary
+from implam_post.io.summary_shape import ACROSS
 
 STRENGTH, STRESS = "residual_strength", "far_field_stress"
 # The plate has failed once the stress falls below this part of its maximum beyond this nominal strain, as in the
@@ -49,8 +50,8 @@ def strength_of(path: Path) -> float:
     return float(summary[STRENGTH])
 
 
-def went_across(summary: Mapping[str, Any]) -> Across:
-    """Return what went across the width under the load."""
+def failed_across_width(summary: Mapping[str, Any]) -> Across:
+    """Return what has failed across the width under the load."""
     collapse = summary.get("collapse", {})
-    return Across([entry["ply_above"] for entry in collapse.get("interfaces", []) if entry["went_across"]],
-                  [entry["ply"] for entry in collapse.get("fibres", []) if entry["went_across"]])
+    return Across([entry["ply_above"] for entry in collapse.get("interfaces", []) if entry[ACROSS]],
+                  [entry["ply"] for entry in collapse.get("fibres", []) if entry[ACROSS]])

@@ -119,7 +119,8 @@ def read_columns(path: Path | str) -> History:
     import pandas as pd
 
     path = Path(path)
-    lines = [(number, line) for number, line in enumerate(read_text(path, "the history").splitlines(), start=1)
+    text = read_text(path, "the history")
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), start=1)
              if line.strip() and line[0] != "#"]
     if len(lines) < 2:
         raise FileError(f"the history {path} has no rows.")
@@ -127,6 +128,9 @@ def read_columns(path: Path | str) -> History:
     for (number, _), width in zip(lines, widths, strict=True):
         if width != widths[0]:  # pandas would fill a short row up
             raise FileError(f"the history {path} has {width} cells under {widths[0]} names in line {number}.")
+    # A run ends each row by a new line; the last number may otherwise have lost digits.
+    if path.name.endswith(_ENDING) and not text.endswith("\n"):
+        raise FileError(f"the history {path} is cut off in line {lines[-1][0]}, which has no end.")
     try:
         cells = pd.read_csv(io.StringIO("\n".join(line for _, line in lines)), skipinitialspace=True, dtype=str,
                             keep_default_na=False)

@@ -14,7 +14,7 @@ from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import Fields, NoTimeError, opened, read_fields
 from implam_post.io.files import read_text
 from implam_post.io.history import History, read_history
-from implam_post.io.summary_shape import misshapen_member
+from implam_post.io.summary_shape import misshapen_member, take_earlier_names
 from implam_post.io.units import unit_of
 
 if TYPE_CHECKING:
@@ -209,6 +209,7 @@ def read_summary(path: Path) -> Summary:
         raise FileError(f"{path} isn't a summary written by implam.") from None
     if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():
         raise FileError(f"{path} isn't a summary written by implam.")
+    take_earlier_names(summary)
     if wrong := misshapen_member(summary):
         raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({wrong}).")
     return Summary(summary, path)

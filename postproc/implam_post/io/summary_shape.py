@@ -35,7 +35,9 @@ _FIGURES = (
     "effective_modulus", "buckling_strain")
 _ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
              "energy_contact", "energy_friction")
-_COLLAPSE = {"interfaces": [{"ply_above": int, "went_across": bool}], "fibres": [{"ply": int, "went_across": bool}]}
+ACROSS = "failed_across_width"
+_ACROSS_BEFORE = "went_across"  # its name in summaries of version 0.1.0
+_COLLAPSE = {"interfaces": [{"ply_above": int, ACROSS: bool}], "fibres": [{"ply": int, ACROSS: bool}]}
 _COMPRESSION = dict.fromkeys(("residual_strength", "residual_strength_at", "shortening_at_strength", "percent_bending"),
                              float) | {"has_failed": bool, "failure_code": OrNull(str), "collapse": _COLLAPSE}
 _POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | dict.fromkeys(_ENERGIES, float) | _COMPRESSION | {
@@ -50,6 +52,15 @@ def missing_member(summary: Mapping[str, Any]) -> str:
             return name
     ends = {"time_reached", "load_factor_reached"}
     return "" if ends & summary.keys() else "time_reached"
+
+
+def take_earlier_names(summary: Mapping[str, Any]) -> None:
+    """Give members of earlier versions their present names."""
+    collapse = summary.get("collapse")
+    for entries in collapse.values() if isinstance(collapse, dict) else ():
+        for entry in entries if isinstance(entries, list) else ():
+            if isinstance(entry, dict) and _ACROSS_BEFORE in entry:
+                entry[ACROSS] = entry.pop(_ACROSS_BEFORE)
 
 
 def misshapen_member(summary: Mapping[str, Any]) -> str:

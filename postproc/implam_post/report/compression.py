@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from implam_post.io.compression import kinetic_share, went_across
+from implam_post.io.compression import failed_across_width, kinetic_share
 from implam_post.io.run import Run
 from implam_post.plot.compression import is_compressed
 from implam_post.plot.style import PictureStyle
@@ -39,7 +39,7 @@ def _collapse(run: Run) -> list[tuple[str, str, str]]:
     """Return where the plate has failed."""
     if not run.summary["has_failed"] or "collapse" not in run.summary:
         return []
-    across = went_across(run.summary)
+    across = failed_across_width(run.summary)
     return [("failure code of ASTM D7137", run.summary["failure_code"] or "not known", ""),
             ("interfaces delaminated across the width", _listed(across.interfaces), "below these plies"),
             ("plies whose fibres broke across the width", _listed(across.plies), "")]

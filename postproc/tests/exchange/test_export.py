@@ -226,7 +226,7 @@ class MeshTest(ExportTest):
         places = Counter(map(tuple, mesh.coordinates))
         self.assertEqual(len(places), 13 * 13)
         apart = {place for place, count in places.items() if count == 2}
-        self.assertEqual(apart, {(x, y) for x, _ in places for y in (-0.5, 0, 0.5)})
+        self.assertEqual(apart, {(x, y, 0) for x, _, _ in places for y in (-0.5, 0, 0.5)})
         self.assertEqual(len(self.mesh(False).coordinates), len(mesh.coordinates) - 36 - 12)
 
     def test_elements(self) -> None:
@@ -237,7 +237,7 @@ class MeshTest(ExportTest):
         for place, element in enumerate(mesh.elements):
             self.assertEqual(element.stack.first == 1, place < mesh.struck)
             for corners in element.quarters:
-                x, y = mesh.coordinates[np.array(corners) - 1].T
+                x, y, _ = mesh.coordinates[np.array(corners) - 1].T
                 self.assertTrue(x[1] > x[0] and y[2] > y[1] and x[0] == x[3] and y[0] == y[1])
                 area[element.stack.first] += (x[1] - x[0]) * (y[3] - y[0])
             eight = mesh.coordinates[np.array(element.eight) - 1]
@@ -251,7 +251,23 @@ class MeshTest(ExportTest):
         upper, lower = (Counter(grid for element in mesh.elements if (element.stack.first, element.stack.last) == plies
                                 for row in element.grids for grid in row) for plies in ((1, 2), (3, 3)))
         shared = mesh.coordinates[np.array(sorted(set(upper) & set(lower))) - 1]
-        self.assertEqual({abs(y) for _, y in shared}, {1.0})
+        self.assertEqual({abs(y) for _, y, _ in shared}, {1.0})
+
+    def test_imperfection(self) -> None:
+        """The initial deflection of the full plate, towards the back, is in the grids; not with linear strains."""
+        deck = DECK.replace("symmetry='quarter'", "symmetry='quarter' imperfection=0.5 half_waves=1, 3")
+        self.keep_deck(deck)
+        x, y, z = self.mesh().coordinates.T
+        np.testing.assert_allclose(z, -0.5 * np.cos(np.pi * x / 12) * np.cos(np.pi * y / 4), atol=1e-9)
+        self.assertIn("initial deflection in the coordinates of the nodes, amplitude 0.5",
+                      self.run_command(to_abaqus, self.results)[1])
+        nodes = (self.folder / "damaged_panel.inp").read_text().partition("*NODE")[2].splitlines()[1:]
+        np.testing.assert_allclose([float(node.split(",")[3]) for node in nodes[:9]],
+                                   self.mesh(False).coordinates[:9, 2])
+        self.keep_deck(deck.replace("name='damaged'", "name='damaged' kinematics='linear'"))
+        self.assertEqual(set(self.mesh().coordinates[:, 2]), {0.0})
+        self.keep_deck(deck.replace("half_waves=1, 3", "half_waves=3"))
+        self.assertEqual(self.run_command(to_nastran, self.results)[0], 2)
 
     def test_supports(self) -> None:
         """Clamped along x, simple along y, all grids of an edge, corners what both hold; none moves rigidly."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.compression import kinetic_share, row_of_strength, strength_of, went_across
+from implam_post.io.compression import failed_across_width, kinetic_share, row_of_strength, strength_of
 from implam_post.io.errors import FileError
 from implam_post.io.history import History
 from tests.io.test_summary_shape import SUMMARY
@@ -42,13 +42,13 @@ class CompressionTest(unittest.TestCase):
             path.write_text(json.dumps(summary | {"residual_strength": 3.5e8}), encoding="utf-8")
             self.assertEqual(strength_of(path), 3.5e8)
 
-    def test_went_across(self) -> None:
+    def test_failed_across_width(self) -> None:
         """Only what went across is listed."""
-        summary = {"collapse": {"interfaces": [{"ply_above": 2, "went_across": False},
-                                               {"ply_above": 4, "went_across": True}],
-                                "fibres": [{"ply": 1, "went_across": True}]}}
-        self.assertEqual(went_across(summary), ([4], [1]))
-        self.assertEqual(went_across({}), ([], []))
+        summary = {"collapse": {"interfaces": [{"ply_above": 2, "failed_across_width": False},
+                                               {"ply_above": 4, "failed_across_width": True}],
+                                "fibres": [{"ply": 1, "failed_across_width": True}]}}
+        self.assertEqual(failed_across_width(summary), ([4], [1]))
+        self.assertEqual(failed_across_width({}), ([], []))
 
 
 if __name__ == "__main__":

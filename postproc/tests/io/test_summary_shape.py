@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from unittest import mock
 
+from implam_post.io.compression import failed_across_width
 from implam_post.io.errors import FileError
 from implam_post.io.run import read_summary
 from implam_post.io.summary_shape import missing_member
@@ -29,7 +30,7 @@ SUMMARY = {
                    "deck": "&case name='case' units='SI' /\n&plate length=0.1, 0.1 /"}}
 COMPRESSION = {"residual_strength": 2e8, "shortening_at_strength": 7e-4, "effective_modulus": None, "has_failed": True,
                "failure_code": "LDM", "percent_bending": -4.0, "buckling_strain": 3.9e-3,
-               "collapse": {"interfaces": [], "fibres": [{"ply": 2, "went_across": True}]}}
+               "collapse": {"interfaces": [], "fibres": [{"ply": 2, "failed_across_width": True}]}}
 COMPRESSION_COLUMNS = ("far_field_stress", "nominal_strain", "shortening", "work_external")
 # What each kind of value is replaced by.
 JUNK = {str: ([], 3), bool: ("yes", 2), int: ("three", None, [1]), float: ("3", True, {}), list: (5, {}, None),
@@ -81,12 +82,18 @@ class SummaryShapeTest(unittest.TestCase):
                 if len(place) > 1:
                     self.assertIn(str(place[0]), str(caught.exception))
 
+    def test_earlier_names(self) -> None:
+        """A summary of version 0.1.0 has another name of what has failed across the width."""
+        collapse = {"interfaces": [], "fibres": [{"ply": 2, "went_across": True}]}
+        self.write(SUMMARY | COMPRESSION | {"collapse": collapse})
+        self.assertEqual(failed_across_width(read_summary(self.path)), ([], [2]))
+
     def test_each_member_left_out(self) -> None:
         """A page without what not every run has, or the sentence that names it."""
         columns = ("time", "force", "deflection", "indentation", "impactor_velocity", "impactor_displacement",
                    *(f"energy_{name}" for name in ENERGIES if name not in ("impact", "absorbed")), *COMPRESSION_COLUMNS)
         rows = [",".join([str(1e-4 * place), *["1.0"] * (len(columns) - 1)]) for place in range(4)]
-        self.path.with_name("case_history.csv").write_text("\n".join([",".join(columns), *rows]), encoding="utf-8")
+        self.path.with_name("case_history.csv").write_text("\n".join([",".join(columns), *rows, ""]), encoding="utf-8")
         whole = SUMMARY | COMPRESSION
         for name in whole:
             self.write({key: value for key, value in whole.items() if key != name})

@@ -12,7 +12,7 @@ from implam_post.report.compression import compression_rows
 
 _SUMMARY = {"residual_strength": 2e8, "shortening_at_strength": 7e-4, "effective_modulus": None, "has_failed": True,
             "failure_code": "LDM", "percent_bending": -4.0, "buckling_strain": 3.9e-3,
-            "collapse": {"interfaces": [], "fibres": [{"ply": 3, "went_across": True}]}}
+            "collapse": {"interfaces": [], "fibres": [{"ply": 3, "failed_across_width": True}]}}
 _HISTORY = History({"time": np.arange(3.0), "far_field_stress": np.array([0.0, 1e8, 2e8]),
                     "nominal_strain": np.array([0.0, 2e-3, 4e-3]), "shortening": np.array([0.0, 3e-4, 6e-4]),
                     "energy_kinetic": np.array([0.0, 0.1, 0.2]), "work_external": np.array([0.0, 10.0, 40.0])})
