@@ -47,10 +47,15 @@ contains
 
   !> Sets parameters of Open MPI. Values of the user are kept, and other MPI libraries ignore these variables.
   !>
+  !> Shared file pointers, which are not used, would need named semaphores (sm) or lock files (lockedfile). Both outlive
+  !> a killed run; the first block later runs that open a file of the same name, the second limit its name to 256
+  !> characters. The remaining method needs two files, removed when the file is closed.
+  !>
   !> A run without mpirun starts no daemon for further processes, which took longer than the rest of MPI's start. It
   !> needs no folder shared with other ranks. All such runs of a machine would have the same one, which one run removes
   !> while another begins: about one start in 240 failed with six at a time.
   subroutine set_open_mpi()
+    call set_environment_variable('OMPI_MCA_sharedfp', '^sm,lockedfile', overwrite=.false.)
     if (launched()) return
     call set_environment_variable('OMPI_MCA_ess_singleton_isolated', '1', overwrite=.false.)
     call set_environment_variable('OMPI_MCA_orte_create_session_dirs', '0', overwrite=.false.)

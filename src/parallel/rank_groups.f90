@@ -18,7 +18,7 @@ module rank_groups
     !> MPI's own object, undefined until MPI has been started; for the modules of this folder only
     type(MPI_Comm) :: group
   contains
-    !> The integer handle for PETSc.
+    !> The integer handle for PETSc and HDF5.
     procedure :: handle
     !> Whether this is rank 0, which writes.
     procedure :: is_root
@@ -42,7 +42,7 @@ module rank_groups
 
 contains
 
-  !> The integer handle for PETSc. A single rank may have been set up before MPI.
+  !> The integer handle for PETSc and HDF5. A single rank may have been set up before MPI.
   pure integer function handle(self)
     class(rank_group_t), intent(in) :: self
 

@@ -1,4 +1,4 @@
-!> Text attributes of a dataset in an HDF5 file of a run. Collective; those of the first rank are written.
+!> Text attributes of a dataset in a shared HDF5 file. Collective: every rank gives the same texts.
 module hdf5_attributes
   use hdf5, only: h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dopen_f, h5s_scalar_f, h5sclose_f, h5screate_f, &
     h5t_fortran_s1, h5tclose_f, h5tcopy_f, h5tset_size_f, hid_t, size_t
@@ -25,14 +25,11 @@ contains
 
     if (.not. file%succeeded()) return
     statuses = 0
-    status = 0
-    if (file%communicator%is_root()) then
-      call h5dopen_f(file%id, name, dataset, status)
-      if (status >= 0) then
-        call write_attribute(dataset, 'unit', unit, statuses(1))
-        call write_attribute(dataset, 'meaning', meaning, statuses(2))
-        call h5dclose_f(dataset, status)
-      end if
+    call h5dopen_f(file%id, name, dataset, status)
+    if (status >= 0) then
+      call write_attribute(dataset, 'unit', unit, statuses(1))
+      call write_attribute(dataset, 'meaning', meaning, statuses(2))
+      call h5dclose_f(dataset, status)
     end if
     call file%check_status(min(status, minval(statuses)), name//' could not be given its unit and meaning')
   end subroutine write_unit_and_meaning

@@ -1,4 +1,4 @@
-!> Numbers and text in an HDF5 file of a run: arrays known to every rank, and tables with columns distributed over the
+!> Numbers and text in a shared HDF5 file: arrays known to every rank, and tables with columns distributed over the
 !> ranks and stored in global order. Every routine is collective.
 module hdf5_data
   use hdf5, only: h5dclose_f, h5dget_type_f, h5dopen_f, h5t_fortran_s1, h5t_ieee_f64le, h5t_native_double, &
@@ -11,9 +11,6 @@ module hdf5_data
   private
   public :: write_reals, read_reals, write_integers, read_integers, write_text, read_text
   public :: write_real_columns, read_real_columns, write_integer_columns
-
-  !> Bytes of a number in memory.
-  integer, parameter :: bytes_of_real = storage_size(0.0_wp)/8, bytes_of_integer = storage_size(0)/8
 
 contains
 
@@ -30,8 +27,7 @@ contains
     real(wp), allocatable, target :: buffer(:)
 
     buffer = [values, 0.0_wp]
-    call put(file, name, h5t_ieee_f64le, h5t_native_double, bytes_of_real, c_loc(buffer), extents, &
-             shares_of_root(file, extents))
+    call put(file, name, h5t_ieee_f64le, h5t_native_double, c_loc(buffer), extents, shares_of_root(file, extents))
   end subroutine write_reals
 
   !> Reads reals to every rank.
@@ -47,8 +43,7 @@ contains
     real(wp), allocatable, target :: buffer(:)
 
     allocate (buffer(product(extents) + 1), source=0.0_wp)
-    call get(file, name, h5t_native_double, bytes_of_real, c_loc(buffer), extents, shares_of_root(file, extents))
-    call file%communicator%broadcast(buffer)
+    call get(file, name, h5t_native_double, c_loc(buffer), extents, all_columns(extents))
     values = buffer(:product(extents))
   end subroutine read_reals
 
@@ -65,8 +60,7 @@ contains
     integer, allocatable, target :: buffer(:)
 
     buffer = [values, 0]
-    call put(file, name, h5t_std_i32le, h5t_native_integer, bytes_of_integer, c_loc(buffer), extents, &
-             shares_of_root(file, extents))
+    call put(file, name, h5t_std_i32le, h5t_native_integer, c_loc(buffer), extents, shares_of_root(file, extents))
   end subroutine write_integers
 
   !> Reads integers to every rank.
@@ -82,8 +76,7 @@ contains
     integer, allocatable, target :: buffer(:)
 
     allocate (buffer(product(extents) + 1), source=0)
-    call get(file, name, h5t_native_integer, bytes_of_integer, c_loc(buffer), extents, shares_of_root(file, extents))
-    call file%communicator%broadcast(buffer)
+    call get(file, name, h5t_native_integer, c_loc(buffer), extents, all_columns(extents))
     values = buffer(:product(extents))
   end subroutine read_integers
 
@@ -104,13 +97,10 @@ contains
     do i = 1, len(value)
       buffer(i) = value(i:i)
     end do
-    if (file%communicator%is_root()) then
-      call h5tcopy_f(h5t_fortran_s1, text_type, status)
-      call h5tset_size_f(text_type, int(size(buffer), size_t), status)
-    end if
-    call put(file, name, text_type, text_type, size(buffer), c_loc(buffer), [integer ::], &
-             shares_of_root(file, [integer ::]))
-    if (file%communicator%is_root()) call h5tclose_f(text_type, status)
+    call h5tcopy_f(h5t_fortran_s1, text_type, status)
+    call h5tset_size_f(text_type, int(size(buffer), size_t), status)
+    call put(file, name, text_type, text_type, c_loc(buffer), [integer ::], shares_of_root(file, [integer ::]))
+    call h5tclose_f(text_type, status)
   end subroutine write_text
 
   !> Reads a text to every rank; empty if it is not there.
@@ -128,26 +118,19 @@ contains
 
     value = ''
     if (.not. file%succeeded()) return
-    length = 0
-    status = 0
-    if (file%communicator%is_root()) then
-      call h5dopen_f(file%id, name, dataset, status)
-      if (status >= 0) then
-        call h5dget_type_f(dataset, text_type, status)
-        call h5tget_size_f(text_type, length, status)
-        call h5dclose_f(dataset, closed)
-      end if
-    end if
+    call h5dopen_f(file%id, name, dataset, status)
     call file%check_status(status, name//' is missing')
     if (.not. file%succeeded()) return
+    call h5dget_type_f(dataset, text_type, status)
+    call h5tget_size_f(text_type, length, status)
+    call h5dclose_f(dataset, closed)
     allocate (buffer(length), source=' ')
-    call get(file, name, text_type, int(length), c_loc(buffer), [integer ::], shares_of_root(file, [integer ::]))
-    if (file%communicator%is_root()) call h5tclose_f(text_type, closed)
+    call get(file, name, text_type, c_loc(buffer), [integer ::], [1])
+    call h5tclose_f(text_type, closed)
     value = repeat(' ', int(length))
     do i = 1, int(length)
       value(i:i) = buffer(i)
     end do
-    call file%communicator%broadcast_text(value)
   end subroutine read_text
 
   !> Writes a table of reals with columns distributed over the ranks.
@@ -167,7 +150,7 @@ contains
 
     order = ascending_order(columns)
     buffer = [values(:, order), 0.0_wp]
-    call put(file, name, h5t_ieee_f64le, h5t_native_double, bytes_of_real, c_loc(buffer), &
+    call put(file, name, h5t_ieee_f64le, h5t_native_double, c_loc(buffer), &
              table_extents(size(values, 1), global_columns), columns(order))
   end subroutine write_real_columns
 
@@ -190,7 +173,7 @@ contains
     height = size(values, 1)
     order = ascending_order(columns)
     allocate (buffer(height*size(columns) + 1), source=0.0_wp)
-    call get(file, name, h5t_native_double, bytes_of_real, c_loc(buffer), table_extents(height, global_columns), &
+    call get(file, name, h5t_native_double, c_loc(buffer), table_extents(height, global_columns), &
              columns(order))
     if (.not. file%succeeded()) return
     do i = 1, size(columns)
@@ -215,7 +198,7 @@ contains
 
     order = ascending_order(columns)
     buffer = [values(:, order), 0]
-    call put(file, name, h5t_std_i32le, h5t_native_integer, bytes_of_integer, c_loc(buffer), &
+    call put(file, name, h5t_std_i32le, h5t_native_integer, c_loc(buffer), &
              table_extents(size(values, 1), global_columns), columns(order))
   end subroutine write_integer_columns
 
@@ -247,7 +230,7 @@ contains
     order = pack(position, position > 0)
   end function ascending_order
 
-  !> Columns that this rank writes or reads of an array known to every rank: all on the first rank.
+  !> Columns that this rank writes of an array known to every rank: all on the first rank.
   pure function shares_of_root(file, extents) result(columns)
     !> The file
     type(hdf5_file_t), intent(in) :: file

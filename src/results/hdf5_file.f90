@@ -1,15 +1,15 @@
-!> An HDF5 file of a run. Every routine is collective, but the first rank alone opens the file and calls HDF5: where
-!> several ranks write through MPI, HDF5 waits for ever if the metadata cannot be written on one of them. Errors are
-!> stored and agreed on by all ranks; after an error the routines do nothing, and the owner of the file checks at the
-!> end.
+!> An HDF5 file shared by all ranks, on one rank without MPI. Every routine is collective. Errors are stored and agreed
+!> on by all ranks; after an error the routines do nothing, and the owner of the file checks at the end.
 module hdf5_file
   use communicators, only: communicator_t
   use hdf5, only: h5eset_auto_f, h5f_acc_rdonly_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_obj_all_f, h5f_obj_file_f, &
-    h5fclose_f, h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5gget_obj_info_idx_f, h5gn_members_f, &
-    h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, &
-    h5p_link_create_f, h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_obj_track_times_f, &
-    h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
+    h5fclose_f, h5fcreate_f, h5fd_mpio_collective_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+    h5gget_obj_info_idx_f, h5gn_members_f, h5iis_valid_f, h5ldelete_f, h5lexists_f, h5open_f, &
+    h5p_dataset_create_f, h5p_dataset_xfer_f, h5p_file_access_f, h5p_file_create_f, h5p_link_create_f, &
+    h5pclose_f, h5pcreate_f, h5pset_create_inter_group_f, h5pset_dxpl_mpio_f, h5pset_fapl_mpio_f, &
+    h5pset_obj_track_times_f, h5pset_userblock_f, h5t_native_integer, hid_t, hsize_t
   use files, only: write_obstacle
+  use mpi, only: mpi_info_null
   use output_streams, only: output_stream_t
   use text, only: line_t
   implicit none
@@ -26,18 +26,20 @@ module hdf5_file
     character(len=:), allocatable :: failure
     !> The ranks that share the file
     type(communicator_t) :: communicator
-    !> Handle of the file, on the first rank
+    !> Handle of the file
     integer(hid_t) :: id = -1
-    !> Property list: missing groups of a path are made; on the first rank, negative between closing and opening
+    !> Property list: all ranks transfer together; negative between closing and opening
+    integer(hid_t) :: together = -1
+    !> Property list: missing groups of a path are made
     integer(hid_t) :: with_groups = -1
     !> Property list: datasets carry no dates, so equal runs give equal files
     integer(hid_t) :: undated = -1
     !> The file is open
     logical :: is_open = .false.
-    !> Path of the file, on the first rank; not allocated if it is read only
-    character(len=:), allocatable, private :: path
     !> Path of the reserve file, on the first rank; not allocated if there is none
     character(len=:), allocatable, private :: reserve
+    !> Path of the file, on the first rank; not allocated if it is read only
+    character(len=:), allocatable, private :: path
   contains
     procedure :: create
     procedure :: open
@@ -71,17 +73,14 @@ contains
     call start_over(self, communicator)
     call self%write_reserve(path)
     if (allocated(self%failure)) return
-    status = 0
-    if (communicator%is_root()) then
-      call prepare(self, access_list)
-      call h5pcreate_f(h5p_file_create_f, creation_list, status)
-      call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
-      call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, creation_list, access_list)
-      call h5pclose_f(creation_list, closed)
-      call h5pclose_f(access_list, closed)
-    end if
+    call prepare(self, access_list)
+    call h5pcreate_f(h5p_file_create_f, creation_list, status)
+    call h5pset_userblock_f(creation_list, int(head, hsize_t), status)
+    call h5fcreate_f(path, h5f_acc_trunc_f, self%id, status, creation_list, access_list)
+    self%is_open = status == 0
+    call h5pclose_f(creation_list, closed)
+    call h5pclose_f(access_list, closed)
     call self%check_status(status, 'the file could not be created')
-    self%is_open = .not. allocated(self%failure)
   end subroutine create
 
   !> Opens a file that is there.
@@ -100,14 +99,11 @@ contains
     call start_over(self, communicator)
     if (writable) call self%write_reserve(path)
     if (allocated(self%failure)) return
-    status = 0
-    if (communicator%is_root()) then
-      call prepare(self, access_list)
-      call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
-      call h5pclose_f(access_list, closed)
-    end if
+    call prepare(self, access_list)
+    call h5fopen_f(path, merge(h5f_acc_rdwr_f, h5f_acc_rdonly_f, writable), self%id, status, access_list)
+    self%is_open = status == 0
+    call h5pclose_f(access_list, closed)
     call self%check_status(status, 'the file could not be opened')
-    self%is_open = .not. allocated(self%failure)
   end subroutine open
 
   !> Resets the error and the file.
@@ -169,14 +165,21 @@ contains
     if (.not. started) call h5open_f(status)
     call h5eset_auto_f(0, status)
     call h5pcreate_f(h5p_file_access_f, access_list, status)
-    call leave_unlocked(access_list)
+    call h5pcreate_f(h5p_dataset_xfer_f, self%together, status)
+    if (self%communicator%size > 1) then
+      call h5pset_fapl_mpio_f(access_list, self%communicator%handle(), mpi_info_null, status)
+      call h5pset_dxpl_mpio_f(self%together, h5fd_mpio_collective_f, status)
+    else
+      call leave_unlocked(access_list)
+    end if
     call h5pcreate_f(h5p_link_create_f, self%with_groups, status)
     call h5pset_create_inter_group_f(self%with_groups, 1, status)
     call h5pcreate_f(h5p_dataset_create_f, self%undated, status)
     call h5pset_obj_track_times_f(self%undated, .false., status)
   end subroutine prepare
 
-  !> Disables locking of the file: otherwise a program that reads results while they are written would end the run.
+  !> Disables locking of the file, as on several ranks: otherwise a program that reads results while they are written
+  !> would end the run.
   subroutine leave_unlocked(access_list)
     use, intrinsic :: iso_c_binding, only: c_bool, c_int, c_int64_t
     !> Property list for opening the file
@@ -196,21 +199,26 @@ contains
     ignored = set_locking(int(access_list, c_int64_t), .false._c_bool, .true._c_bool)
   end subroutine leave_unlocked
 
-  !> Closes the file, also after a failure to open it.
+  !> Closes the file, also after a failure to open it. On several ranks HDF5 waits for ever if one of them cannot write
+  !> the metadata: where half the reserve cannot be written the file stays open.
   subroutine close (self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: status, closed
+    character(len=:), allocatable :: obstacle
 
+    if (self%together < 0) return
     call self%remove_reserve()
+    obstacle = ''
+    if (self%communicator%size > 1) obstacle = obstacle_of(self, reserved_bytes/2)
+    if (obstacle /= '' .and. .not. allocated(self%failure)) self%failure = obstacle
     status = 0
-    if (self%with_groups >= 0) then
-      if (self%is_open) call h5fclose_f(self%id, status)
-      call h5pclose_f(self%with_groups, closed)
-      call h5pclose_f(self%undated, closed)
-      self%with_groups = -1
-    end if
+    if (self%is_open .and. obstacle == '') call h5fclose_f(self%id, status)
     self%is_open = .false.
+    call h5pclose_f(self%together, closed)
+    call h5pclose_f(self%with_groups, closed)
+    call h5pclose_f(self%undated, closed)
+    self%together = -1
     call self%check_status(status, 'the file could not be closed')
   end subroutine close
 
@@ -243,16 +251,26 @@ contains
     !> The error, if any; equal on all ranks
     character(len=*), intent(in) :: failure
 
-    character(len=:), allocatable :: obstacle
-
     if (allocated(self%failure)) return
     if (.not. self%communicator%any(status < 0)) return
-    self%failure = failure
-    obstacle = ''
-    if (allocated(self%path)) obstacle = write_obstacle(self%path, reserved_bytes)
-    if (obstacle /= '') self%failure = obstacle
-    call self%communicator%broadcast_text(self%failure)
+    ! While data are written the reserve is there: less than its size was left for them.
+    self%failure = obstacle_of(self, reserved_bytes)
+    if (self%failure == '') self%failure = failure
   end subroutine check_status
+
+  !> Why the system refuses further writes, such as on a full disk; empty if it does not. Collective.
+  function obstacle_of(self, bytes) result(obstacle)
+    !> The file
+    type(hdf5_file_t), intent(in) :: self
+    !> Number of bytes to be written
+    integer, intent(in) :: bytes
+    !> The end of a sentence, equal on all ranks
+    character(len=:), allocatable :: obstacle
+
+    obstacle = ''
+    if (allocated(self%path)) obstacle = write_obstacle(self%path, bytes)
+    call self%communicator%broadcast_text(obstacle)
+  end function obstacle_of
 
   !> True if there was no error so far.
   pure logical function succeeded(self)
@@ -272,11 +290,8 @@ contains
 
     exists = .false.
     if (.not. self%succeeded()) return
-    if (self%communicator%is_root()) then
-      call h5lexists_f(self%id, path, exists, status)
-      exists = exists .and. status == 0
-    end if
-    call self%communicator%broadcast(exists)
+    call h5lexists_f(self%id, path, exists, status)
+    exists = exists .and. status == 0
   end function exists
 
   !> Makes a group, and those above it that are missing.
@@ -289,11 +304,8 @@ contains
     integer :: status
 
     if (.not. self%succeeded()) return
-    status = 0
-    if (self%communicator%is_root()) then
-      call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
-      if (status == 0) call h5gclose_f(group, status)
-    end if
+    call h5gcreate_f(self%id, path, group, status, lcpl_id=self%with_groups)
+    if (status == 0) call h5gclose_f(group, status)
     call self%check_status(status, 'group '//path//' could not be made')
   end subroutine make_group
 
@@ -306,8 +318,7 @@ contains
     integer :: status
 
     if (.not. self%succeeded()) return
-    status = 0
-    if (self%communicator%is_root()) call h5ldelete_f(self%id, path, status)
+    call h5ldelete_f(self%id, path, status)
     call self%check_status(status, path//' could not be removed')
   end subroutine remove
 
@@ -320,7 +331,7 @@ contains
     integer :: status
 
     call self%remove_reserve()
-    if (self%is_open .and. self%communicator%is_root()) call h5ldelete_f(self%id, path, status)
+    if (self%is_open) call h5ldelete_f(self%id, path, status)
   end subroutine discard
 
   !> Names of the members of a group, in alphabetical order; none if there is no such group.
@@ -332,24 +343,19 @@ contains
     !> Names of its members
     type(line_t), allocatable, intent(out) :: names(:)
     character(len=256) :: name
-    integer :: count, i, kind, failed, status
+    integer :: count, i, kind, status
 
     count = 0
-    failed = 0
-    if (self%exists(path) .and. self%communicator%is_root()) then
-      call h5gn_members_f(self%id, path, count, failed)
-      if (failed < 0) count = 0
+    if (self%exists(path)) then
+      call h5gn_members_f(self%id, path, count, status)
+      if (status < 0) count = 0
+      call self%check_status(status, 'group '//path//' could not be listed')
     end if
-    call self%communicator%broadcast(count)
     allocate (names(count))
     do i = 1, count
-      if (self%communicator%is_root()) then
-        call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
-        failed = min(failed, status)
-      end if
-      call self%communicator%broadcast(name)
+      call h5gget_obj_info_idx_f(self%id, path, i - 1, name, kind, status)
       names(i)%text = trim(name)
+      call self%check_status(status, 'group '//path//' could not be listed')
     end do
-    call self%check_status(failed, 'group '//path//' could not be listed')
   end subroutine members
 end module hdf5_file
