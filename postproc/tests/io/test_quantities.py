@@ -89,7 +89,8 @@ class QuantitiesTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "stressed_history.csv"
             rows = zip(*columns.values(), strict=True)
-            path.write_text("\n".join([",".join(columns), *(",".join(map(repr, map(float, row))) for row in rows)]))
+            lines = [",".join(columns), *(",".join(map(repr, map(float, row))) for row in rows)]
+            path.write_text("".join(f"{line}\n" for line in lines))
             self.assertAlmostEqual(QUANTITIES["impact_energy"](read_history(path)), 17, delta=1e-14)
             summary = path.with_name("stressed_summary.json")
             for text in ("{}", "[", '{"energy_impact": null}'):
