@@ -27,11 +27,15 @@ APART = ["delamination%below_ply=4", "delamination%G_c=1e9", "delamination%zone=
          "delamination%starter=0.06", "delamination%contact='none'"]
 HINGED = ["plate%edges='simple'", "plate%in_plane='free'", "pressure%value=1.2e5"]
 CROSS_PLY = ["laminate%angles=0, 90, 0, 90, 90, 0", "plate%symmetry='quarter'", "mesh%elements=6, 6"]
+# An initial deflection stiffens the plate, here threefold; under a small load that is linear, too.
+SHALLOW = ["case%kinematics='von_karman'", "plate%imperfection=2e-3", "pressure%value=100"]
 # Settings, and how far deflections may be apart, over the largest one of the face: on the struck face and on the back.
 # Measured with CalculiX: 0.13, 0.11, 0.47 and 1.4, 0.08 and 0.36, 0.32 and 1.05 %; with MYSTRAN 0.29, 0.28, 0.53 and
 # 0.67, 0.19 and 0.43, 0.35 and 0.44 %. The ends of a delamination are where the models part: doc/manual/exchange.md.
 PANELS = {"whole": ([], 0.004, 0.004), "failed": (FAILED, 0.004, 0.004), "apart": (APART, 0.007, 0.018),
           "both": (FAILED + APART + HINGED, 0.004, 0.007), "quarter": (FAILED + APART + CROSS_PLY, 0.006, 0.014)}
+# Compared with CalculiX alone. Measured: 0.26 %.
+CURVED = {"shallow": (SHALLOW, 0.004, 0.004)}
 
 
 def own_deflections(history):
@@ -59,7 +63,7 @@ def other_deflections(panel, numbered, with_middles):
         grids = [grid for row in element.grids for grid in row if grid]
         faces[0].extend(grids if element.stack.first == 1 else [])
         faces[1].extend(grids if element.stack.last == len(panel.plies) else [])
-    return [{place_of(mesh.coordinates[grid - 1]): numbered[grid] for grid in face} for face in faces]
+    return [{place_of(mesh.coordinates[grid - 1, :2]): numbered[grid] for grid in face} for face in faces]
 
 
 def calculix(results, folder):
@@ -102,7 +106,7 @@ def check(program, implam, folder):
     """Compare all panels."""
     solve, with_middles = (calculix, False) if program == "calculix" else (mystran, True)
     softest = {}
-    for name, (settings, struck, back) in PANELS.items():
+    for name, (settings, struck, back) in (PANELS | (CURVED if program == "calculix" else {})).items():
         here = folder / name
         history = run_deck(implam, write_deck(here, "exchange.nml", settings))
         results = Path(str(history).removesuffix("_history.csv") + ".h5")
