@@ -38,35 +38,14 @@ contains
     !> Set if the run fails
     type(error_t), allocatable, intent(out) :: error
     type(deck_t) :: deck
-    type(problems_t) :: problems
     character(len=:), allocatable :: checkpoint
     type(profile_t) :: profile
 
     profile = new_profile(command%profile)
     call profile%enter('deck')
-    checkpoint = ''
-    if (command%verb == verb_restart) then
-      call find_checkpoint(command, communicator, checkpoint, error)
-      if (allocated(error)) return
-      call read_checkpoint_deck(checkpoint, communicator, deck, problems, error)
-      if (allocated(error)) return
-      call print_lines(communicator, [line_t('The deck is the one stored in '//checkpoint// &
-                                             '; a deck file changed since then is not read.')])
-    else
-      call read_deck_everywhere(command%target, communicator, deck, problems)
-    end if
-    call accept_deck(command, communicator, deck, problems, code)
-    if (code == exit_done .and. checkpoint == '') call fit_initial_state(deck, communicator, error)
+    call take_deck(command, communicator, deck, checkpoint, code, error)
     call profile%leave()
     if (code /= exit_done .or. allocated(error)) return
-    if (command%verify .and. deck%refine > 0) then
-      call fail(error, exit_usage, '--verify refines the setup itself; take refine out of &case.')
-      return
-    end if
-    if (command%verify .and. deck%initial%is_inherited) then
-      call fail(error, exit_usage, '--verify refines the mesh, which a deck with &initial_state has from another run.')
-      return
-    end if
     call profile%enter('MPI and PETSc')
     call start_mpi(communicator)
     call start_petsc(communicator, deck%linear_solver%petsc_options//command%petsc_options, error)
@@ -81,6 +60,44 @@ contains
     call finish_petsc()
     call profile%release()
   end subroutine compute
+
+  !> Reads the deck from its file or a checkpoint, and its initial state.
+  subroutine take_deck(command, communicator, deck, checkpoint, code, error)
+    !> The parsed command line
+    type(command_t), intent(in) :: command
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> The deck
+    type(deck_t), intent(out) :: deck
+    !> Path of the checkpoint from which the run continues; empty: it begins
+    character(len=:), allocatable, intent(out) :: checkpoint
+    !> Exit code
+    integer, intent(inout) :: code
+    !> Set if a checkpoint cannot be read or the deck cannot be verified
+    type(error_t), allocatable, intent(out) :: error
+    type(problems_t) :: problems
+
+    checkpoint = ''
+    if (command%verb == verb_restart) then
+      call find_checkpoint(command, communicator, checkpoint, error)
+      if (allocated(error)) return
+      call read_checkpoint_deck(checkpoint, communicator, deck, problems, error)
+      if (allocated(error)) return
+      call print_lines(communicator, [line_t('The deck is the one stored in '//checkpoint// &
+                                             '; a deck file changed since then is not read.')])
+    else
+      call read_deck_everywhere(command%target, communicator, deck, problems)
+    end if
+    call accept_deck(command, communicator, deck, problems, code)
+    if (code /= exit_done) return
+    if (checkpoint == '') call fit_initial_state(deck, communicator, error)
+    if (allocated(error) .or. .not. command%verify) return
+    if (deck%refine > 0) then
+      call fail(error, exit_usage, '--verify refines the setup itself; take refine out of &case.')
+    else if (deck%initial%is_inherited) then
+      call fail(error, exit_usage, '--verify refines the mesh, which a deck with &initial_state has from another run.')
+    end if
+  end subroutine take_deck
 
   !> Reports the errors of a deck, and applies the options of the command line.
   subroutine accept_deck(command, communicator, deck, problems, code)

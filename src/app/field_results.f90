@@ -2,6 +2,7 @@
 module field_results
   use deck_contents, only: deck_t
   use errors, only: error_t
+  use field_datasets, only: global_numbers_t
   use fields_file, only: fields_file_t
   use interface_fields, only: interface_field_rows, starters_above, write_interface_fields
   use kinds, only: wp
@@ -56,8 +57,9 @@ contains
       coordinates(3, :) = heights(model)
       values(:2, :) = mesh%element_plies(:, partition%elements)
       values(3, :) = starters_above(model)
-      call fields%write_mesh(partition%points(:partition%owned), mesh%points(), coordinates, partition%elements, &
-                             mesh%elements(), mesh%connectivity(:, partition%elements), &
+      call fields%write_mesh(global_numbers_t(partition%points(:partition%owned), mesh%points()), &
+                             global_numbers_t(partition%elements, mesh%elements()), coordinates, &
+                             mesh%connectivity(:, partition%elements), &
                              [character(len=13) :: 'first_ply', 'last_ply', 'starter_above'], values, error)
     end associate
   end subroutine write_mesh

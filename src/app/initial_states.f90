@@ -27,7 +27,6 @@ module initial_states
   use model_building, only: create_model
   use models, only: model_t
   use root_output, only: print_lines
-  use run_moments, only: moment
   use run_records, only: run_record_t
   use states, only: new_state, state_t, time_item
   use stepping_parameters, only: end_of_run
@@ -46,38 +45,30 @@ contains
     type(deck_t), intent(inout) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Set (files) if the checkpoint can't be read, (deck) if it is of another plate
+    !> Set (files) if the checkpoint cannot be read, (deck) if it is of another plate
     type(error_t), allocatable, intent(inout) :: error
     !> Returns true instead of an error if there is no such file, as the other run may be pending
     logical, intent(out), optional :: lacks
-    logical :: is_own
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: old
     character(len=:), allocatable :: objection
     type(line_t) :: remark
-    real(wp) :: time, contact_end, force
+    real(wp) :: contact_end, force
     integer :: i
 
     if (present(lacks)) lacks = .false.
     if (.not. deck%initial%is_inherited) return
-    if (.not. present(lacks)) then
-      is_own = .false.
-      if (communicator%is_root()) is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name// &
-                                                        checkpoint_ending)
-      call communicator%broadcast(is_own)
-      if (is_own) then
-        call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; allowed: '// &
-                    'another &case name or &output directory', error)
-        return
-      end if
-    else
+    if (present(lacks)) then
       if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
       call communicator%broadcast(lacks)
       if (lacks) return
+    else
+      call refuse_own_end(deck, communicator, error)
+      if (allocated(error)) return
     end if
     call open_checkpoint(deck%initial%from, communicator, archive, old, error)
     if (allocated(error)) return
-    call archive%item(time_item, time)
+    call archive%item(time_item, deck%initial%reached)
     call archive%item('record/contact_end', contact_end)
     call archive%item('record/force', force)
     call archive%close(error)
@@ -98,50 +89,59 @@ contains
         old%delaminations(i)%zone = covering_extents(deck, old, i)
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
-    if (time < merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())) then
-      deck%initial%stopped_at = moment(old, time)
-      call remark_stopped(deck, remark)
-      call print_lines(communicator, [remark])
-    end if
+    deck%initial%end = merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())
+    call remark_stopped(deck, remark)
+    if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
+
+  !> Refuses the checkpoint that the run itself will write.
+  subroutine refuse_own_end(deck, communicator, error)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Set (deck) if it is that checkpoint
+    type(error_t), allocatable, intent(inout) :: error
+    logical :: is_own
+
+    is_own = .false.
+    if (communicator%is_root()) &
+      is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name//checkpoint_ending)
+    call communicator%broadcast(is_own)
+    if (is_own) call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; '// &
+                            'allowed: another &case name or &output directory', error)
+  end subroutine refuse_own_end
 
   !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
   subroutine remark_stopped(deck, remark)
     !> The deck; the summary of its run repeats the warning
     type(deck_t), intent(inout) :: deck
-    !> The warning, with file and line
+    !> The warning, with file and line; unallocated: the other run reached its end
     type(line_t), intent(out) :: remark
     character(len=:), allocatable :: line, sentence
 
+    if (.not. deck%initial%reached < deck%initial%end) return
     line = to_text(deck%settings%line_of_group(initial_state_group))
     sentence = '&'//initial_state_group//' from = '''//deck%initial%from//''': is of a run that was stopped at '// &
-               deck%initial%stopped_at//', before its end: later damage is missing; complete it first.'
+               rounded_text(deck%initial%reached)//' of '//rounded_text(deck%initial%end)// &
+               ': later damage is missing; complete it first.'
     remark = line_t(deck%source//':'//line//': warning: '//sentence)
     call append(deck%remarks, 'line '//line//': '//sentence)
   end subroutine remark_stopped
 
-  !> Saves or loads when the other run was stopped before its end: a restart does not read that run's checkpoint again,
-  !> and its summary repeats the warning.
+  !> Saves or loads how far the other run came: a restart does not read that run's checkpoint again, and its summary
+  !> repeats the warning.
   subroutine visit_incomplete_start(deck, archive)
     !> The deck
     type(deck_t), intent(inout) :: deck
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
-    integer, allocatable :: codes(:)
     type(line_t) :: remark
-    integer :: i
 
     if (.not. deck%initial%is_inherited) return
-    allocate (codes(0))
-    if (allocated(deck%initial%stopped_at)) &
-      codes = [(iachar(deck%initial%stopped_at(i:i)), i=1, len(deck%initial%stopped_at))]
-    call archive%item('initial_state/stopped_at', codes)
-    if (.not. archive%loading .or. size(codes) == 0) return
-    deck%initial%stopped_at = repeat(' ', size(codes))
-    do i = 1, size(codes)
-      deck%initial%stopped_at(i:i) = achar(codes(i))
-    end do
-    call remark_stopped(deck, remark)
+    call archive%item('initial_state/reached', deck%initial%reached)
+    call archive%item('initial_state/end', deck%initial%end)
+    if (archive%loading) call remark_stopped(deck, remark)
   end subroutine visit_incomplete_start
 
   !> Refuses the checkpoint of the initial state.
@@ -188,7 +188,7 @@ contains
     type(checkpoint_archive_t), intent(inout) :: archive
     !> Receives its deck
     type(deck_t), intent(out) :: old
-    !> Set if it can't be read
+    !> Set if it cannot be read
     type(error_t), allocatable, intent(inout) :: error
     type(problems_t) :: problems
 
@@ -215,7 +215,7 @@ contains
     type(run_record_t), intent(inout) :: record
     !> Receives a note
     type(log_t), intent(inout) :: log
-    !> Set if the checkpoint can't be read, or has damage where the deck has no interface
+    !> Set if the checkpoint cannot be read, or has damage where the deck has no interface
     type(error_t), allocatable, intent(inout) :: error
     class(layer_transfer_t), allocatable :: transfer
     type(deck_t) :: old
@@ -257,7 +257,7 @@ contains
     type(mapped_figures_t), intent(inout) :: mapping
     !> Receives the other run's deck
     type(deck_t), intent(out) :: old
-    !> Set if the checkpoint can't be read
+    !> Set if the checkpoint cannot be read
     type(error_t), allocatable, intent(inout) :: error
     type(checkpoint_archive_t) :: archive
     type(model_t), allocatable :: old_model

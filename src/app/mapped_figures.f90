@@ -69,24 +69,21 @@ contains
     type(state_t), intent(in) :: state
     !> Of fibres and of the matrix
     real(wp) :: areas(2)
-    type(exact_sum_t) :: sums(2)
-    real(wp) :: damage(2)
-    integer :: i, ply, part
+    type(exact_sum_t) :: fibres, matrix
+    real(wp) :: damage(2), area
+    integer :: i, ply
 
     do i = 1, model%elements%elements
-      associate (element => model%distribution%elements(i))
-        associate (range => model%mesh%element_plies(:, element), &
-                   area => model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(element))))
-          do ply = range(1), range(2)
-            damage = state%plies%bands%states%accepted_damage(ply, i)
-            do part = 1, 2
-              call sums(part)%add(area*damage(part))
-            end do
-          end do
-        end associate
+      associate (mesh => model%mesh, element => model%distribution%elements(i))
+        area = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
+        do ply = mesh%element_plies(1, element), mesh%element_plies(2, element)
+          damage = state%plies%bands%states%accepted_damage(ply, i)
+          call fibres%add(area*damage(1))
+          call matrix%add(area*damage(2))
+        end do
       end associate
     end do
-    areas = totals_of(model%communicator, sums)*model%mesh%multiplicity
+    areas = totals_of(model%communicator, [fibres, matrix])*model%mesh%multiplicity
   end function damage_of_plies
 
   !> First interface with a loss of area or energy, as its zone is too small; 0: none.

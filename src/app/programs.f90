@@ -128,7 +128,7 @@ contains
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Set (files) if it can't be written
+    !> Set (files) if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: path
 
@@ -215,7 +215,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Exit code
     integer, intent(out) :: code
-    !> Set if the initial state can't be read or is of another plate
+    !> Set if the initial state cannot be read or is of another plate
     type(error_t), allocatable, intent(inout) :: error
     type(deck_t) :: deck
     type(problems_t) :: problems

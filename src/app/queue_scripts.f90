@@ -108,7 +108,7 @@ contains
   subroutine size_array(job, error)
     !> Receives them
     type(queue_job_t), intent(inout) :: job
-    !> Raised if a list can't be read, is empty, or a deck has faults
+    !> Raised if a list cannot be read, is empty, or a deck has faults
     type(error_t), allocatable, intent(inout) :: error
     type(deck_t) :: deck
     type(model_size_t) :: found
@@ -140,7 +140,7 @@ contains
     character(len=*), intent(in) :: path
     !> The deck
     type(deck_t), intent(out) :: deck
-    !> Raised if it can't be read or has faults
+    !> Raised if it cannot be read or has faults
     type(error_t), allocatable, intent(inout) :: error
     type(problems_t) :: problems
     type(line_t), allocatable :: faults(:)

@@ -138,7 +138,7 @@ contains
     real(wp), intent(in) :: error
     !> The value that it is relative to; left out: it is printed in its unit
     real(wp), intent(in), optional :: figure
-    !> Such as (+-0.4 %); empty if it isn't known
+    !> Such as (+-0.4 %); empty if it is not known
     character(len=:), allocatable :: clause
 
     clause = ''

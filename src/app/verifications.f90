@@ -94,7 +94,7 @@ contains
     type(deck_t), intent(in) :: deck, finer
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Set if the file can't be written
+    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: content

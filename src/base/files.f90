@@ -169,7 +169,7 @@ contains
   subroutine rename_file(from, to, error)
     !> Paths; a file `to` is replaced
     character(len=*), intent(in) :: from, to
-    !> Raised if it can't be done
+    !> Raised if it cannot be done
     type(error_t), allocatable, intent(inout) :: error
 
     if (c_rename(from//c_null_char, to//c_null_char) == 0) return
@@ -189,7 +189,7 @@ contains
   subroutine make_directory(path, error)
     !> Its path
     character(len=*), intent(in) :: path
-    !> Raised if the folder isn't there in the end
+    !> Raised if the folder is not there in the end
     type(error_t), allocatable, intent(inout) :: error
     integer :: i, status
 
@@ -237,11 +237,11 @@ contains
     end do
   end subroutine read_whole_file
 
-  !> Says in one sentence why a path can't be read.
+  !> Says in one sentence why a path cannot be read.
   subroutine check_readable(path, error)
     !> The path
     character(len=*), intent(in) :: path
-    !> Raised if it can't be read
+    !> Raised if it cannot be read
     type(error_t), allocatable, intent(inout) :: error
 
     if (is_directory(path)) then

@@ -209,7 +209,7 @@ contains
     if (ieee_is_finite(value)) digits = to_text(value)
   end function number
 
-  !> A text between quotes. Bytes that aren't UTF-8 are taken for Latin 1.
+  !> A text between quotes. Bytes that are not UTF-8 are taken for Latin 1.
   pure function quoted(value) result(string)
     !> The text
     character(len=*), intent(in) :: value

@@ -69,7 +69,7 @@ contains
     logical, intent(in) :: writes
     !> Go on with the file that is there (restart)
     logical, intent(in) :: append
-    !> Raised, on the rank that writes, if the file can't be opened or another run writes it
+    !> Raised, on the rank that writes, if the file cannot be opened or another run writes it
     type(error_t), allocatable, intent(inout) :: error
     logical :: refused
 
@@ -158,7 +158,7 @@ contains
     call self%lock%release()
   end subroutine close
 
-  !> Writes a line to the terminal; one that can't be written there is no reason to stop.
+  !> Writes a line to the terminal; one that cannot be written there is no reason to stop.
   subroutine to_terminal(self, unit, line)
     !> The log
     class(log_t), intent(inout) :: self
@@ -174,7 +174,7 @@ contains
     flush (unit, iostat=ignored)
   end subroutine to_terminal
 
-  !> Writes a line to the file. If it can't be written the file is given up, and the terminal informed.
+  !> Writes a line to the file. If it cannot be written the file is given up, and the terminal informed.
   subroutine to_file(self, line, at_once)
     !> The log
     class(log_t), intent(inout) :: self

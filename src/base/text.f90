@@ -4,7 +4,8 @@ module text
   use shortest_digits, only: find_shortest
   implicit none
   private
-  public :: line_t, lower_case, to_text, rounded_text, counted, joined, words_of, append, edit_distance, nearest_name
+  public :: line_t, lower_case, to_text, rounded_text, counted, listed, joined, words_of, append, &
+            edit_distance, nearest_name
 
   !> One line of a list of lines.
   type :: line_t
@@ -144,6 +145,27 @@ contains
     words = digits//' '//noun
     if (digits /= '1') words = words//'s'
   end function counted
+
+  !> Whole numbers in a row as ranges.
+  pure function listed(numbers) result(words)
+    !> Ascending numbers
+    integer, intent(in) :: numbers(:)
+    !> Such as 1 to 11, 13 to 23
+    character(len=:), allocatable :: words
+    integer :: i, first
+
+    words = ''
+    first = 1
+    do i = 1, size(numbers)
+      if (i < size(numbers)) then
+        if (any(numbers(i + 1) - numbers(i) == [0, 1])) cycle
+      end if
+      if (first > 1) words = words//', '
+      words = words//to_text(numbers(first))
+      if (numbers(i) > numbers(first)) words = words//' to '//to_text(numbers(i))
+      first = i + 1
+    end do
+  end function listed
 
   !> A number in scientific form as plain text.
   pure function plain_decimal(scientific) result(plain)

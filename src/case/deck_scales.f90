@@ -30,7 +30,7 @@ module deck_scales
 
 contains
 
-  !> Estimates the run, and warns of a step, a mesh and a patch that don't resolve the impact.
+  !> Estimates the run, and warns of a step, a mesh and a patch that do not resolve the impact.
   subroutine check_scales(deck, problems)
     !> The deck, checked; receives the expected results
     type(deck_t), intent(inout) :: deck
@@ -74,7 +74,7 @@ contains
     end associate
   end subroutine check_settling
 
-  !> Warns of a step, a mesh and a patch that don't resolve the impact.
+  !> Warns of a step, a mesh and a patch that do not resolve the impact.
   subroutine check_resolution(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck

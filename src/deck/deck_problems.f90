@@ -68,7 +68,7 @@ contains
     allocate (self%list(0))
   end subroutine begin
 
-  !> The file can't be read.
+  !> The file cannot be read.
   subroutine cannot_read(self, message)
     class(problems_t), intent(inout) :: self
     !> Path and reason

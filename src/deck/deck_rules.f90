@@ -16,7 +16,7 @@ module deck_rules
 
 contains
 
-  !> Turns a scanned deck into keys in effect and reports every name and value that isn't allowed.
+  !> Turns a scanned deck into keys in effect and reports every name and value that is not allowed.
   subroutine resolve_settings(scan, vocabulary, settings, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
@@ -83,7 +83,7 @@ contains
     end associate
   end subroutine check_group
 
-  !> A group that isn't in the table.
+  !> A group that is not in the table.
   subroutine report_unknown_group(name, line, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: name
@@ -130,7 +130,7 @@ contains
     end associate
   end subroutine check_key
 
-  !> A key that its group doesn't have.
+  !> A key that its group does not have.
   subroutine report_unknown_key(group, place, entry, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: group
@@ -198,7 +198,7 @@ contains
   subroutine resolve_keys(scan, block, place, vocabulary, group, settings, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> Index of the group in it; 0: the deck hasn't got it
+    !> Index of the group in it; 0: the deck does not have it
     integer, intent(in) :: block
     !> Which of the groups of this name
     integer, intent(in) :: place
@@ -237,7 +237,7 @@ contains
     end do
   end subroutine resolve_keys
 
-  !> A key that the deck doesn't give.
+  !> A key that the deck does not give.
   subroutine take_default(key, setting, problems)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key

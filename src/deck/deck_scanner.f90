@@ -23,7 +23,7 @@ module deck_scanner
     type(entry_t), allocatable :: entries(:)
     !> Values found so far
     integer :: values = 0
-    !> True: the last group isn't ended yet
+    !> True: the last group is not ended yet
     logical, private :: open = .false.
     !> True: the last key may still get values
     logical, private :: collecting = .false.
@@ -177,7 +177,7 @@ contains
     scan%open = .true.
   end subroutine begin_block
 
-  !> The open group isn't ended.
+  !> The open group is not ended.
   subroutine report_missing_slash(scan, event, problems)
     !> The result so far
     type(scan_t), intent(in) :: scan
@@ -277,7 +277,7 @@ contains
       end if
     end if
     scan%value_due = .false.
-    ! A text that isn't closed swallows the slash that may end its line.
+    ! A text that is not closed swallows the slash that may end its line.
     if (token%kind == token_cut .and. len_trim(token%text) > 0) then
       if (index(token%text, '/', back=.true.) == len_trim(token%text)) scan%open = .false.
       if (.not. scan%open) scan%collecting = .false.

@@ -14,7 +14,7 @@ module deck_settings
     character(len=:), allocatable :: group, key
     !> Which of the groups of this name, from 1
     integer :: place = 1
-    !> Line of the key, or of its group if it isn't given
+    !> Line of the key, or of its group if it is not given
     integer :: line = 0
     !> True: from the deck
     logical :: given = .false.
@@ -88,7 +88,7 @@ contains
     has_group = self%groups_named(group) > 0
   end function has_group
 
-  !> Line of a group, 0 if the deck hasn't got it.
+  !> Line of a group, 0 if the deck does not have it.
   pure integer function line_of_group(self, group, place) result(line)
     class(settings_t), intent(in) :: self
     !> Name of the group
@@ -107,7 +107,7 @@ contains
     end do
   end function line_of_group
 
-  !> Index of a key in the list, 0 if it isn't there.
+  !> Index of a key in the list, 0 if it is not there.
   pure integer function find(self, group, key, place) result(index)
     class(settings_t), intent(in) :: self
     !> Names of group and key
@@ -293,7 +293,7 @@ contains
     if (size(values) > 0) logical_of = logical_value(values(1))
   end function logical_of
 
-  !> Gives a key that the deck doesn't give the value of a table that the deck refers to. It counts as given.
+  !> Gives a key that the deck does not give the value of a table that the deck refers to. It counts as given.
   pure subroutine adopt(self, group, key, word, origin, place)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
@@ -314,7 +314,7 @@ contains
     self%items(i)%origin = origin
   end subroutine adopt
 
-  !> Sets the value of a key that the deck doesn't give and that follows from others.
+  !> Sets the value of a key that the deck does not give and that follows from others.
   pure subroutine derive(self, group, key, word, quoted, place)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
@@ -336,7 +336,7 @@ contains
     call move_alloc(values, self%items(i)%values)
   end subroutine derive
 
-  !> Sets the numbers of a key that the deck doesn't give and that follow from others.
+  !> Sets the numbers of a key that the deck does not give and that follow from others.
   pure subroutine derive_numbers(self, group, key, numbers)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
@@ -379,7 +379,7 @@ contains
     self%items(place)%chosen = .true.
   end subroutine choose
 
-  !> Leaves a group that the deck hasn't got out of the echo.
+  !> Leaves a group that the deck does not have out of the echo.
   pure subroutine set_aside(self, group)
     class(settings_t), intent(inout) :: self
     !> Name of the group

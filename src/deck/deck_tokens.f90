@@ -4,7 +4,7 @@ module deck_tokens
   private
   public :: token_t, cursor_t, next_token, skip_blanks, skip_to_group
 
-  !> Kinds of tokens; a truncated text is one whose closing quote isn't in its line.
+  !> Kinds of tokens; a truncated text is one whose closing quote is not in its line.
   integer, parameter, public :: token_end = 0, token_group = 1, token_slash = 2, token_key = 3, token_word = 4, &
                                 token_quoted = 5, token_cut = 6, token_comma = 7, token_equals = 8
 
@@ -132,7 +132,7 @@ contains
     if (deck(at:at) == '&' .and. at < len(deck)) starts_group = is_letter(deck(at + 1:at + 1))
   end function starts_group
 
-  !> True: a slash that is not followed by a word, so that it isn't part of a path or fraction.
+  !> True: a slash that is not followed by a word, so that it is not part of a path or fraction.
   pure logical function ends_group(deck, at)
     !> Text of the deck
     character(len=*), intent(in) :: deck

@@ -315,7 +315,7 @@ contains
     character(len=*), intent(in) :: word
     !> True: sign, digits, point and exponent are as they should be
     logical, intent(out) :: is_number
-    !> Power of ten of its first digit that isn't 0; 0 for the number 0
+    !> Power of ten of its first digit that is not 0; 0 for the number 0
     integer, intent(out) :: decade
     integer :: mark, point, first, exponent, start, status
     character(len=:), allocatable :: mantissa

@@ -1,6 +1,6 @@
 !> Messages that differ in numbers alone, reported as one, with ranges of numbers and lists of plies.
 module grouped_messages
-  use text, only: line_t
+  use text, only: line_t, listed
   implicit none
   private
   public :: skeleton, merged
@@ -54,7 +54,7 @@ contains
       if (from == 0) exit
       if (index(message//'|', ' ply |') > 0) then
         if (any_differ(numbers)) message = message(:len(message) - 2)//'ies '
-        message = message//listed(numbers)
+        message = message//listed(integers(numbers))
       else
         message = message//ranged(numbers)
       end if
@@ -114,6 +114,19 @@ contains
     any_differ = any([(numbers(i)%text /= numbers(1)%text, i=1, size(numbers))])
   end function any_differ
 
+  !> Whole numbers as such.
+  pure function integers(numbers) result(values)
+    !> Their texts
+    type(line_t), intent(in) :: numbers(:)
+    !> The numbers
+    integer :: values(size(numbers))
+    integer :: i
+
+    do i = 1, size(numbers)
+      read (numbers(i)%text, *) values(i)
+    end do
+  end function integers
+
   !> Smallest to largest of some numbers.
   pure function ranged(numbers) result(words)
     !> The numbers
@@ -129,28 +142,4 @@ contains
     words = numbers(minloc(values, 1))%text
     if (maxval(values) > minval(values)) words = words//' to '//numbers(maxloc(values, 1))%text
   end function ranged
-
-  !> Whole numbers in a row as ranges.
-  pure function listed(numbers) result(words)
-    !> Ascending whole numbers
-    type(line_t), intent(in) :: numbers(:)
-    !> Such as 1 to 11, 13 to 23
-    character(len=:), allocatable :: words
-    integer :: values(size(numbers)), i, first
-
-    do i = 1, size(numbers)
-      read (numbers(i)%text, *) values(i)
-    end do
-    words = ''
-    first = 1
-    do i = 1, size(numbers)
-      if (i < size(numbers)) then
-        if (values(i + 1) == values(i) + 1 .or. values(i + 1) == values(i)) cycle
-      end if
-      if (first > 1) words = words//', '
-      words = words//numbers(first)%text
-      if (values(i) > values(first)) words = words//' to '//numbers(i)%text
-      first = i + 1
-    end do
-  end function listed
 end module grouped_messages

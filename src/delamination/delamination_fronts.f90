@@ -22,6 +22,9 @@ module delamination_fronts
     real(wp) :: width = 0, ahead_length = 0, behind_length = 0
   end type front_segment_t
 
+  !> Steps from a cell to its neighbours.
+  integer, parameter :: neighbours(2, 4) = reshape([-1, 0, 1, 0, 0, -1, 0, 1], [2, 4])
+
 contains
 
   !> All segments of a region's front, sorted by intact cell. Edges on the border of the model and on its symmetry lines
@@ -33,21 +36,18 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> The segments
     type(front_segment_t), allocatable :: segments(:)
-    integer :: pass, found, column, row, direction, sign, inside(2)
+    integer :: pass, found, column, row, side, inside(2)
 
     do pass = 1, 2
       found = 0
       do row = max(1, region%rows(1) - 1), min(region%cells(2), region%rows(2) + 1)
         do column = max(1, region%columns(1) - 1), min(region%cells(1), region%columns(2) + 1)
           if (region%is_delaminated(column, row)) cycle
-          do direction = 1, 2
-            do sign = -1, 1, 2
-              inside = [column, row]
-              inside(direction) = inside(direction) - sign
-              if (.not. region%is_delaminated(inside(1), inside(2))) cycle
-              found = found + 1
-              if (pass == 2) segments(found) = segment_between(region, mesh, inside, direction, sign)
-            end do
+          do side = 1, size(neighbours, 2)
+            inside = [column, row] - neighbours(:, side)
+            if (.not. region%is_delaminated(inside(1), inside(2))) cycle
+            found = found + 1
+            if (pass == 2) segments(found) = segment_between(region, mesh, inside, neighbours(:, side))
           end do
         end do
       end do
@@ -56,35 +56,33 @@ contains
   end function find_front
 
   !> The segment on one side of a delaminated cell.
-  pure function segment_between(region, mesh, inside, direction, sign) result(segment)
+  pure function segment_between(region, mesh, inside, step) result(segment)
     !> The delaminated cells
     type(delaminated_region_t), intent(in) :: region
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Column and row of the delaminated cell
     integer, intent(in) :: inside(2)
-    !> Outward normal: along x (1) or y (2), and its sign
-    integer, intent(in) :: direction, sign
+    !> Step to the intact cell
+    integer, intent(in) :: step(2)
     !> The segment
     type(front_segment_t) :: segment
-    integer :: place(2), step(2), along(2), line
+    integer :: place(2), along(2), line
 
-    step = 0
-    step(direction) = sign
     along = 1 - abs(step)
     segment%inside = inside
     segment%outside = inside + step
-    segment%direction = direction
-    segment%sign = sign
+    segment%direction = merge(1, 2, step(1) /= 0)
+    segment%sign = sum(step)
     segment%at_border = .not. region%in_zone(segment%outside(1), segment%outside(2))
     do line = 1, 3
       ! The edge is one line of nodes beyond the centre of the cell.
       place = middle_line(inside) + step + (line - 2)*along
       segment%edge(line) = region%node_at(place(1), place(2))
     end do
-    segment%width = cell_length(mesh, inside, 3 - direction)
-    segment%behind_length = cell_length(mesh, inside, direction)
-    segment%ahead_length = cell_length(mesh, segment%outside, direction)
+    segment%width = cell_length(mesh, inside, 3 - segment%direction)
+    segment%behind_length = cell_length(mesh, inside, segment%direction)
+    segment%ahead_length = cell_length(mesh, segment%outside, segment%direction)
   end function segment_between
 
   !> Length of a cell along x (1) or y (2).

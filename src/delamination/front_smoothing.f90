@@ -20,6 +20,19 @@ module front_smoothing
   integer, parameter :: lines_beside = 5
   !> Relative tolerance of equal distances: far above 1e-16, and distances differ by parts of a cell.
   real(wp), parameter :: distance_tolerance = 1.0e-6_wp
+  !> Stiffness of the parabola against slope and bend relative to that of one edge, for a front of one edge or two: a
+  !> fit of three changes by 1e-6.
+  real(wp), parameter :: regularisation = 1.0e-6_wp
+
+  !> The edges of a front.
+  type :: edges_t
+    !> Midpoints and outward normals, (2, segments)
+    real(wp), allocatable :: middle(:, :), normal(:, :)
+    !> Lengths, (segments)
+    real(wp), allocatable :: width(:)
+    !> Directions of symmetry
+    logical :: mirrored(2) = .false.
+  end type edges_t
 
   !> A front with its smooth line.
   type :: smooth_front_t
@@ -62,81 +75,94 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> The line
     type(smooth_front_t) :: self
-    real(wp) :: middles(2, size(segments)), normals(2, size(segments)), reach
+    type(edges_t) :: edges
+    real(wp) :: reach
     integer :: s
 
     self%mirrored = mesh%mirrored
-    middles = mesh%node_coordinates(:, segments%edge(2))
-    normals = 0
+    edges%mirrored = mesh%mirrored
+    edges%middle = mesh%node_coordinates(:, segments%edge(2))
+    edges%width = segments%width
+    allocate (edges%normal, mold=edges%middle)
+    edges%normal = 0
     do s = 1, size(segments)
-      normals(segments(s)%direction, s) = segments(s)%sign
+      edges%normal(segments(s)%direction, s) = segments(s)%sign
     end do
-    allocate (self%place(2, size(segments)), self%normal(2, size(segments)))
+    allocate (self%place, self%normal, mold=edges%middle)
     do s = 1, size(segments)
       reach = cells_of_line*max(segments(s)%width, segments(s)%ahead_length, segments(s)%behind_length)
-      call fit_line(middles, normals, segments%width, self%mirrored, s, reach, self%place(:, s), self%normal(:, s))
+      call fit_line(edges, s, reach, self%place(:, s), self%normal(:, s))
     end do
-    self%length = merge(0.0_wp, segments%width*max(0.0_wp, sum(normals*self%normal, dim=1)), segments%at_border)
+    self%length = merge(0.0_wp, edges%width*max(0.0_wp, sum(edges%normal*self%normal, dim=1)), segments%at_border)
     self%ahead = segments%ahead_length
     self%behind = segments%behind_length
-    self%offset = [(dot_product(middles(:, s) + normals(:, s)*self%ahead(s)/2 - self%place(:, s), &
+    self%offset = [(dot_product(edges%middle(:, s) + edges%normal(:, s)*self%ahead(s)/2 - self%place(:, s), &
                                 self%normal(:, s)), s=1, size(segments))]
   end function create_smooth_front
 
   !> Point and normal of the line next to an edge: a parabola fitted to the midpoints of the surrounding edges, with
   !> weights by their projections that decrease to zero within a distance.
-  subroutine fit_line(middles, normals, widths, mirrored, s, reach, place, normal)
-    !> Midpoints and normals of all edges, (2, segments)
-    real(wp), intent(in) :: middles(:, :), normals(:, :)
-    !> Their lengths
-    real(wp), intent(in) :: widths(:)
-    !> Directions of symmetry
-    logical, intent(in) :: mirrored(2)
+  subroutine fit_line(edges, s, reach, place, normal)
+    !> The edges
+    type(edges_t), intent(in) :: edges
     !> The edge
     integer, intent(in) :: s
     !> The distance
     real(wp), intent(in) :: reach
     !> Receive point and normal
     real(wp), intent(out) :: place(2), normal(2)
-    !> Stiffness against slope and bend relative to that of one edge, for a front of one edge or two: a fit of three
-    !> changes by 1e-6.
-    real(wp), parameter :: regularisation = 1.0e-6_wp
-    real(wp) :: matrix(3, 3), fit(3), powers(3), from(2), mean(2), near
-    integer :: t, image, pass
+    real(wp) :: matrix(3, 3), fit(3), powers(3), from(2), near
+    integer :: t, image
     logical :: singular
 
-    mean = 0
+    normal = mean_normal(edges, s, reach)
     matrix = 0
     fit = 0
-    do pass = 1, 2
-      do image = 0, 3
-        if (.not. is_image(image, mirrored)) cycle
-        do t = 1, size(widths)
-          from = signs(image)*middles(:, t) - middles(:, s)
-          near = 1 - norm2(from)/reach
-          if (.not. near > 0) cycle
-          if (pass == 1) then
-            mean = mean + near*widths(t)*signs(image)*normals(:, t)
-          else
-            near = near*widths(t)*max(0.0_wp, dot_product(signs(image)*normals(:, t), normal))
-            powers = [1.0_wp, dot_product(from, turned(normal))/reach, (dot_product(from, turned(normal))/reach)**2]
-            matrix = matrix + near*spread(powers, 1, 3)*spread(powers, 2, 3)
-            fit = fit + near*powers*dot_product(from, normal)
-          end if
-        end do
+    do image = 0, 3
+      if (.not. is_image(image, edges%mirrored)) cycle
+      do t = 1, size(edges%width)
+        from = signs(image)*edges%middle(:, t) - edges%middle(:, s)
+        near = 1 - norm2(from)/reach
+        if (.not. near > 0) cycle
+        near = near*edges%width(t)*max(0.0_wp, dot_product(signs(image)*edges%normal(:, t), normal))
+        powers = [1.0_wp, dot_product(from, turned(normal))/reach, (dot_product(from, turned(normal))/reach)**2]
+        matrix = matrix + near*spread(powers, 1, 3)*spread(powers, 2, 3)
+        fit = fit + near*powers*dot_product(from, normal)
       end do
-      ! A front that faces another part of itself across one cell keeps its own normal.
-      if (pass == 1) normal = merge(mean/max(norm2(mean), tiny(near)), normals(:, s), &
-                                    norm2(mean) > regularisation*widths(s))
     end do
     matrix(2, 2) = matrix(2, 2) + regularisation*matrix(1, 1)
     matrix(3, 3) = matrix(3, 3) + regularisation*matrix(1, 1)
     call solve_dense(matrix, fit, singular)
     if (singular) fit = 0
-    place = middles(:, s) + fit(1)*normal
+    place = edges%middle(:, s) + fit(1)*normal
     normal = normal - fit(2)/reach*turned(normal)
     normal = normal/norm2(normal)
   end subroutine fit_line
+
+  !> Mean normal of the edges around an edge, with weights that decrease to zero within a distance.
+  pure function mean_normal(edges, s, reach) result(normal)
+    !> The edges
+    type(edges_t), intent(in) :: edges
+    !> The edge
+    integer, intent(in) :: s
+    !> The distance
+    real(wp), intent(in) :: reach
+    !> The normal
+    real(wp) :: normal(2)
+    real(wp) :: mean(2), near
+    integer :: t, image
+
+    mean = 0
+    do image = 0, 3
+      if (.not. is_image(image, edges%mirrored)) cycle
+      do t = 1, size(edges%width)
+        near = 1 - norm2(signs(image)*edges%middle(:, t) - edges%middle(:, s))/reach
+        if (near > 0) mean = mean + near*edges%width(t)*signs(image)*edges%normal(:, t)
+      end do
+    end do
+    ! A front that faces another part of itself across one cell keeps its own normal.
+    normal = merge(mean/max(norm2(mean), tiny(near)), edges%normal(:, s), norm2(mean) > regularisation*edges%width(s))
+  end function mean_normal
 
   !> Weighted sums along the line about a segment, with weights that decrease to zero within a distance.
   pure function means(self, s, reach, figures, odd) result(smooth)
@@ -193,38 +219,41 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> The nodes
     type(near_front_t) :: nodes
+    integer, dimension((2*lines_beside + 1)**2*size(segments)) :: node, segment
+    real(wp) :: away((2*lines_beside + 1)**2*size(segments))
     real(wp), allocatable :: least(:)
-    integer, allocatable :: count(:)
-    real(wp) :: away
-    integer :: s, i, j, pass, node, first, last, found, line(2)
+    integer, allocatable :: repeated(:)
+    logical, allocatable :: is_closest(:)
+    integer :: s, i, j, found, line(2)
 
-    first = minval(segments%edge(2)) - (lines_beside + 1)*(mesh%node_at(0, 1) - mesh%node_at(0, 0))
-    last = maxval(segments%edge(2)) + (lines_beside + 1)*(mesh%node_at(0, 1) - mesh%node_at(0, 0))
-    allocate (least(first:last), source=huge(away))
-    allocate (count(first:last), source=0)
-    do pass = 1, 4
-      found = 0
-      do s = 1, size(segments)
-        if (segments(s)%at_border) cycle
-        line = mesh%lines_of(segments(s)%edge(2))
-        do j = max(0, line(2) - lines_beside), min(2*mesh%cells(2), line(2) + lines_beside)
-          do i = max(0, line(1) - lines_beside), min(2*mesh%cells(1), line(1) + lines_beside)
-            node = mesh%node_at(i, j)
-            away = norm2(mesh%node_coordinates(:, node) - self%place(:, s))
-            if (pass == 1) least(node) = min(least(node), away)
-            if (pass == 1 .or. away > (1 + distance_tolerance)*least(node) + distance_tolerance*self%ahead(s)) cycle
-            found = found + 1
-            if (pass == 2) count(node) = count(node) + 1
-            if (pass < 4) cycle
-            nodes%node(found) = node
-            nodes%segment(found) = s
-            nodes%share(found) = 1.0_wp/count(node)
-            nodes%distance(found) = dot_product(mesh%node_coordinates(:, node) - self%place(:, s), self%normal(:, s))
-          end do
+    found = 0
+    do s = 1, size(segments)
+      if (segments(s)%at_border) cycle
+      line = mesh%lines_of(segments(s)%edge(2))
+      do j = max(0, line(2) - lines_beside), min(2*mesh%cells(2), line(2) + lines_beside)
+        do i = max(0, line(1) - lines_beside), min(2*mesh%cells(1), line(1) + lines_beside)
+          found = found + 1
+          node(found) = mesh%node_at(i, j)
+          segment(found) = s
+          away(found) = norm2(mesh%node_coordinates(:, node(found)) - self%place(:, s))
         end do
       end do
-      if (pass == 3) allocate (nodes%node(found), nodes%segment(found), nodes%share(found), nodes%distance(found))
     end do
+    allocate (least(minval(node(:found)):maxval(node(:found))), source=huge(away))
+    do i = 1, found
+      least(node(i)) = min(least(node(i)), away(i))
+    end do
+    is_closest = away(:found) <= (1 + distance_tolerance)*least(node(:found)) &
+                                 + distance_tolerance*self%ahead(segment(:found))
+    nodes%node = pack(node(:found), is_closest)
+    nodes%segment = pack(segment(:found), is_closest)
+    allocate (repeated(lbound(least, 1):ubound(least, 1)), source=0)
+    do i = 1, size(nodes%node)
+      repeated(nodes%node(i)) = repeated(nodes%node(i)) + 1
+    end do
+    nodes%share = 1.0_wp/repeated(nodes%node)
+    nodes%distance = [(dot_product(mesh%node_coordinates(:, nodes%node(i)) - self%place(:, nodes%segment(i)), &
+                                   self%normal(:, nodes%segment(i))), i=1, size(nodes%node))]
   end function nodes_near
 
   !> True for the model, image 0, and for its existing images: 1 across x, 2 across y, 3 both.

@@ -11,7 +11,7 @@ module dynamic_steps
   use states, only: state_t
   use step_problems, only: step_problem_t
   use impact_coupling, only: impact_coupling_t, begin_coupling
-  use residual_norms, only: relative_residual
+  use residual_norms, only: relative_residual, sums_of_squares
   use dynamic_tangents, only: find_tangent, add_force_slope, is_exact
   use krylov_corrections, only: find_krylov_correction
   use tangent_products, only: tangent_product_t
@@ -193,8 +193,9 @@ contains
     class(dynamic_step_t), intent(in) :: self
     !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
+    real(wp) :: references(2, 3)
 
-    associate (model => at%model, operator => at%operator, new => at%new, equilibrium => at%equilibrium)
+    associate (model => at%model, operator => at%operator, new => at%new)
       if (self%keeps_displacement .and. new%iterations == 0) then
         ! At least one iteration is needed.
         residual_norm = huge(residual_norm)
@@ -203,11 +204,11 @@ contains
         residual_norm = 0
         return
       end if
-      residual_norm = relative_residual(model%communicator, operator%numbering, at%residual, new%motion%internal, &
-                                        new%motion%inertia, self%patch_square*self%coupling%load()**2, &
-                                        operator%diagonal, new%motion%displacement, &
-                                        self%may_stop(at), equilibrium%tolerance, model%thickness, &
-                                        equilibrium%controls, new%largest_forces)
+      references(:, 1) = sums_of_squares(operator%numbering, new%motion%internal)
+      references(:, 2) = sums_of_squares(operator%numbering, new%motion%inertia)
+      references(:, 3) = [self%patch_square*self%coupling%load()**2, 0.0_wp]
+      residual_norm = relative_residual(model, operator, at%equilibrium, at%residual, references, &
+                                        new%motion%displacement, self%may_stop(at), new%largest_forces)
     end associate
   end function residual_norm
 

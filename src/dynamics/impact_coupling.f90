@@ -2,7 +2,7 @@
 module impact_coupling
   use kinds, only: wp
   use errors, only: error_t
-  use impact_force, only: solve_impact_force
+  use impact_force, only: contact_step_t, solve_impact_force
   use impact_parameters, only: indentation_law_t
   use tan_sun_indentation, only: indentation_t
   use impactor_integrators, only: predict, takes_mean_force
@@ -153,12 +153,14 @@ contains
     integer, intent(out) :: iterations
     !> Set if numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
-    real(wp) :: alpha_free, alpha_end, compliance
+    type(contact_step_t) :: step
+    real(wp) :: alpha_end, compliance
 
     compliance = self%share*patch_compliance
-    alpha_free = self%free_displacement - patch_mean + self%unknown*compliance
-    call solve_impact_force(law, indentation, indentation%alpha, alpha_free, self%compliance + compliance, self%mean, &
-                            self%unknown, alpha_end, self%force_end, iterations, error)
+    step = contact_step_t(law, indentation, start=indentation%alpha, &
+                          free=self%free_displacement - patch_mean + self%unknown*compliance, &
+                          compliance=self%compliance + compliance, is_mean=self%mean)
+    call solve_impact_force(step, self%unknown, alpha_end, self%force_end, iterations, error)
     ! The equation of motion requires the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2
     ! only.
     if (self%mean) self%inherited = (0.5_wp - self%alpha_f)*(self%force_end - self%start_force)

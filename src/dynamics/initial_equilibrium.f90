@@ -8,9 +8,9 @@ module initial_equilibrium
   use kinds, only: wp
   use line_motions, only: has_moved_lines, prescribe_lines, line_displacement, move_lines
   use models, only: model_t
-  use residual_norms, only: relative_residual
-  use solution_controls, only: newton_controls_t
+  use residual_norms, only: relative_residual, sums_of_squares
   use states, only: state_t
+  use stepping_parameters, only: equilibrium_t
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -94,8 +94,8 @@ contains
     !> Set if there is no equilibrium
     type(error_t), allocatable, intent(out) :: error
     type(state_t) :: before
-    real(wp), allocatable :: residual(:, :), correction(:, :), suppressing(:, :)
-    real(wp) :: energy, damage, force_square, largest(2)
+    real(wp), allocatable :: residual(:, :), correction(:, :)
+    real(wp) :: energy, damage, references(2, 2), largest(2)
     type(aitken_t) :: aitken
     integer :: iteration
 
@@ -103,13 +103,12 @@ contains
     before = state
     if (moved) call guess_motion(model, state)
     largest = 0
-    force_square = square_of_forces(model)
+    references(:, 2) = [square_of_forces(model), 0.0_wp]
     do iteration = 0, max_iterations
       call find_residual(model, moved, before, state, energy, residual)
-      if (iteration == 0) suppressing = state%motion%internal
-      if (relative_residual(model%communicator, operator%numbering, residual, suppressing, suppressing, force_square, &
-                            operator%diagonal, state%motion%displacement, .true., tolerance, model%thickness, &
-                            newton_controls_t(), largest) <= tolerance) exit
+      if (iteration == 0) references(:, 1) = sums_of_squares(operator%numbering, state%motion%internal)
+      if (relative_residual(model, operator, equilibrium_t(tolerance=tolerance), residual, references, &
+                            state%motion%displacement, .true., largest) <= tolerance) exit
       if (iteration == max_iterations) call fail(error, exit_convergence, &
         'No equilibrium at the start, under the residual stresses of &thermal or &line of history = ''fixed''.')
       if (allocated(error)) return

@@ -11,19 +11,19 @@ module central_differences
   use circle_frames, only: circle_frames_t, create_circle_frames
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
   use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
-  use interface_stacks, only: interface_stacks_t, create_interface_stacks
+  use interface_stacks, only: create_interface_stacks
   use kinds, only: wp
-  use line_steps, only: line_steps_t, create_line_steps
+  use line_steps, only: create_line_steps
   use models, only: model_t
-  use nodal_inertia, only: nodal_inertia_t, create_nodal_inertia
+  use nodal_inertia, only: create_nodal_inertia
+  use nodal_steps, only: nodal_steps_t
   use element_batches, only: lanes
   use rank_totals, only: total_of
-  use rig_steps, only: rig_steps_t, create_rig_steps
+  use rig_steps, only: create_rig_steps
   use plate_options, only: kinematics_von_karman
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
   use stack_motions, only: move_stacks, new_workspaces
-  use stack_solutions, only: stack_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t, commensurate_step
   implicit none
@@ -40,26 +40,14 @@ module central_differences
   !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data besides the state; many, because inertia, stacks, lines, rigs and patch each have their part in a step.
-  type :: central_difference_t
+  !> Data besides the state.
+  type, extends(nodal_steps_t) :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters
-    !> Lumped inertia of the points
-    type(nodal_inertia_t) :: inertia
-    !> Nodes with several layers
-    type(interface_stacks_t) :: stacks
-    !> Forces on the layers at the end of the last step, loads less internal forces, (5, points)
-    real(wp), allocatable :: force(:, :)
     !> The impactor and its patch
     type(impactor_steps_t) :: impact
-    !> Lines
-    type(line_steps_t) :: lines
-    !> Frames and springs
-    type(rig_steps_t) :: rigs
     !> Points on circular windows
     type(circle_frames_t) :: circles
-    !> The step taken last and the one before it
-    type(step_lengths_t) :: steps
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
     !> Points of nodes with one layer: unconstrained ones, and those constrained by a frame or a line
@@ -76,8 +64,6 @@ module central_differences
     real(wp) :: initial_work = 0
     !> Work arrays: motion of the layers, and forces including those at borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
-    !> Work arrays of stacks, one for each number of interfaces
-    type(stack_t), allocatable, private :: workspaces(:)
   contains
     !> Initializes for a state.
     procedure :: start
@@ -199,8 +185,7 @@ contains
       end if
       call change_length(self, model, v, -1)
       call move_single(self, model, u, v)
-      call move_stacks(self%stacks, self%workspaces, self%rigs, self%lines, model, self%inertia, self%steps, &
-                       self%force, now%interfaces%cohesive, u, v)
+      call move_stacks(self%nodal_steps_t, model, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia%springs, self%steps, rates, v)
       call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)

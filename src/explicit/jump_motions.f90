@@ -12,6 +12,7 @@ module jump_motions
   use jump_histories, only: friction_history_t
   use kinds, only: wp
   use models, only: model_t
+  use nodal_steps, only: nodal_steps_t
   use stack_solutions, only: friction_t
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: memory
@@ -22,14 +23,12 @@ module jump_motions
 contains
 
   !> Updates the jumps of an undamaged stack, and finds the onset of damage.
-  subroutine advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
-    !> The stacks
-    type(interface_stacks_t), intent(inout) :: stacks
+  subroutine advance_intact(nodes, i, model, forces, cohesive, u, v)
+    !> The nodes
+    type(nodal_steps_t), intent(inout) :: nodes
     !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)
     !> The interfaces
@@ -40,47 +39,45 @@ contains
     real(wp) :: change(3), k(3), jump(3), traction(3)
     integer :: j, p
 
-    do j = 1, size(forces, 2)
-      p = stacks%first(i) + j
-      change = steps%now*v(1:3, p)
-      jump = u(1:3, p) + change
-      k = stacks%stiffness([1, 1, 2], p)
-      ! Work beyond the stored energy k (jump**2 - u**2)/2.
-      stacks%history%lost(2, p) = stacks%history%lost(2, p) + work_of(stacks, p, steps, forces(:, j), change) &
-                          - sum(k*change*(u(1:3, p) + jump))/2
-      u(1:3, p) = jump
-      call stacks%history%record(p, forces(:, j), change)
-      if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
-      surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
-      associate (point => cohesive%points(p))
-        point%sliding%slip = jump(1:2)
-        call surfaces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
-        stacks%history%lost(2, p) = stacks%history%lost(2, p) + sum(k*jump**2)/2 &
-                                    - stacks%area(p)*(surfaces%stored(jump, point) + point%dissipated)
-        if (point%damage > 0) stacks%damaged(i) = .true.
-      end associate
-    end do
-    if (.not. stacks%damaged(i)) return
-    do j = 1, size(forces, 2)
-      p = stacks%first(i) + j
-      cohesive%points(p)%sliding%slip = u(1:2, p)
-      associate (work => stacks%history%work(p), last => stacks%history%change(:, p))
-        work = sum(stacks%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
-      end associate
-    end do
+    associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps)
+      do j = 1, size(forces, 2)
+        p = stacks%first(i) + j
+        change = steps%now*v(1:3, p)
+        jump = u(1:3, p) + change
+        k = stacks%stiffness([1, 1, 2], p)
+        ! Work beyond the stored energy k (jump**2 - u**2)/2.
+        history%lost(2, p) = history%lost(2, p) + work_of(stacks, p, steps, forces(:, j), change) &
+                             - sum(k*change*(u(1:3, p) + jump))/2
+        u(1:3, p) = jump
+        call history%record(p, forces(:, j), change)
+        if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
+        surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
+        associate (point => cohesive%points(p))
+          point%sliding%slip = jump(1:2)
+          call surfaces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
+          history%lost(2, p) = history%lost(2, p) + sum(k*jump**2)/2 &
+                               - stacks%area(p)*(surfaces%stored(jump, point) + point%dissipated)
+          if (point%damage > 0) stacks%damaged(i) = .true.
+        end associate
+      end do
+      if (.not. stacks%damaged(i)) return
+      do j = 1, size(forces, 2)
+        p = stacks%first(i) + j
+        cohesive%points(p)%sliding%slip = u(1:2, p)
+        associate (last => history%change(:, p))
+          history%work(p) = sum(stacks%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
+        end associate
+      end do
+    end associate
   end subroutine advance_intact
 
   !> Updates jumps, damage and friction of a damaged stack, and records the work of the tractions.
-  subroutine advance_points(stacks, i, model, steps, friction, forces, cohesive, u, v)
-    !> The stacks
-    type(interface_stacks_t), intent(inout) :: stacks
+  subroutine advance_points(nodes, i, model, forces, cohesive, u, v)
+    !> The nodes, with friction in the work array of the stack
+    type(nodal_steps_t), intent(inout) :: nodes
     !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
-    !> Friction, (n)
-    type(friction_t), intent(in) :: friction(:)
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)
     !> The interfaces
@@ -92,36 +89,38 @@ contains
     real(wp) :: change(3), last(3), before(3), traction(3), work, in_contact, growth
     integer :: j, p
 
-    do j = 1, size(forces, 2)
-      p = stacks%first(i) + j
-      surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
-      change = steps%now*v(1:3, p)
-      last = stacks%history%last_change(p, steps%kept)
-      before = u(1:3, p)
-      u(1:3, p) = before + change
-      work = work_of(stacks, p, steps, forces(:, j), change)
-      in_contact = 0
-      if (surfaces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
-      old = cohesive%points(p)
-      old%sliding%limit = friction(j)%limit/stacks%area(p)
-      associate (new => cohesive%points(p), area => stacks%area(p))
-        call surfaces%traction(u(1:3, p), old, traction, new)
-        if (surfaces%friction > 0) then
-          call slip_surfaces(friction(j), u(1:2, p), old%sliding, new%sliding, stacks%history%sticking(:, p), &
-                             change(1:2))
-          call add_heat(surfaces%law%stiffness_shear, before(1:2), u(1:2, p), &
-            sum(friction(j)%force*(change(1:2) + last(1:2)))/(2*area), old%sliding, new%sliding, &
-            stacks%history%friction(p))
-        end if
-        growth = new%dissipated - old%dissipated
-        in_contact = in_contact + area*surfaces%closing_loss(before(3), u(3, p), new%damage - old%damage)
-        stacks%history%lost(:, p) = stacks%history%lost(:, p) + [in_contact, work - in_contact - area* &
-          (surfaces%stored(u(1:3, p), new) - surfaces%stored(before, old) + growth + &
-           new%sliding%heat - old%sliding%heat)]
-        stacks%history%work(p) = area*surfaces%work(before, u(1:3, p), old, new%damage)
-      end associate
-      call stacks%history%record(p, forces(:, j), change)
-    end do
+    associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps, &
+               friction => nodes%workspaces(size(forces, 2))%friction)
+      do j = 1, size(forces, 2)
+        p = stacks%first(i) + j
+        surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
+        change = steps%now*v(1:3, p)
+        last = history%last_change(p, steps%kept)
+        before = u(1:3, p)
+        u(1:3, p) = before + change
+        work = work_of(stacks, p, steps, forces(:, j), change)
+        in_contact = 0
+        if (surfaces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
+        old = cohesive%points(p)
+        old%sliding%limit = friction(j)%limit/stacks%area(p)
+        associate (new => cohesive%points(p), area => stacks%area(p))
+          call surfaces%traction(u(1:3, p), old, traction, new)
+          if (surfaces%friction > 0) then
+            call slip_surfaces(friction(j), u(1:2, p), old%sliding, new%sliding, history%sticking(:, p), change(1:2))
+            call add_heat(surfaces%law%stiffness_shear, before(1:2), u(1:2, p), &
+                          sum(friction(j)%force*(change(1:2) + last(1:2)))/(2*area), old%sliding, new%sliding, &
+                          history%friction(p))
+          end if
+          growth = new%dissipated - old%dissipated
+          in_contact = in_contact + area*surfaces%closing_loss(before(3), u(3, p), new%damage - old%damage)
+          history%lost(:, p) = history%lost(:, p) + [in_contact, work - in_contact - area* &
+            (surfaces%stored(u(1:3, p), new) - surfaces%stored(before, old) + growth + &
+             new%sliding%heat - old%sliding%heat)]
+          history%work(p) = area*surfaces%work(before, u(1:3, p), old, new%damage)
+        end associate
+        call history%record(p, forces(:, j), change)
+      end do
+    end associate
   end subroutine advance_points
 
   !> Energy that the forces on a jump take from the kinetic energy at whole steps.

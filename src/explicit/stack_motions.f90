@@ -8,10 +8,8 @@ module stack_motions
   use layer_motions, only: accelerate_layers, find_rates, traction_resultant, accelerate_by_tractions, to_layers
   use line_steps, only: line_steps_t
   use models, only: model_t
-  use nodal_inertia, only: nodal_inertia_t
+  use nodal_steps, only: nodal_steps_t
   use stack_solutions, only: stack_t
-  use step_lengths, only: step_lengths_t
-  use rig_steps, only: rig_steps_t
   use tridiagonal_systems, only: solve_factored, solve_tractions
   use weighted_jumps, only: newest, past_jumps
   implicit none
@@ -38,119 +36,120 @@ contains
   end function new_workspaces
 
   !> Updates all stacks.
-  subroutine move_stacks(stacks, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
-    !> The stacks; receive forces, changes of the jumps and losses
-    type(interface_stacks_t), intent(inout) :: stacks
-    !> Work arrays, one for each number of interfaces
-    type(stack_t), intent(inout) :: work(:)
-    !> Frames
-    type(rig_steps_t), intent(inout) :: rigs
-    !> Lines
-    type(line_steps_t), intent(inout) :: lines
+  subroutine move_stacks(nodes, model, cohesive, u, v)
+    !> The nodes; their stacks receive forces, changes of the jumps and losses
+    type(nodal_steps_t), intent(inout) :: nodes
     type(model_t), intent(in) :: model
-    !> Lumped inertia, inverted for the step
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
-    !> Forces on the layers, without tractions, (5, points)
-    real(wp), intent(in) :: force(:, :)
     !> The interfaces; receive the growth of damage
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
     integer :: i
 
-    do i = 1, size(stacks%first)
-      call move_stack(stacks, i, work(stacks%layers(i) - 1), rigs, lines, model, inertia, steps, force, cohesive, u, v)
+    do i = 1, size(nodes%stacks%first)
+      call move_stack(nodes, i, model, cohesive, u, v)
     end do
   end subroutine move_stacks
 
   !> Updates one stack.
-  subroutine move_stack(stacks, i, work, rigs, lines, model, inertia, steps, force, cohesive, u, v)
-    !> The stacks
-    type(interface_stacks_t), intent(inout) :: stacks
+  subroutine move_stack(nodes, i, model, cohesive, u, v)
+    !> The nodes
+    type(nodal_steps_t), intent(inout) :: nodes
     !> Index of the stack
     integer, intent(in) :: i
-    !> Work array
-    type(stack_t), intent(inout) :: work
-    !> Frames
-    type(rig_steps_t), intent(inout) :: rigs
-    !> Lines
-    type(line_steps_t), intent(inout) :: lines
     type(model_t), intent(in) :: model
-    !> Lumped inertia
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
-    !> Forces on the layers, (5, points)
-    real(wp), intent(in) :: force(:, :)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: layer(5, stacks%layers(i)), trial(3, work%n), forces(3, work%n), past(3, work%n)
-    integer :: n, p, q, k
-    logical :: prescribed
+    real(wp) :: layer(5, nodes%stacks%layers(i))
+    real(wp), dimension(3, nodes%stacks%layers(i) - 1) :: rates, trial, forces
+    integer :: n, p, q
 
-    n = work%n
-    p = stacks%first(i)
+    n = nodes%stacks%layers(i) - 1
+    p = nodes%stacks%first(i)
     q = p + n
-    call to_layers(n, stacks%height(p:q), v(:, p:q), layer)
-    call accelerate_layers(n + 1, inertia%inverse(:, p:q), steps%mean(), force(:, p:q), layer)
-    prescribed = size(lines%dofs) > 0
-    if (prescribed) prescribed = any([(lines%is_prescribed(k), k=p, q)])
-    if (prescribed) then
-      do k = 0, n
-        if (lines%is_prescribed(p + k)) call lines%prescribe(p + k, layer(:, k + 1))
-      end do
-    end if
-    call find_rates(n, stacks%height(p:q), layer, trial)
-    trial = u(1:3, p + 1:q) + steps%now*trial
-    if (stacks%damaged(i)) then
-      call load_stack(stacks, work, model, cohesive, p, u, trial)
-      call solve_damaged(stacks, work, model, steps, cohesive, p)
-      forces = work%forces
-    else
-      past = past_jumps(u(1:3, p + 1:q), stacks%history%change(:, p + 1:q), stacks%history%earlier(:, p + 1:q))
-      call solve_factored(n, stacks%factors(:, :, p + 1:q), trial + past/newest, forces)
-      if (rigs%on_frame(p)) then
-        work%normal_stiffness = newest*stacks%stiffness(2, p + 1:q)
-        work%given(3, :) = stacks%stiffness(2, p + 1:q)*past(3, :)
+    associate (height => nodes%stacks%height(p:q), steps => nodes%steps)
+      call to_layers(n, height, v(:, p:q), layer)
+      call accelerate_layers(n + 1, nodes%inertia%inverse(:, p:q), steps%mean(), nodes%force(:, p:q), layer)
+      call prescribe_layers(nodes%lines, p, layer)
+      call find_rates(n, height, layer, rates)
+      trial = u(1:3, p + 1:q) + steps%now*rates
+      call find_forces(nodes, i, model, cohesive, u, trial, forces)
+      if (nodes%rigs%on_frame(p)) call stop_stack_at_frame(nodes, i, u(3, p:q), trial(3, :), layer, forces(3, :))
+      call accelerate_by_tractions(n, height, nodes%inertia%inverse(:, p:q), steps%mean(), forces, layer)
+      if (nodes%rigs%on_frame(p)) layer(3, n + 1) = nodes%rigs%approach(p)/steps%now
+      call record_reactions(nodes, i, forces, v(:, p:q), layer)
+      call find_rates(n, height, layer, rates)
+      v(:, p) = layer(:, 1)
+      v(1:3, p + 1:q) = rates
+      v(4:5, p + 1:q) = layer(4:5, 2:)
+      if (nodes%stacks%damaged(i)) then
+        call advance_points(nodes, i, model, forces, cohesive, u, v)
+      else
+        call advance_intact(nodes, i, model, forces, cohesive, u, v)
       end if
-    end if
-    if (rigs%on_frame(p)) call stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, u(3, p:q), trial(3, :), &
-                                                   layer, forces(3, :))
-    call accelerate_by_tractions(n, stacks%height(p:q), inertia%inverse(:, p:q), steps%mean(), forces, layer)
-    if (rigs%on_frame(p)) layer(3, n + 1) = rigs%approach(p)/steps%now
-    if (prescribed) &
-      call record_reactions(stacks, i, lines, inertia, steps, force(:, p:q), forces, v(:, p:q), layer)
-    call find_rates(n, stacks%height(p:q), layer, trial)
-    v(:, p) = layer(:, 1)
-    v(1:3, p + 1:q) = trial
-    v(4:5, p + 1:q) = layer(4:5, 2:)
-    if (stacks%damaged(i)) then
-      call advance_points(stacks, i, model, steps, work%friction, forces, cohesive, u, v)
-    else
-      call advance_intact(stacks, i, model, steps, forces, cohesive, u, v)
-    end if
-    u(4:5, p + 1:q) = u(4:5, p + 1:q) + steps%now*v(4:5, p + 1:q)
-    u(:, p) = u(:, p) + steps%now*v(:, p)
+      u(4:5, p + 1:q) = u(4:5, p + 1:q) + steps%now*v(4:5, p + 1:q)
+      u(:, p) = u(:, p) + steps%now*v(:, p)
+    end associate
   end subroutine move_stack
 
-  !> Stops the lowest layer at a frame that it would penetrate.
-  pure subroutine stop_stack_at_frame(stacks, i, work, rigs, inertia, steps, u, trial, layer, forces)
-    !> The stacks
-    type(interface_stacks_t), intent(in) :: stacks
+  !> Prescribes the velocities of layers on lines.
+  pure subroutine prescribe_layers(lines, first, layer)
+    !> The lines
+    type(line_steps_t), intent(in) :: lines
+    !> First point of the stack
+    integer, intent(in) :: first
+    !> Velocities of the layers, (5, n + 1)
+    real(wp), intent(inout) :: layer(:, :)
+    integer :: l
+
+    if (size(lines%dofs) == 0) return
+    do l = 1, size(layer, 2)
+      if (lines%is_prescribed(first + l - 1)) call lines%prescribe(first + l - 1, layer(:, l))
+    end do
+  end subroutine prescribe_layers
+
+  !> Forces on the jumps of a stack, as if there were no frame.
+  pure subroutine find_forces(nodes, i, model, cohesive, u, trial, forces)
+    !> The nodes; the work array of the stack receives its stiffness
+    type(nodal_steps_t), intent(inout) :: nodes
     !> Index of the stack
     integer, intent(in) :: i
-    !> The stack, with its stiffness against openings and the given part of the forces
-    type(stack_t), intent(in) :: work
-    !> Frames
-    type(rig_steps_t), intent(inout) :: rigs
-    !> Lumped inertia
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    !> Jumps without tractions, (3, n)
+    real(wp), intent(in) :: trial(:, :)
+    !> Forces on the jumps, (3, n)
+    real(wp), intent(out) :: forces(:, :)
+    real(wp) :: past(3, size(trial, 2))
+
+    associate (stacks => nodes%stacks, work => nodes%workspaces(size(trial, 2)), p => nodes%stacks%first(i), &
+               from => nodes%stacks%first(i) + 1, to => nodes%stacks%first(i) + size(trial, 2))
+      if (stacks%damaged(i)) then
+        call load_stack(stacks, work, model, cohesive, p, u, trial)
+        call solve_damaged(stacks, work, model, nodes%steps, cohesive, p)
+        forces = work%forces
+      else
+        past = past_jumps(u(1:3, from:to), stacks%history%change(:, from:to), stacks%history%earlier(:, from:to))
+        call solve_factored(size(trial, 2), stacks%factors(:, :, from:to), trial + past/newest, forces)
+        if (nodes%rigs%on_frame(p)) then
+          work%normal_stiffness = newest*stacks%stiffness(2, from:to)
+          work%given(3, :) = stacks%stiffness(2, from:to)*past(3, :)
+        end if
+      end if
+    end associate
+  end subroutine find_forces
+
+  !> Stops the lowest layer at a frame that it would penetrate.
+  pure subroutine stop_stack_at_frame(nodes, i, u, trial, layer, forces)
+    !> The nodes, with the stack's stiffness against openings and the given part of the forces
+    type(nodal_steps_t), intent(inout) :: nodes
+    !> Index of the stack
+    integer, intent(in) :: i
     !> Deflection of the first layer and openings at the start of the step, (n + 1)
     real(wp), intent(in) :: u(:)
     !> Openings without tractions, (n)
@@ -162,7 +161,9 @@ contains
     real(wp) :: rate, w, diagonal(size(trial))
 
     w = sum(u)
-    associate (n => size(trial), p => stacks%first(i), inverse => inertia%inverse(7, stacks%first(i) + size(trial)))
+    associate (n => size(trial), p => nodes%stacks%first(i), steps => nodes%steps, stacks => nodes%stacks, &
+               work => nodes%workspaces(size(trial)), &
+               inverse => nodes%inertia%inverse(7, nodes%stacks%first(i) + size(trial)))
       rate = layer(3, n + 1) - steps%mean()*inverse*forces(n)
       if (w + steps%now*rate > 0) then
         rate = layer(3, n + 1)
@@ -174,35 +175,33 @@ contains
         rate = rate - steps%mean()*inverse*forces(n)
         if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
       end if
-      call rigs%stop_at_frame(p, steps, inverse, w, rate)
+      call nodes%rigs%stop_at_frame(p, steps, inverse, w, rate)
     end associate
   end subroutine stop_stack_at_frame
 
   !> Records the reactions of lines on the layers of a stack.
-  pure subroutine record_reactions(stacks, i, lines, inertia, steps, force, forces, before, after)
-    !> The stacks
-    type(interface_stacks_t), intent(in) :: stacks
+  pure subroutine record_reactions(nodes, i, forces, before, after)
+    !> The nodes; their lines receive the reactions
+    type(nodal_steps_t), intent(inout) :: nodes
     !> Index of the stack
     integer, intent(in) :: i
-    !> The lines
-    type(line_steps_t), intent(inout) :: lines
-    !> Lumped inertia
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
-    !> Forces on the layers, (5, n + 1), and on the jumps, (3, n)
-    real(wp), intent(in) :: force(:, :), forces(:, :)
+    !> Forces on the jumps, (3, n)
+    real(wp), intent(in) :: forces(:, :)
     !> Rates of the unknowns before the step, and velocities of the layers after it, (5, n + 1)
     real(wp), intent(in) :: before(:, :), after(:, :)
-    real(wp) :: layer(5, size(force, 2))
+    real(wp) :: layer(5, size(after, 2))
     integer :: l, p
 
-    associate (height => stacks%height(stacks%first(i):stacks%first(i) + stacks%layers(i) - 1))
-      call to_layers(size(forces, 2), height, before, layer)
-      do l = 1, size(force, 2)
-        p = stacks%first(i) + l - 1
-        if (lines%is_prescribed(p)) call lines%react(p, steps, inertia%mass(:, p), layer(:, l), after(:, l), &
-                                                 force(:, l) + traction_resultant(size(forces, 2), height, forces, l))
+    if (size(nodes%lines%dofs) == 0) return
+    associate (n => size(forces, 2), first => nodes%stacks%first(i), &
+               height => nodes%stacks%height(nodes%stacks%first(i):nodes%stacks%first(i) + size(forces, 2)))
+      if (.not. any([(nodes%lines%is_prescribed(p), p=first, first + n)])) return
+      call to_layers(n, height, before, layer)
+      do l = 1, n + 1
+        p = first + l - 1
+        if (nodes%lines%is_prescribed(p)) &
+          call nodes%lines%react(p, nodes%steps, nodes%inertia%mass(:, p), layer(:, l), after(:, l), &
+                                 nodes%force(:, p) + traction_resultant(n, height, forces, l))
       end do
     end associate
   end subroutine record_reactions

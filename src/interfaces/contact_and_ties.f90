@@ -178,9 +178,8 @@ contains
     if (.not. model%map%layered) return
     points = self%in_contact(model)
     peak = maxval([self%peak, self%pressure(points)])
-    complementarity = maxval([0.0_wp, contact_residual(model%contact_laws(model%zone(points)), displacement(3, &
-      points), &
-                                                    self%pressure(points))])
+    complementarity = maxval([0.0_wp, contact_residual(model%contact_laws(model%zone(points)), &
+                                                       displacement(3, points), self%pressure(points))])
     call model%communicator%maximum(complementarity)
     call model%communicator%maximum(peak)
     if (peak > 0) then
@@ -206,8 +205,7 @@ contains
   end function work
 
   !> Keeps closed contacts closed in the predictor, and open ones from penetrating: the stiff law would turn small
-  !> errors
-  !> of the predictor into large pressures.
+  !> errors of the predictor into large pressures.
   subroutine keep_contact_closed(self, model, guess)
     !> The state
     class(contact_and_ties_t), intent(in) :: self

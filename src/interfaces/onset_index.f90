@@ -57,7 +57,7 @@ contains
     !> Stress over strength, (cells of the mesh, zones)
     real(wp), allocatable :: onset(:, :)
     type(onset_t) :: self
-    integer :: element, zone, range(2)
+    integer :: element, zone, below, range(2)
 
     self = new_onset(model, stacks)
     associate (mesh => model%mesh)
@@ -67,10 +67,9 @@ contains
         if (.not. any(mesh%zones%below_ply >= range(1) .and. mesh%zones%below_ply <= range(2))) cycle
         associate (found => self%indices(model, element, range))
           do zone = 1, size(mesh%zones)
-            associate (below => mesh%zones(zone)%below_ply)
-              if (below < range(1) .or. below > range(2)) cycle
+            below = mesh%zones(zone)%below_ply
+            if (below >= range(1) .and. below <= range(2)) &
               onset(mesh%element_cell(element), zone) = found(below - range(1) + 1)
-            end associate
           end do
         end associate
       end do

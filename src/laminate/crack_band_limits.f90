@@ -13,7 +13,7 @@ module crack_band_limits
 
 contains
 
-  !> A strain below which a ply can't be damaged, for any direction: in-plane strains are measured by the root of e1**2
+  !> A strain below which a ply cannot be damaged, for any direction: in-plane strains are measured by the root of e1**2
   !> + e2**2 + g12**2/2, which is invariant under rotation. Nonlinear shear acts from zero on.
   pure real(wp) function onset_strain(band)
     !> The law

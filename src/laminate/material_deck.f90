@@ -204,7 +204,7 @@ contains
     complete = are_clear(settings, problems, material_group, 'E nu '//orthotropic_keys, place)
   end subroutine check_completeness
 
-  !> Those of some keys that the deck gives, or those that it doesn't.
+  !> Those of some keys that the deck gives, or those that it does not.
   function words_with(settings, place, keys, given) result(words)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -292,7 +292,7 @@ contains
     end do
   end subroutine require_densities
 
-  !> Compliance of a half-space in Sun's formula: 1/E2; Hertz' (1 - nu**2)/E if isotropic; 0 if the constants aren't
+  !> Compliance of a half-space in Sun's formula: 1/E2; Hertz' (1 - nu**2)/E if isotropic; 0 if the constants are not
   !> known.
   pure real(wp) function normal_compliance(settings, place, material) result(compliance)
     !> Keys in effect

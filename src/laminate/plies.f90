@@ -3,7 +3,7 @@ module plies
   use kinds, only: wp
   use mathematical_constants, only: degree
   use material_parameters, only: material_t
-  use text, only: to_text
+  use text, only: listed
   implicit none
   private
   public :: elasticity_t, ply_t, elasticity_of, material_objection
@@ -168,13 +168,9 @@ contains
   pure function plies_text(numbers) result(text)
     !> Their numbers, at least one
     integer, intent(in) :: numbers(:)
-    !> Such as `ply 2` or `plies 2, 4, 6`
+    !> Such as `ply 2` or `plies 2 to 11, 13`
     character(len=:), allocatable :: text
-    integer :: i
 
-    text = trim(merge('plies', 'ply  ', size(numbers) > 1))//' '//to_text(numbers(1))
-    do i = 2, size(numbers)
-      text = text//', '//to_text(numbers(i))
-    end do
+    text = trim(merge('plies', 'ply  ', size(numbers) > 1))//' '//listed(numbers)
   end function plies_text
 end module plies

@@ -47,6 +47,8 @@ module krylov_solvers
     logical :: defined = .false.
     !> Iterations of the last solve
     integer :: iterations = 0
+    !> True: the last solve reached its tolerance, or met a direction of negative curvature and stopped before it
+    logical :: converged = .false., indefinite = .false.
     !> PETSc's solver
     type(tKSP), private :: solver
     !> Its preconditioner
@@ -134,7 +136,7 @@ contains
 
   !> Solves to a tolerance, or as far as the largest dimension of the space reaches. After a product that failed the
   !> solver has to be defined anew. Collective.
-  subroutine solve(self, system, row_factors, right_hand_side, tolerance, solution, converged, indefinite, error)
+  subroutine solve(self, system, row_factors, right_hand_side, tolerance, solution, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self
     !> The equations
@@ -147,10 +149,6 @@ contains
     real(wp), intent(in) :: tolerance
     !> Solution, (rows)
     real(wp), intent(out) :: solution(:)
-    !> False: the tolerance was not reached
-    logical, intent(out) :: converged
-    !> True: conjugate gradients met a direction of negative curvature and stopped before it
-    logical, intent(out) :: indefinite
     !> Set if a product fails
     type(error_t), allocatable, intent(inout) :: error
     type(products_t), target :: products
@@ -165,8 +163,8 @@ contains
     call take(self%left, solution, ierr(5))
     call KSPGetIterationNumber(self%solver, self%iterations, ierr(6))
     call KSPGetConvergedReason(self%solver, reason, ierr(7))
-    converged = reason > 0
-    indefinite = reason == KSP_DIVERGED_INDEFINITE_MAT
+    self%converged = reason > 0
+    self%indefinite = reason == KSP_DIVERGED_INDEFINITE_MAT
     if (allocated(products%error)) then
       call move_alloc(products%error, error)
       ! PETSc keeps the right-hand side locked after a solve that a product has ended.

@@ -1,5 +1,6 @@
 !> Initial state of a load case.
 module initial_state_parameters
+  use kinds, only: wp
   implicit none
   private
   public :: initial_state_t
@@ -13,8 +14,8 @@ module initial_state_parameters
     logical :: is_inherited = .false.
     !> Checkpoint of the other run; unallocated: the plate is undamaged, flat and at rest
     character(len=:), allocatable :: from
-    !> Moment at which the other run was stopped before its end, such as time 0.001; unallocated: it was complete
-    character(len=:), allocatable :: stopped_at
+    !> Time that the other run reached and that of its end; in load steps from 0 to 1
+    real(wp) :: reached = 0, end = 0
     !> motion_rest or motion_kept
     integer :: motion = motion_rest
   end type initial_state_t

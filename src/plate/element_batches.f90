@@ -182,7 +182,7 @@ contains
     integer, intent(in) :: b, lane, element
     !> Position of its nodes
     real(wp), intent(in) :: x(2, 9)
-    !> Raised when the Jacobian isn't positive
+    !> Raised when the Jacobian is not positive
     type(error_t), allocatable, intent(inout) :: error
     integer :: g
     real(wp) :: determinant
@@ -219,7 +219,7 @@ contains
     real(wp), intent(out) :: inverse(4)
     !> Area ratio
     real(wp), intent(out) :: determinant
-    !> Raised when the ratio isn't positive
+    !> Raised when the ratio is not positive
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: along_xi(2), along_eta(2)
     character(len=12) :: number

@@ -9,7 +9,7 @@ module internal_forces
   use section_laws, only: section_law_t
   implicit none
   private
-  public :: add_internal_force, batch_force
+  public :: add_internal_force, batch_force, turn_into_forces
 
 contains
 
@@ -105,7 +105,8 @@ contains
     call turn_into_forces(batches, b, c, kinematics_linear, slopes, strains, r, energies)
   end subroutine batch_force
 
-  !> Computes the nodal forces of a batch from its unknowns and in-plane strains.
+  !> Computes the nodal forces of a batch from its unknowns and in-plane strains, or from a motion and the change of the
+  !> strains by it.
   pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)
     !> The elements
     type(element_batches_t), intent(in) :: batches

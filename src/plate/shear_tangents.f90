@@ -172,17 +172,30 @@ contains
         do column = 1, 3
           do a = 1, b
             row = 5*(a - 1) + 3
-            associate (block => k(:, row:row + 2, 5*(b - 1) + 2 + column))
-              do lane = 1, lanes
-                block(lane, 1) = block(lane, 1) + x_slopes(lane, g, a)*x_force(lane, column) &
-                                 + y_slopes(lane, g, a)*y_force(lane, column)
-                block(lane, 2) = block(lane, 2) + values(a, g)*x_force(lane, column)
-                block(lane, 3) = block(lane, 3) + values(a, g)*y_force(lane, column)
-              end do
-            end associate
+            call add_shear_force(x_slopes(:, g, a), y_slopes(:, g, a), values(a, g), x_force(:, column), &
+                                 y_force(:, column), k(:, row:row + 2, 5*(b - 1) + 2 + column))
           end do
         end do
       end do
     end do
   end subroutine add_integrated_tangent
+
+  !> Adds the forces of transverse shear forces at a point on w, theta_x and theta_y of a node.
+  pure subroutine add_shear_force(x_slope, y_slope, value, x_force, y_force, forces)
+    !> Derivatives of the node's shape function with respect to x and y at the point
+    real(wp), intent(in) :: x_slope(lanes), y_slope(lanes)
+    !> Its value
+    real(wp), intent(in) :: value
+    !> Shear forces
+    real(wp), intent(in) :: x_force(lanes), y_force(lanes)
+    !> Forces on the node
+    real(wp), intent(inout) :: forces(lanes, 3)
+    integer :: lane
+
+    do lane = 1, lanes
+      forces(lane, 1) = forces(lane, 1) + x_slope(lane)*x_force(lane) + y_slope(lane)*y_force(lane)
+      forces(lane, 2) = forces(lane, 2) + value*x_force(lane)
+      forces(lane, 3) = forces(lane, 3) + value*y_force(lane)
+    end do
+  end subroutine add_shear_force
 end module shear_tangents

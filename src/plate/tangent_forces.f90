@@ -2,11 +2,12 @@
 !> without any matrix.
 module tangent_forces
   use kinds, only: wp
-  use plate_options, only: kinematics_linear, kinematics_von_karman, shear_assumed
-  use element_batches, only: element_batches_t, lanes, shear_size
+  use plate_options, only: kinematics_linear, kinematics_von_karman
+  use element_batches, only: element_batches_t, lanes
+  use internal_forces, only: turn_into_forces
   use reference_fields, only: gather, scatter, add_gradient_forces
-  use batch_strains, only: in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, add_shear_forces
-  use batch_resultants, only: in_plane_resultants, shear_resultants, take_free_resultants
+  use batch_strains, only: in_plane_strains, strains_of_batch
+  use batch_resultants, only: in_plane_resultants, take_free_resultants
   implicit none
   private
   public :: add_tangent_force
@@ -48,7 +49,7 @@ contains
         else
           call in_plane_strains(inverse, kinematics_linear, r, strains, change)
         end if
-        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r)
+        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, unused)
         if (kinematics == kinematics_von_karman) call add_turned_forces(inverse, forces, change, r(:, :, 3))
         call scatter(batches%targets(:, :, b), r, f)
       end associate
@@ -67,37 +68,6 @@ contains
     strains(:, :, 3) = strains(:, :, 3) + slopes(:, :, 1)*change(:, :, 2) + slopes(:, :, 2)*change(:, :, 1) &
                        - change(:, :, 1)*change(:, :, 2)
   end subroutine change_strains
-
-  !> Computes the nodal forces of a batch from a motion and its change of in-plane strains.
-  pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r)
-    !> The elements
-    type(element_batches_t), intent(in) :: batches
-    !> Number of the batch
-    integer, intent(in) :: b
-    !> Section stiffness
-    real(wp), intent(in) :: c(lanes, 21)
-    !> One of the kinematics_* choices
-    integer, intent(in) :: kinematics
-    !> Slopes w,x and w,y (lane, point, direction)
-    real(wp), intent(in) :: slopes(lanes, 9, 2)
-    !> Change of the in-plane strains on entry, of their resultants on return (lane, point, component)
-    real(wp), intent(inout) :: strains(lanes, 9, 6)
-    !> Motion of the nodes on entry, forces on them on return
-    real(wp), intent(inout) :: r(lanes, 9, 5)
-    real(wp) :: shear(shear_size), unused(lanes)
-
-    unused = 0
-    call shear_strains(batches, b, r, shear)
-    call in_plane_resultants(c, batches%weight(:, :, b), strains, unused)
-    if (batches%shear == shear_assumed) then
-      call shear_resultants(9, c, batches%weight(:, :, b), shear, unused)
-    else
-      call shear_resultants(batches%shear_points, c, batches%shear_weight(:, :, b), shear, unused)
-    end if
-    r = 0.0_wp
-    call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), kinematics, strains, slopes, r)
-    call add_shear_forces(batches, b, shear, r)
-  end subroutine turn_into_forces
 
   !> Adds the forces on w by membrane forces on the slopes.
   pure subroutine add_turned_forces(inverse, forces, change, f)

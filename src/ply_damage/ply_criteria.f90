@@ -31,25 +31,21 @@ contains
     real(wp) :: measures(failure_modes, size(elasticity))
     real(wp), allocatable :: stresses(:, :)
     real(wp) :: shear(2, size(elasticity))
-    integer :: i
+    integer :: range(2), i
 
-    measures = 0
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      shear = shear_of_plies(model%plies(range(1):range(2)), model%shear_shares(:, :, range(1):range(2)), &
-                             shear_force(stiffness, element, strains(7:8)))
-      do i = 1, size(elasticity)
-        associate (ply => model%plies(range(1) + i - 1))
-          associate (strength => model%setup%materials(ply%material))
-            if (model%setup%ply_damage%stress == stress_at_faces) then
-              stresses = face_stresses(ply, elasticity(i), strains(:6), shear(:, i))
-            else
-              stresses = spread(middle_stress(ply, elasticity(i), strains(:6), shear(:, i)), 2, 1)
-            end if
-            measures(:, i) = chosen_indices(model%setup%ply_damage%criteria, strength, stresses)
-          end associate
-        end associate
-      end do
-    end associate
+    range = model%mesh%element_plies(:, model%distribution%elements(element))
+    shear = shear_of_plies(model%plies(range(1):range(2)), model%shear_shares(:, :, range(1):range(2)), &
+                           shear_force(stiffness, element, strains(7:8)))
+    do i = 1, size(elasticity)
+      associate (ply => model%plies(range(1) + i - 1), setup => model%setup)
+        if (setup%ply_damage%stress == stress_at_faces) then
+          stresses = face_stresses(ply, elasticity(i), strains(:6), shear(:, i))
+        else
+          stresses = spread(middle_stress(ply, elasticity(i), strains(:6), shear(:, i)), 2, 1)
+        end if
+        measures(:, i) = chosen_indices(setup%ply_damage%criteria, setup%materials(ply%material), stresses)
+      end associate
+    end do
     measures = sqrt(max(measures, 0.0_wp))
   end function failure_measures
 

@@ -108,7 +108,7 @@ contains
     character(len=*), intent(in) :: path
     !> The head
     character(len=head_length), intent(out) :: found
-    !> 0 unless the file can't be read
+    !> 0 unless the file cannot be read
     integer, intent(out) :: status
     integer(long) :: bytes
     integer :: unit, closed
@@ -129,7 +129,7 @@ contains
     integer(long), intent(out) :: bytes
     !> Checksum
     integer(int32), intent(out) :: crc
-    !> 0 unless the file can't be read
+    !> 0 unless the file cannot be read
     integer, intent(out) :: status
     integer(int8), allocatable :: block(:)
     integer(long) :: done

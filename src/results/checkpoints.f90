@@ -55,7 +55,7 @@ contains
     character(len=*), intent(in) :: path
     !> The run, deck included
     type(provenance_t), intent(in) :: provenance
-    !> Raised if the file can't be created
+    !> Raised if the file cannot be created
     type(error_t), allocatable, intent(inout) :: error
 
     self%loading = .false.
@@ -73,7 +73,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Path of the file
     character(len=*), intent(in) :: path
-    !> Raised if it can't be read
+    !> Raised if it cannot be read
     type(error_t), allocatable, intent(inout) :: error
 
     self%loading = .true.
@@ -146,7 +146,7 @@ contains
     character(len=*), intent(in) :: path
     !> Its new path, replacing a file of that name; empty: there was no checkpoint
     character(len=:), allocatable, intent(out) :: retired
-    !> Raised if it can't be renamed
+    !> Raised if it cannot be renamed
     type(error_t), allocatable, intent(inout) :: error
 
     retired = ''
@@ -163,7 +163,7 @@ contains
   subroutine put_in_place(path, error)
     !> Final path of the file
     character(len=*), intent(in) :: path
-    !> Raised if one of these steps failed; a file that can't have the name is removed
+    !> Raised if one of these steps failed; a file that cannot have the name is removed
     type(error_t), allocatable, intent(inout) :: error
 
     call seal(aside(path), error)

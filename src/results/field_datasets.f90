@@ -9,22 +9,28 @@ module field_datasets
   use text, only: to_text
   implicit none
   private
-  public :: write_field, explain_dataset
+  public :: global_numbers_t, write_field, explain_dataset
+
+  !> Points or elements that are distributed over the ranks.
+  type :: global_numbers_t
+    !> Global numbers (from 1) of those of this rank
+    integer, allocatable :: own(:)
+    !> Their number on all ranks
+    integer :: total = 0
+  end type global_numbers_t
 
 contains
 
   !> Writes a scalar or vector field unchanged, any other by components.
-  subroutine write_field(file, rows, path, columns, global_columns, values, error)
+  subroutine write_field(file, rows, path, columns, values, error)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Table of the fields; unallocated: they have no units
     character(len=*), allocatable, intent(in) :: rows(:)
     !> Path of the field in the file
     character(len=*), intent(in) :: path
-    !> Global numbers of the leading columns
-    integer, intent(in) :: columns(:)
-    !> Number of columns on all ranks
-    integer, intent(in) :: global_columns
+    !> The leading columns
+    type(global_numbers_t), intent(in) :: columns
     !> The field (components by columns)
     real(wp), intent(in) :: values(:, :)
     !> Raised if the table has no row for it
@@ -33,12 +39,12 @@ contains
 
     select case (size(values, 1))
     case (1, 3)
-      call write_real_columns(file, path, columns, global_columns, values)
+      call write_real_columns(file, path, columns%own, columns%total, values)
       call explain_dataset(file, rows, path, error)
     case default
       do i = 1, size(values, 1)
         associate (component => path//'_'//to_text(i))
-          call write_real_columns(file, component, columns, global_columns, values(i:i, :))
+          call write_real_columns(file, component, columns%own, columns%total, values(i:i, :))
           call explain_dataset(file, rows, component, error)
         end associate
       end do

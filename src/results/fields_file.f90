@@ -8,7 +8,7 @@
 module fields_file
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
-  use field_datasets, only: explain_dataset, write_field
+  use field_datasets, only: explain_dataset, global_numbers_t, write_field
   use fields_file_xdmf, only: grid_of_time, numbered, write_xdmf
   use files, only: file_exists
   use hdf5_data, only: read_reals, read_text, write_integer_columns, write_integers, write_real_columns, write_reals, &
@@ -47,14 +47,8 @@ module fields_file
     integer :: mesh = 0
     !> Group of the time being written
     character(len=:), allocatable :: time_group
-    !> Global numbers of this rank's points
-    integer, allocatable :: points(:)
-    !> Number of points on all ranks
-    integer :: global_points = 0
-    !> Global numbers of this rank's elements
-    integer, allocatable :: cells(:)
-    !> Number of elements on all ranks
-    integer :: global_cells = 0
+    !> Points and elements of the mesh
+    type(global_numbers_t) :: points, cells
   contains
     procedure :: describe
     procedure :: create, resume
@@ -90,7 +84,7 @@ contains
     type(provenance_t), intent(in) :: provenance
     !> Modelled part of the plate: whole, quarter, half_x, half_y or point
     character(len=*), intent(in) :: part
-    !> Raised if the file can't be written
+    !> Raised if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
@@ -144,7 +138,7 @@ contains
     character(len=*), intent(in) :: part
     !> Time of the last fields to keep, that of the checkpoint
     real(wp), intent(in) :: last_time
-    !> Raised if the file can't be used
+    !> Raised if the file cannot be used
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: names(:)
     logical :: present
@@ -169,27 +163,20 @@ contains
   end subroutine resume
 
   !> Writes the mesh of the following fields. Called at the start and after changes of the mesh.
-  subroutine write_mesh(self, points, global_points, coordinates, cells, global_cells, connectivity, names, &
-                        values, error)
+  subroutine write_mesh(self, points, cells, coordinates, connectivity, names, values, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
-    !> Global numbers (from 1) of the points this rank owns
-    integer, intent(in) :: points(:)
-    !> Number of points on all ranks
-    integer, intent(in) :: global_points
+    !> The points that this rank owns, and its elements
+    type(global_numbers_t), intent(in) :: points, cells
     !> Coordinates of these points (x, y, z by points)
     real(wp), intent(in) :: coordinates(:, :)
-    !> Global numbers (from 1) of this rank's elements
-    integer, intent(in) :: cells(:)
-    !> Number of elements on all ranks
-    integer, intent(in) :: global_cells
     !> Global numbers of the nine points of each element, in the order 1 + i + 3 j (9 by elements)
     integer, intent(in) :: connectivity(:, :)
     !> Names of constant fields of the elements, such as their layer; may be empty
     character(len=*), intent(in) :: names(:)
     !> Constant fields of the elements (names by elements)
     integer, intent(in) :: values(:, :)
-    !> Raised if the mesh can't be written
+    !> Raised if the mesh cannot be written
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: group
     integer :: i
@@ -198,15 +185,14 @@ contains
     call self%open_file(error)
     if (allocated(error)) return
     self%points = points
-    self%global_points = global_points
     self%cells = cells
-    self%global_cells = global_cells
     self%mesh = self%mesh + 1
     group = 'meshes/'//numbered(self%mesh)
-    call write_real_columns(self%file, group//'/coordinates', points, global_points, coordinates)
-    call write_integer_columns(self%file, group//'/connectivity', cells, global_cells, connectivity(xdmf_order, :) - 1)
+    call write_real_columns(self%file, group//'/coordinates', points%own, points%total, coordinates)
+    call write_integer_columns(self%file, group//'/connectivity', cells%own, cells%total, &
+                               connectivity(xdmf_order, :) - 1)
     do i = 1, size(names)
-      call write_integer_columns(self%file, group//'/cells/'//trim(names(i)), cells, global_cells, values(i:i, :))
+      call write_integer_columns(self%file, group//'/cells/'//trim(names(i)), cells%own, cells%total, values(i:i, :))
       call explain_dataset(self%file, self%rows, group//'/cells/'//trim(names(i)), error)
     end do
     call self%close_file(error, group)
@@ -219,7 +205,7 @@ contains
     !> Number of points on all ranks
     integer, intent(in) :: points
 
-    is_on = self%global_points == points
+    is_on = self%points%total == points
   end function is_on
 
   !> True: the file has no time yet.
@@ -238,7 +224,7 @@ contains
     real(wp), intent(in) :: time
     !> Number of the time step
     integer, intent(in) :: step
-    !> Raised if the file can't be opened
+    !> Raised if the file cannot be opened
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
@@ -259,12 +245,11 @@ contains
     character(len=*), intent(in) :: name
     !> The field (components by points, those owned first)
     real(wp), intent(in) :: values(:, :)
-    !> Raised if it can't be written
+    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
-    call write_field(self%file, self%rows, self%time_group//'/points/'//name, self%points, self%global_points, values, &
-                     error)
+    call write_field(self%file, self%rows, self%time_group//'/points/'//name, self%points, values, error)
     call report(self, error)
   end subroutine write_point_field
 
@@ -276,12 +261,11 @@ contains
     character(len=*), intent(in) :: name
     !> The field (components by elements)
     real(wp), intent(in) :: values(:, :)
-    !> Raised if it can't be written
+    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
-    call write_field(self%file, self%rows, self%time_group//'/cells/'//name, self%cells, self%global_cells, values, &
-                     error)
+    call write_field(self%file, self%rows, self%time_group//'/cells/'//name, self%cells, values, error)
     call report(self, error)
   end subroutine write_cell_field
 
@@ -293,7 +277,7 @@ contains
     character(len=*), intent(in) :: name
     !> The figures (rows by columns)
     real(wp), intent(in) :: values(:, :)
-    !> Raised if they can't be written
+    !> Raised if they cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
@@ -342,7 +326,7 @@ contains
   subroutine open_file(self, error)
     !> The fields
     class(fields_file_t), intent(inout) :: self
-    !> Raised if it can't be opened
+    !> Raised if it cannot be opened
     type(error_t), allocatable, intent(inout) :: error
 
     call self%file%open(self%communicator, self%base//'.h5', writable=.true.)

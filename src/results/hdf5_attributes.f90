@@ -42,7 +42,7 @@ contains
     character(len=*), intent(in) :: name
     !> Its text, not empty
     character(len=*), intent(in) :: value
-    !> Negative if it can't be written
+    !> Negative if it cannot be written
     integer, intent(out) :: status
     character(kind=c_char), allocatable, target :: buffer(:)
     integer(hid_t) :: attribute, space, text_type

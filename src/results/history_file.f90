@@ -60,7 +60,7 @@ contains
     character(len=*), intent(in) :: columns(:)
     !> Integer columns
     logical, intent(in) :: whole(:)
-    !> Raised if the file can't be written
+    !> Raised if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     self%communicator = communicator
@@ -93,7 +93,7 @@ contains
     integer, intent(in) :: rows_to_keep
     !> Values of the last of them, of the first rank; empty without rows
     real(wp), intent(in) :: last_row(:)
-    !> Raised if the file can't be written or is the history of another run
+    !> Raised if the file cannot be written or is the history of another run
     type(error_t), allocatable, intent(inout) :: error
     logical :: present
 
@@ -128,7 +128,7 @@ contains
     class(history_file_t), intent(inout) :: self
     !> One number per column, of the first rank
     real(wp), intent(in) :: values(:)
-    !> Raised if the row can't be written
+    !> Raised if the row cannot be written
     type(error_t), allocatable, intent(inout) :: error
     integer(long) :: now, rate
 
@@ -153,7 +153,7 @@ contains
   subroutine flush(self, error)
     !> The history
     class(history_file_t), intent(inout) :: self
-    !> Raised if they can't be written
+    !> Raised if they cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (self%file%is_open()) call self%file%flush()
@@ -166,7 +166,7 @@ contains
   subroutine close (self, error)
     !> The history
     class(history_file_t), intent(inout) :: self
-    !> Raised if the last rows can't be written
+    !> Raised if the last rows cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     call self%file%close()
@@ -280,7 +280,7 @@ contains
     integer(long), intent(out) :: bytes
     !> Number of these rows
     integer, intent(out) :: kept
-    !> 0 unless the file can't be read
+    !> 0 unless the file cannot be read
     integer, intent(out) :: status
     character(len=block_length) :: block
     integer(long) :: place, length
@@ -312,7 +312,7 @@ contains
     integer(long), intent(in) :: bytes
     !> Where to
     type(output_stream_t), intent(inout) :: copy
-    !> 0 unless the file can't be read
+    !> 0 unless the file cannot be read
     integer, intent(out) :: status
     character(len=block_length) :: block
     integer(long) :: place

@@ -19,7 +19,7 @@ module modal_plates
     real(wp), allocatable :: weight(:)
     !> Wave numbers along x and y, (2, modes)
     real(wp), allocatable :: wave_number(:, :)
-    !> Deflection of the patch per force by all modes that aren't listed
+    !> Deflection of the patch per force by all modes that are not listed
     real(wp) :: rest = 0
   end type modal_plate_t
 

@@ -16,7 +16,7 @@ module patch_responses
 
   !> Steps whose forces are convolved one by one, and those of a block whose forces are convolved without transforms.
   integer, parameter :: block_steps = 64, direct_steps = 256
-  !> Steps that the response is found for where the end isn't known.
+  !> Steps that the response is found for where the end is not known.
   integer, parameter :: first_steps = 1024
 
   !> A transform of one length.

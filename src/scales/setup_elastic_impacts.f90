@@ -252,7 +252,7 @@ contains
     end do
     if (all(error <= bounds)) then
       longer = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
-      ! The peak depends on where steps fall, too, so that its error isn't smooth in the step.
+      ! The peak depends on where steps fall, too, so that its error is not smooth in the step.
       coarse = run_of(self, longer, end, 0.0_wp)
       if (abs(coarse%peak/finest%peak - 1) <= bounds(1)) step = longer
     else if (finest%complete) then

@@ -3,7 +3,7 @@
 module slow_impactors
   use kinds, only: wp
   use errors, only: error_t
-  use impact_force, only: solve_impact_force
+  use impact_force, only: contact_step_t, solve_impact_force
   use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of
   use models, only: model_t
   use krylov_corrections, only: solve_load_tangent
@@ -43,6 +43,7 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
+    type(contact_step_t) :: step
     real(wp), allocatable :: response(:, :), push(:, :)
     real(wp) :: compliance, mean, force, alpha, force_end
     integer :: iterations
@@ -56,9 +57,10 @@ contains
     compliance = new%contact%mean(model%communicator, response)
     mean = new%contact_deflection(model) + new%contact%mean(model%communicator, correction)
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
-    call solve_impact_force(model%setup%indentation, new%indentation, new%indentation%alpha, &
-                            new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, compliance, &
-                            .false., force, alpha, force_end, iterations, error)
+    step = contact_step_t(model%setup%indentation, new%indentation, start=new%indentation%alpha, &
+                          free=new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, &
+                          compliance=compliance, is_mean=.false.)
+    call solve_impact_force(step, force, alpha, force_end, iterations, error)
     if (allocated(error)) return
     new%force_iterations = new%force_iterations + iterations
     correction = correction + (force - new%force)*response

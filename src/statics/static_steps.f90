@@ -8,7 +8,7 @@ module static_steps
   use newton_iterations, only: newton_iteration_t
   use states, only: state_t
   use step_problems, only: step_problem_t
-  use residual_norms, only: relative_residual
+  use residual_norms, only: relative_residual, sums_of_squares
   use slow_impactors, only: add_impactor_force, find_force_change, force_mismatch, move_slow_impactor
   use krylov_corrections, only: solve_load_tangent
   implicit none
@@ -87,17 +87,17 @@ contains
     !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
     real(wp), allocatable :: loads(:, :)
+    real(wp) :: references(2, 2)
 
-    associate (model => at%model, operator => at%operator, new => at%new, equilibrium => at%equilibrium, &
-               residual => at%residual)
-      allocate (loads, mold=residual)
+    associate (model => at%model, operator => at%operator, new => at%new)
+      allocate (loads, mold=at%residual)
       call model%static_loads(new%motion%displacement, new%load_factor, loads)
       call add_impactor_force(model, new, new%force, loads)
+      references(:, 1) = sums_of_squares(operator%numbering, new%motion%internal)
+      references(:, 2) = sums_of_squares(operator%numbering, loads)
       ! A second iteration removes the round-off of the first, so it is required.
-      residual_norm = relative_residual(model%communicator, operator%numbering, residual, new%motion%internal, loads, &
-                                        0.0_wp, operator%diagonal, new%motion%displacement, new%iterations > 1, &
-                                        equilibrium%tolerance, model%thickness, equilibrium%controls, &
-                                        new%largest_forces)
+      residual_norm = relative_residual(model, operator, at%equilibrium, at%residual, references, &
+                                        new%motion%displacement, new%iterations > 1, new%largest_forces)
       if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
     end associate
   end function residual_norm

@@ -3,12 +3,13 @@
 module residual_norms
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
-  use communicators, only: communicator_t
+  use models, only: model_t
   use numberings, only: numbering_t
-  use solution_controls, only: newton_controls_t
+  use stepping_parameters, only: equilibrium_t
+  use tangent_operators, only: tangent_operator_t
   implicit none
   private
-  public :: relative_residual
+  public :: relative_residual, sums_of_squares
 
   !> Points whose squares are summed together
   integer, parameter :: block_length = 8
@@ -17,50 +18,45 @@ contains
 
   !> Residual over the largest reference force, the larger of translations and rotations; infinite if a number is not
   !> finite. The same on every rank.
-  real(wp) function relative_residual(communicator, numbering, residual, first, second, load, diagonal, displacement, &
-                                      may_end, tolerance, length, controls, largest) result(norm)
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-    !> Knows which unknowns are constrained
-    type(numbering_t), intent(in) :: numbering
+  real(wp) function relative_residual(model, operator, equilibrium, residual, references, displacement, may_end, &
+                                      largest) result(norm)
+    type(model_t), intent(in) :: model
+    !> The operator. Round-off of products of its diagonal and the unknowns is a lower bound of the residual: shear
+    !> forces of a thin plate are small differences of large numbers
+    type(tangent_operator_t), intent(in) :: operator
+    !> Tolerance of the residual, and constants of Newton's method
+    type(equilibrium_t), intent(in) :: equilibrium
     !> Residual at the owned points, (5, points)
     real(wp), contiguous, intent(in) :: residual(:, :)
-    !> Two kinds of reference forces, (5, points)
-    real(wp), contiguous, intent(in) :: first(:, :), second(:, :)
-    !> This rank's part of the squared norm of a further load on w
-    real(wp), intent(in) :: load
-    !> Diagonal of the operator, and the unknowns, (5, points). Round-off of their products is a lower bound of the
-    !> residual: shear forces of a thin plate are small differences of large numbers
-    real(wp), intent(in) :: diagonal(:, :), displacement(:, :)
+    !> Sums of squares of the reference forces over this rank's points: translations and rotations, one column for each
+    !> kind of forces
+    real(wp), intent(in) :: references(:, :)
+    !> The unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
     !> False: the iteration continues for any residual, so that the bound by round-off is not needed
     logical, intent(in) :: may_end
-    !> Tolerance of the relative residual
-    real(wp), intent(in) :: tolerance
-    !> Lever arm that converts reference forces to moments: the thickness of the laminate
-    real(wp), intent(in) :: length
-    !> Constants of Newton's method
-    type(newton_controls_t), intent(in) :: controls
     !> Largest forces of equilibria so far, translations and rotations: the reference once forces have become small
     real(wp), intent(inout) :: largest(2)
-    real(wp) :: squares(8), limits(2), scale(2)
+    real(wp) :: squares(2 + size(references)), limits(2), scale(2)
 
-    squares = [sums_of_squares(numbering, residual), sums_of_squares(numbering, first), &
-               sums_of_squares(numbering, second), load, 0.0_wp]
-    call communicator%sum(squares)
+    squares = [sums_of_squares(operator%numbering, residual), references]
+    call model%communicator%sum(squares)
     norm = ieee_value(norm, ieee_positive_inf)
     if (.not. all(squares <= huge(norm))) return
     squares = sqrt(squares)
-    scale = max(squares(3:4), squares(5:6), squares(7:8), controls%force_floor*largest)
-    scale(2) = max(scale(2), length*scale(1))
-    norm = maxval(squares(1:2)/max(scale, tiny(norm)))
-    if (norm > tolerance .and. may_end) then
-      limits = sums_of_squares(numbering, round_off_forces(diagonal, displacement))
-      call communicator%sum(limits)
+    scale = max(maxval(reshape(squares(3:), shape(references)), 2), equilibrium%controls%force_floor*largest)
+    ! The thickness is the lever arm that converts forces to moments.
+    scale(2) = max(scale(2), model%thickness*scale(1))
+    norm = maxval(squares(:2)/max(scale, tiny(norm)))
+    if (norm > equilibrium%tolerance .and. may_end) then
+      limits = sums_of_squares(operator%numbering, round_off_forces(operator%diagonal, displacement))
+      call model%communicator%sum(limits)
       if (.not. all(limits <= huge(norm))) return
-      norm = maxval(squares(1:2)/max(scale, controls%last_digits*epsilon(norm)/tolerance*sqrt(limits), tiny(norm)))
+      limits = equilibrium%controls%last_digits*epsilon(norm)/equilibrium%tolerance*sqrt(limits)
+      norm = maxval(squares(:2)/max(scale, limits, tiny(norm)))
     end if
     ! Those of a trial state may be larger by orders of magnitude: any residual would pass from then on.
-    if (norm <= tolerance) largest = max(largest, scale)
+    if (norm <= equilibrium%tolerance) largest = max(largest, scale)
   end function relative_residual
 
   !> Magnitude of the nodal forces whose round-off bounds the residual from below: diagonal times unknown. For moments

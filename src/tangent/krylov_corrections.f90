@@ -90,9 +90,10 @@ contains
     indefinite = .false.
     if (.not. krylov%defined) call krylov%define(tangent%model%communicator, size(rows), &
                                                  trim(merge('cg    ', 'fgmres', tangent%softens)), error)
-    if (.not. allocated(error)) &
-      call krylov%solve(tangent, row_factors, rows, tolerance, solution, converged, indefinite, error)
-    converged = converged .or. indefinite
+    if (allocated(error)) return
+    call krylov%solve(tangent, row_factors, rows, tolerance, solution, error)
+    indefinite = krylov%indefinite
+    converged = krylov%converged .or. indefinite
     ! Negative curvature at once: the factored operator's solution descends.
     if (indefinite .and. krylov%iterations <= 1) call tangent%precondition(rows, solution, error)
   end subroutine solve_tangent

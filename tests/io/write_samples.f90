@@ -6,6 +6,7 @@ program write_samples
   use checkpoints, only: checkpoint_archive_t
   use communicators, only: communicator_t, finish_mpi, start_mpi
   use errors, only: error_t
+  use field_datasets, only: global_numbers_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
   use result_tables, only: result_row_length
@@ -114,8 +115,9 @@ contains
               + 2*(of_layer/across)*points_across
       connectivity(:, c) = [((first + i + points_across*j, i=0, 2), j=0, 2)]
     end do
-    call fields%write_mesh(points, points_across*points_along*layers, coordinates, cells, across*along*layers, &
-                           connectivity, ['layer'], layer, error)
+    call fields%write_mesh(global_numbers_t(points, points_across*points_along*layers), &
+                           global_numbers_t(cells, across*along*layers), coordinates, connectivity, ['layer'], layer, &
+                           error)
   end subroutine write_mesh
 
   !> Writes one time.

@@ -292,12 +292,13 @@ def check_refused(implam, folder, _):
     check = [implam, "check", deck_of(folder, COMPRESSION)]
     require("was stopped at" not in run(check, folder=folder), "A complete impact is called stopped.")
     run([implam, f"{IMPACT}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
-    require("was stopped at time" in run(check, folder=folder), "An incomplete impact is not warned of.")
+    stopped = re.search(r"is of a run that was stopped at \S+ of \S+: ", run(check, folder=folder))
+    require(stopped, "An incomplete impact is not warned of.")
     run([implam, f"{COMPRESSION}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     (folder / f"{COMPRESSION}_summary.json").unlink()
     run([implam, "restart", f"{COMPRESSION}_restart.h5", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     warned = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["warnings"]
-    require(any("was stopped at time" in warning["text"] for warning in warned), f"After a restart: {warned}")
+    require(any(stopped[0] in warning["text"] for warning in warned), f"After a restart: {warned}")
     short = deck_of(folder, IMPACT, ["time%end=0.15e-3", "case%name='pressed'", "output%fields_every=1"])
     run([implam, short], folder=folder)
     for mesh, code in ((FINER, EXIT_DECK), ([], EXIT_DONE)):

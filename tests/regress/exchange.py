@@ -1,11 +1,12 @@
 """Deflections by other programs: exported panels, intact, with failed plies and delaminated; and the example of the
-manual. Usage: exchange.py calculix|mystran|manual IMPLAM FOLDER
+manual. Starters of decks as the program takes them. Usage: exchange.py calculix|mystran|manual|starters IMPLAM FOLDER
 
 Ends with 77 where ccx, mystran or pyNastran isn't installed."""
 
 import contextlib
 import importlib.util
 import io
+import itertools
 import re
 import shutil
 import sys
@@ -17,6 +18,9 @@ from implam_post.exchange import from_nastran
 from implam_post.exchange.export import to_abaqus, to_nastran
 from implam_post.exchange.results import read_panel
 from implam_post.exchange.shell_mesh import shell_mesh
+from implam_post.exchange.starters import starters_of
+from implam_post.io.deck import read_deck
+from implam_post.io.fields import IMAGES, read_fields
 from solver_runs import exit_code_of, require, run, run_deck, write_deck
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -37,10 +41,33 @@ PANELS = {"whole": ([], 0.004, 0.004), "failed": (FAILED, 0.004, 0.004), "apart"
 # Compared with CalculiX alone. Measured: 0.26 %.
 CURVED = {"shallow": (SHALLOW, 0.004, 0.004)}
 
+# Decks with an interface, and keys of it: by default a front with a starter, or cohesive without.
+WHOLE = ("exchange.nml", ["static%steps=1", "delamination%below_ply=4", "delamination%G_c=1e9",
+                          "delamination%zone=0.15, 0.1"])
+QUARTER = (WHOLE[0], [*WHOLE[1], *CROSS_PLY])
+STRUCK = ("../small/delamination.nml", ["time%end=10e-6", "plate%symmetry='none'", "mesh%elements=12, 12",
+                                        "impactor%at=4e-3, -6e-3"])
+STARTERS = [
+    (WHOLE, []),
+    (WHOLE, ["delamination%law='front'", "mesh%core=8e-3, 8e-3", "mesh%cell=1e-3", "mesh%elements=20, 20"]),
+    (WHOLE, ["delamination%growth='equilibrium'"]),
+    (WHOLE, ["delamination%starter_strip=-0.03, 0.05"]),
+    (QUARTER, ["delamination%below_ply='between_angles'", "delamination%starter=0.06"]),
+    (QUARTER, ["delamination%starter=0.08", "delamination%starter_shape='round'"]),
+    (STRUCK, []),
+    (STRUCK, ["delamination%starter=15e-3", "delamination%starter_shape='round'"]),
+    (STRUCK, ["delamination%starter=7e-3", "delamination%starter_at=6e-3, 2e-3"]),
+]
+
+
+def fields_of(history):
+    """Return the fields beside a history."""
+    return Path(str(history).removesuffix("_history.csv") + ".h5")
+
 
 def own_deflections(history):
     """Return the deflection on the struck face and on the back by place."""
-    with h5py.File(str(history).removesuffix("_history.csv") + ".h5") as file:
+    with h5py.File(fields_of(history)) as file:
         last = file["times"][max(file["times"])]
         mesh = file[f"meshes/{int(last['mesh'][()]):08d}"]
         places, points = mesh["coordinates"][()][:, :2], mesh["connectivity"][()]
@@ -109,7 +136,7 @@ def check(program, implam, folder):
     for name, (settings, struck, back) in (PANELS | (CURVED if program == "calculix" else {})).items():
         here = folder / name
         history = run_deck(implam, write_deck(here, "exchange.nml", settings))
-        results = Path(str(history).removesuffix("_history.csv") + ".h5")
+        results = fields_of(history)
         panel = read_panel(results)
         own = own_deflections(history)
         other = other_deflections(panel, solve(results, here), with_middles)
@@ -120,6 +147,25 @@ def check(program, implam, folder):
               f"{100 * found[0]:.2f} % on the struck face, {100 * found[1]:.2f} % on the back")
         require(found[0] <= struck and found[1] <= back, f"{name}: the deflections differ.")
     require(softest["failed"] > 1.05 * softest["whole"], "The failed plies don't show in the deflection.")
+
+
+def check_starters(implam, folder):
+    """Compare the cells delaminated before the run by a deck with those of the program, on the cells of the run."""
+    numbers = []
+    for (deck, settings), keys in STARTERS:
+        path = write_deck(folder, deck, settings + keys)
+        results = fields_of(run_deck(implam, path))
+        fields, panel = read_fields(results), read_panel(results)
+        mesh = fields.snapshots[0].mesh
+        columns, rows = (np.searchsorted(lines, mesh.corners[..., axis].mean(axis=1)) - 1
+                         for axis, lines in enumerate((panel.x, panel.y)))
+        places = list(zip(mesh.first_ply - 1, columns, rows, strict=True))
+        own = set(itertools.compress(places, mesh.starter))
+        starters = starters_of(read_deck(path), panel.plies, panel.x, panel.y, IMAGES[fields.part])
+        found = {place for place in places if any(place[0] == ply and cells[place[1:]] for ply, cells in starters)}
+        require(found == own, f"{deck} with {keys}: {sorted(found ^ own)} differ.")
+        numbers.append(len(own))
+    print(f"cells delaminated: {numbers}")
 
 
 def check_manual(implam, folder):
@@ -166,7 +212,8 @@ def check_damage(apart, failed):
 
 
 # What each trial needs, as a program or a module of Python.
-TRIALS = {"calculix": ("ccx", check), "mystran": ("mystran", check), "manual": ("pyNastran", check_manual)}
+TRIALS = {"calculix": ("ccx", check), "mystran": ("mystran", check), "manual": ("pyNastran", check_manual),
+          "starters": ("h5py", check_starters)}
 
 if __name__ == "__main__":
     needed, trial = TRIALS[sys.argv[1]]

@@ -5,7 +5,7 @@ program measure_integrators
   use errors, only: error_t
   use example_checks, only: require
   use hht_integrators, only: hht_integrator
-  use impact_force, only: solve_impact_force
+  use impact_force, only: contact_step_t, solve_impact_force
   use impact_parameters, only: impactor_parameters_t, indentation_law_t, law_hertz
   use kinds, only: wp
   use motions, only: motion_t
@@ -58,8 +58,8 @@ contains
     dt = 60e-6_wp/steps
     do step = 1, steps
       call bdf2_predict(ball, impactor, dt, free, compliance)
-      call solve_impact_force(law, contact, contact%alpha, free, compliance, .false., force, alpha, force_end, &
-                              iterations, error)
+      call solve_impact_force(contact_step_t(law, contact, contact%alpha, free, compliance, .false.), force, alpha, &
+                              force_end, iterations, error)
       impactor = bdf2_advance(ball, impactor, dt, force)
       contact%alpha = impactor%displacement
     end do
