@@ -89,8 +89,7 @@ contains
     real(wp) :: change(3), last(3), before(3), traction(3), work, in_contact, growth
     integer :: j, p
 
-    associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps, &
-               friction => nodes%workspaces(size(forces, 2))%friction)
+    associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps)
       do j = 1, size(forces, 2)
         p = stacks%first(i) + j
         surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
@@ -102,13 +101,14 @@ contains
         in_contact = 0
         if (surfaces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
         old = cohesive%points(p)
-        old%sliding%limit = friction(j)%limit/stacks%area(p)
-        associate (new => cohesive%points(p), area => stacks%area(p))
+        associate (new => cohesive%points(p), area => stacks%area(p), &
+                   friction => nodes%workspaces(size(forces, 2))%friction(j))
+          old%sliding%limit = friction%limit/area
           call surfaces%traction(u(1:3, p), old, traction, new)
           if (surfaces%friction > 0) then
-            call slip_surfaces(friction(j), u(1:2, p), old%sliding, new%sliding, history%sticking(:, p), change(1:2))
+            call slip_surfaces(friction, u(1:2, p), old%sliding, new%sliding, history%sticking(:, p), change(1:2))
             call add_heat(surfaces%law%stiffness_shear, before(1:2), u(1:2, p), &
-                          sum(friction(j)%force*(change(1:2) + last(1:2)))/(2*area), old%sliding, new%sliding, &
+                          sum(friction%force*(change(1:2) + last(1:2)))/(2*area), old%sliding, new%sliding, &
                           history%friction(p))
           end if
           growth = new%dissipated - old%dissipated

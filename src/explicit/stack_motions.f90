@@ -69,22 +69,22 @@ contains
     n = nodes%stacks%layers(i) - 1
     p = nodes%stacks%first(i)
     q = p + n
-    associate (height => nodes%stacks%height(p:q), steps => nodes%steps)
-      call to_layers(n, height, v(:, p:q), layer)
+    associate (stacks => nodes%stacks, steps => nodes%steps)
+      call to_layers(n, stacks%height(p:q), v(:, p:q), layer)
       call accelerate_layers(n + 1, nodes%inertia%inverse(:, p:q), steps%mean(), nodes%force(:, p:q), layer)
       call prescribe_layers(nodes%lines, p, layer)
-      call find_rates(n, height, layer, rates)
+      call find_rates(n, stacks%height(p:q), layer, rates)
       trial = u(1:3, p + 1:q) + steps%now*rates
       call find_forces(nodes, i, model, cohesive, u, trial, forces)
       if (nodes%rigs%on_frame(p)) call stop_stack_at_frame(nodes, i, u(3, p:q), trial(3, :), layer, forces(3, :))
-      call accelerate_by_tractions(n, height, nodes%inertia%inverse(:, p:q), steps%mean(), forces, layer)
+      call accelerate_by_tractions(n, stacks%height(p:q), nodes%inertia%inverse(:, p:q), steps%mean(), forces, layer)
       if (nodes%rigs%on_frame(p)) layer(3, n + 1) = nodes%rigs%approach(p)/steps%now
       call record_reactions(nodes, i, forces, v(:, p:q), layer)
-      call find_rates(n, height, layer, rates)
+      call find_rates(n, stacks%height(p:q), layer, rates)
       v(:, p) = layer(:, 1)
       v(1:3, p + 1:q) = rates
       v(4:5, p + 1:q) = layer(4:5, 2:)
-      if (nodes%stacks%damaged(i)) then
+      if (stacks%damaged(i)) then
         call advance_points(nodes, i, model, forces, cohesive, u, v)
       else
         call advance_intact(nodes, i, model, forces, cohesive, u, v)
@@ -122,9 +122,9 @@ contains
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
     !> Jumps without tractions, (3, n)
-    real(wp), intent(in) :: trial(:, :)
+    real(wp), contiguous, intent(in) :: trial(:, :)
     !> Forces on the jumps, (3, n)
-    real(wp), intent(out) :: forces(:, :)
+    real(wp), contiguous, intent(out) :: forces(:, :)
     real(wp) :: past(3, size(trial, 2))
 
     associate (stacks => nodes%stacks, work => nodes%workspaces(size(trial, 2)), p => nodes%stacks%first(i), &
