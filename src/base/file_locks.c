@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Descriptor that holds the lock; -1: there is none, as the file can't be opened or locked or is a device, which may
+/* Descriptor that holds the lock; -1: there is none, as the file cannot be opened or locked or is a device, which may
    serve many; -2: another process holds it. Nothing is written, but a file that isn't there is made. */
 int implam_lock_file(const char *path)
 {

@@ -173,7 +173,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (c_rename(from//c_null_char, to//c_null_char) == 0) return
-    call fail(error, exit_files, "Can't rename "//from//' to '//to//'.')
+    call fail(error, exit_files, "Cannot rename "//from//' to '//to//'.')
   end subroutine rename_file
 
   !> Removes a file if it exists. A failure is reported when the file is written again.
@@ -198,7 +198,7 @@ contains
     end do
     status = c_mkdir(path//c_null_char, all_permissions)
     ! Another process may have made the folder, so only the result matters.
-    if (.not. is_directory(path)) call fail(error, exit_files, "Can't make the folder "//path//'.')
+    if (.not. is_directory(path)) call fail(error, exit_files, "Cannot make the folder "//path//'.')
   end subroutine make_directory
 
   !> Reads an entire file, byte by byte.
@@ -220,7 +220,7 @@ contains
     if (allocated(error)) return
     stream = c_fopen(path//c_null_char, 'rb'//c_null_char)
     if (.not. c_associated(stream)) then
-      call fail(error, exit_files, path//": can't be opened.")
+      call fail(error, exit_files, path//": cannot be opened.")
       return
     end if
     allocate (buffer(max_bytes + 1))

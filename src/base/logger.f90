@@ -85,7 +85,7 @@ contains
       return
     end if
     call self%file%open(path, merge('a', 'w', append))
-    if (self%file%failed) call fail(error, exit_files, "Can't open the log "//trim(path)//' for writing.')
+    if (self%file%failed) call fail(error, exit_files, "Cannot open the log "//trim(path)//' for writing.')
     call system_clock(self%flushed)
   end subroutine open
 

@@ -43,7 +43,7 @@ contains
     call file%put(head(bytes, crc))
     call file%synchronise()
     call file%close()
-    if (status /= 0 .or. file%failed) call fail(error, exit_files, "Can't complete the checkpoint "//path//'.')
+    if (status /= 0 .or. file%failed) call fail(error, exit_files, "Cannot complete the checkpoint "//path//'.')
   end subroutine seal
 
   !> Checks that a file is a valid checkpoint.
@@ -62,7 +62,7 @@ contains
     if (status == 0) call read_head(path, found, status)
     if (status == 0) call read_body(path, bytes, crc, status)
     if (status /= 0) then
-      call fail(error, exit_files, "Can't read the checkpoint "//path//'.')
+      call fail(error, exit_files, "Cannot read the checkpoint "//path//'.')
     else if (found(:len(title)) /= title) then
       call fail(error, exit_files, path//' is not a checkpoint of Implam.')
     else if (index(found, end_of_line//'format ') > 0 .and. &
@@ -85,7 +85,7 @@ contains
     call entries%open(path, 'r')
     call entries%synchronise()
     call entries%close()
-    if (entries%failed) call fail(error, exit_files, "Can't write the folder "//path//' out to the disk.')
+    if (entries%failed) call fail(error, exit_files, "Cannot write the folder "//path//' out to the disk.')
   end subroutine synchronise_folder
 
   !> The head of a file with a given body.

@@ -84,7 +84,7 @@ contains
     call self%file%open(communicator, path, writable=.false.)
     call read_provenance(self%file, 'provenance', self%provenance)
     if (.not. allocated(self%file%failure)) return
-    call fail(error, exit_files, "Can't read the checkpoint "//path//': '//self%file%failure//'.')
+    call fail(error, exit_files, "Cannot read the checkpoint "//path//': '//self%file%failure//'.')
     call self%file%close()
   end subroutine open_for_loading
 
@@ -97,7 +97,7 @@ contains
 
     call self%file%close()
     if (allocated(self%file%failure)) then
-      call fail(error, exit_files, "Can't "//trim(merge('read ', 'write', self%loading))//' the checkpoint ' &
+      call fail(error, exit_files, "Cannot "//trim(merge('read ', 'write', self%loading))//' the checkpoint ' &
                 //self%path//': '//self%file%failure//'.')
       if (.not. self%loading .and. self%file%communicator%is_root()) call remove_file(aside(self%path))
     else if (.not. self%loading) then

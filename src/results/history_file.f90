@@ -195,7 +195,7 @@ contains
     !> Set if so
     type(error_t), allocatable, intent(inout) :: error
 
-    if (self%file%failed) call fail(error, exit_files, "Can't write the history "//self%path &
+    if (self%file%failed) call fail(error, exit_files, "Cannot write the history "//self%path &
                                     //': does the folder exist, is the disk full or the quota used up?')
     call self%communicator%agree(error)
   end subroutine check
@@ -225,7 +225,7 @@ contains
     kept = 0
     open (newunit=unit, file=from, access='stream', form='unformatted', action='read', status='old', iostat=status)
     if (status /= 0) then
-      call fail(error, exit_files, "Can't read the history "//from//'.')
+      call fail(error, exit_files, "Cannot read the history "//from//'.')
       return
     end if
     read (unit, iostat=status) found
@@ -236,7 +236,7 @@ contains
       same = kept < rows_to_keep
       if (.not. same) same = ends_with(unit, bytes, last)
       if (status /= 0) then
-        call fail(error, exit_files, "Can't read the history "//from//'.')
+        call fail(error, exit_files, "Cannot read the history "//from//'.')
       else if (.not. same) then
         call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
                   to_text(rows_to_keep)//' differs; move it away, or take the checkpoint of that run.')
@@ -244,8 +244,8 @@ contains
         call copy%open(to, 'w')
         call copy_bytes(unit, bytes, copy, status)
         call copy%close()
-        if (copy%failed) call fail(error, exit_files, "Can't write "//to//'.')
-        if (status /= 0) call fail(error, exit_files, "Can't read the history "//from//'.')
+        if (copy%failed) call fail(error, exit_files, "Cannot write "//to//'.')
+        if (status /= 0) call fail(error, exit_files, "Cannot read the history "//from//'.')
       end if
     end if
     close (unit, iostat=status)

@@ -167,7 +167,7 @@ def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lo
 def _is_useless(checkpoint: Path, folder: Path) -> bool:
     """Return whether a restart ended because its checkpoint can't be read, rather than a file not be written."""
     printed = last_words(read_text(folder / OUTPUT, "the output"))
-    return checkpoint.name in printed and not printed.startswith(("Can't write", "Can't complete"))
+    return checkpoint.name in printed and not printed.startswith(("Cannot write", "Cannot complete"))
 
 
 def _children_time() -> float:
