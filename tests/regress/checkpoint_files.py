@@ -144,8 +144,8 @@ def check_full(implam, folder, _):
 
 
 def check_limit(implam, folder, launcher):
-    """The limit of the size of files, which by default ends a program by a signal; met at the start and while fields are
-    written. On two ranks HDF5 would wait for ever."""
+    """The limit of the size of files, which by default ends a program by a signal, met at the start and while fields
+    are written. On two ranks HDF5 would wait for ever."""
     settings = ["mesh%elements=24, 24", "output%fields_every=10e-6"]
     deck = write_deck(folder, DAMAGE, settings)
     for ranks in (1, 2):
