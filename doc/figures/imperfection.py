@@ -6,7 +6,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-AMPLITUDES, STRENGTHS = (0.01, 0.03, 0.1, 0.3, 1.0), (459, 441, 416, 382, 331)
+AMPLITUDES, STRENGTHS = (0.01, 0.03, 0.1, 0.3, 1.0), (460, 441, 415, 381, 332)
 EIGENVALUE = 438
 
 
