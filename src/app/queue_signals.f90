@@ -15,7 +15,7 @@ module queue_signals
     subroutine announce_stop_signals() bind(c, name='implam_announce_stop_signals')
     end subroutine announce_stop_signals
 
-    !> Reports a signal that the run has noticed, unless it has been reported.
+    !> Reports a signal that the run has received, unless it has been reported.
     subroutine announce_stop() bind(c, name='implam_announce_stop')
     end subroutine announce_stop
 
