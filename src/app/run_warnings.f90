@@ -15,15 +15,15 @@ module run_warnings
   use plate_options, only: max_slope
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use roundings, only: rounding
-  use run_records, only: run_record_t, warning_border, warning_core, warning_energy, warning_perforation, &
-                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
-                         warning_slopes, &
-                         warning_steps, warning_membrane
+  use run_records, only: run_record_t, warning_border, warning_contact, warning_core, warning_energy, &
+                         warning_perforation, warning_indentation, warning_kinetic, warning_ledger, warning_loss, &
+                         warning_scaled, warning_slopes, warning_steps, warning_membrane
   use run_moments, only: moment
+  use stepping_parameters, only: is_explicit
   use states, only: state_t
   use text, only: line_t, append
   use time_stepping, only: time_stepper_t
-  use warning_texts, only: warning_text, max_deflection_ratio, max_kinetic, max_scaled
+  use warning_texts, only: warning_text, max_contact, max_deflection_ratio, max_kinetic, max_scaled
   implicit none
   private
   public :: report_warnings, report_last_warnings, reported_warnings
@@ -118,7 +118,7 @@ contains
     type(line_t), allocatable, intent(out) :: warnings(:)
     real(wp) :: thickness
     integer :: zone
-    logical :: exceeded(3), has_begun
+    logical :: exceeded(3)
 
     allocate (warnings(0))
     thickness = deck%expected%scales%thickness
@@ -141,13 +141,7 @@ contains
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
     call record%note_scaled(now%ledger%scaled, energy_check%largest)
-    has_begun = now%time > slow_start*deck%stepping%time%end
-    if (deck%is_impact() .or. has_begun) then
-      if (record%scaled_energy > max_scaled*energy_check%largest) call add(warning_scaled, 0)
-    end if
-    if (is_slow_motion(deck) .and. has_begun) then
-      if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) call add(warning_kinetic, 0)
-    end if
+    call add_motion_warnings(deck, now, energy_check%largest, record, warnings)
     call add_energy_warnings(deck, exceeded, now%time, record, warnings)
 
   contains
@@ -160,6 +154,33 @@ contains
       call add_warning(deck, kind, zone, now%time, record, warnings)
     end subroutine add
   end subroutine find_warnings
+
+  !> Adds warnings of kinetic energy: of motions with scaled inertia, lost as surfaces meet, and of a slow motion.
+  subroutine add_motion_warnings(deck, now, energy, record, warnings)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> Largest energy so far
+    real(wp), intent(in) :: energy
+    !> Receives the warnings
+    type(run_record_t), intent(inout) :: record
+    !> Receives their sentences
+    type(line_t), allocatable, intent(inout) :: warnings(:)
+    logical :: has_begun
+
+    has_begun = now%time > slow_start*deck%stepping%time%end
+    if (deck%is_impact() .or. has_begun) then
+      if (record%scaled_energy > max_scaled*energy) &
+        call add_warning(deck, warning_scaled, 0, now%time, record, warnings)
+      if (is_explicit(deck%stepping) .and. now%ledger%contact > max_contact*energy) &
+        call add_warning(deck, warning_contact, 0, now%time, record, warnings)
+    end if
+    if (is_slow_motion(deck) .and. has_begun) then
+      if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) &
+        call add_warning(deck, warning_kinetic, 0, now%time, record, warnings)
+    end if
+  end subroutine add_motion_warnings
 
   !> Adds warnings of energies.
   subroutine add_energy_warnings(deck, exceeded, time, record, warnings)

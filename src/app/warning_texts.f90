@@ -3,9 +3,9 @@ module warning_texts
   use deck_contents, only: deck_t
   use energy_checks, only: energy_tolerance
   use kinds, only: wp
-  use run_records, only: warning_border, warning_core, warning_energy, warning_perforation, warning_indentation, &
-                         warning_kinetic, warning_ledger, warning_loss, warning_scaled, warning_slopes, &
-                         warning_steps, warning_membrane
+  use run_records, only: warning_border, warning_contact, warning_core, warning_energy, warning_perforation, &
+                         warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
+                         warning_slopes, warning_steps, warning_membrane
   use plate_options, only: max_slope
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit
@@ -25,6 +25,9 @@ module warning_texts
   !> root of energies: 2 % of energy is 1 % of force, the error permitted for the default factor. On decks of input/ it
   !> is .02 to 1 % (input/peanut.nml to input/small/breaking_bursts.nml).
   real(wp), parameter, public :: max_scaled = 0.02_wp
+  !> Permitted fraction of energy that contact dissipates by central differences: 1 % of force, as above. In the impacts
+  !> of input/ it is at most .8 % (input/experiments/im7_8552_d7136_30J.nml).
+  real(wp), parameter, public :: max_contact = 0.02_wp
 
 contains
 
@@ -65,6 +68,10 @@ contains
     case (warning_scaled)
       text = 'The kinetic energy of motions with scaled inertia has exceeded '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
+    case (warning_contact)
+      text = 'Contact of surfaces or with the frame has dissipated more than '//short_text(100*max_contact)// &
+             ' % of the energy by '//at//' (energy_contact), as nodes that meet come to rest against each other: '// &
+             'compare with a run on finer cells.'
     case (warning_indentation)
       text = 'The indentation has exceeded the thickness of the laminate or the radius of the impactor since '//at// &
              ': no contact law is valid there; take less energy or a larger radius.'
