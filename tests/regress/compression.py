@@ -38,7 +38,7 @@ from solver_runs import (
 IMPACT, COMPRESSION = "cai_impact", "cai_compression"
 CHECKPOINT = f"{IMPACT}_restart.h5"
 AREA = 40e-3 * 2.4e-3
-REST_TIME, LENGTH = 80e-6, 60e-3
+REST_TIME, LENGTH = 270e-6, 60e-3
 # Of all energy. Measured: 2e-10 before plies and interfaces break again, 2e-9 with cracks that close, 3.6e-3 in the
 # collapse on these coarse cells.
 CLOSED, CLOSED_IN_COLLAPSE = 5e-8, 1e-2
@@ -220,7 +220,7 @@ def check_unfolded(implam, folder, half):
     line = re.search(r"&line .*/", text).group()
     other = line.replace("at=30e-3", "at=-30e-3").replace("-0.4e-3", "0.4e-3")
     text = text.replace("symmetry='point'", "symmetry='none'").replace("elements=14", "elements=28")
-    text = text.replace("end=0.59e-3", "end=0.3e-3")
+    text = text.replace("end=0.59e-3", "end=0.4e-3")
     (folder / f"{COMPRESSION}.nml").write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
     run([implam, f"{COMPRESSION}.nml"], folder=folder)
     whole = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["mapping"]

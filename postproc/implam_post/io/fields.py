@@ -255,7 +255,7 @@ def _reason(error: Exception) -> str:
     """Return what is wrong; libraries describe it by their internals, which do not help a user."""
     if isinstance(error, _MemberError):
         return str(error)
-    if lacking := re.search(r"object '([^']*)' does not exist", str(error)):
+    if lacking := re.search(r"object '([^']*)' doesn.t exist", str(error)):
         return f"it has no {lacking[1]}"
     if isinstance(error, OSError) and error.errno:
         return os.strerror(error.errno).lower()
