@@ -1,6 +1,6 @@
 # How the tests of Implam are registered.
 
-# The same processors, threads and launcher settings for every test, so that two tests at a time don't
+# The same processors, threads and launcher settings for every test, so that two tests at a time do not
 # disturb each other: one thread a rank, ranks not bound to cores, more ranks than cores allowed. Open MPI 4 and 5 have
 # names of their own for the last two.
 set(IMPLAM_TEST_ENVIRONMENT OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

@@ -32,6 +32,6 @@ def deck(text: str, *changes: tuple[str, str]) -> Deck:
     """Return a deck with some of its text changed; every change must find its text."""
     for old, new in changes:
         if old not in text:
-            raise ValueError(f"{old!r} isn't in the deck")
+            raise ValueError(f"{old!r} is not in the deck")
         text = text.replace(old, new)
     return Deck(text, Path("test.nml"))

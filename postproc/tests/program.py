@@ -13,10 +13,10 @@ SMALL = ROOT / "input" / "small"
 
 
 def implam() -> Path:
-    """Return the path of the program; without it a test can't pass."""
+    """Return the path of the program; without it a test cannot pass."""
     path = Path(os.environ.get("IMPLAM") or ROOT / "build" / "implam").absolute()
     if not path.is_file():
-        raise FileNotFoundError(f"{path} isn't there: build implam, or name it by IMPLAM in the environment")
+        raise FileNotFoundError(f"{path} is not there: build implam, or name it by IMPLAM in the environment")
     return path
 
 

@@ -73,8 +73,8 @@ class CommandTest(unittest.TestCase):
         for command, path, sentence in ((plot.main, picture, "neither the fields NAME.h5 nor the history"),
                                         (plot.main, self.deck, "neither the fields NAME.h5 nor the history"),
                                         (plot.main, self.folder / "case_restart.h5", "neither the fields"),
-                                        (report.main, picture, "isn't NAME_summary.json"),
-                                        (report.main, self.folder / "case.h5", "isn't NAME_summary.json"),
+                                        (report.main, picture, "is not NAME_summary.json"),
+                                        (report.main, self.folder / "case.h5", "is not NAME_summary.json"),
                                         (check_impact.main, picture, "it is no text")):
             code, text = self.run_quietly(command, path)
             self.assertEqual((code, len(text.splitlines())), (4, 1), text)

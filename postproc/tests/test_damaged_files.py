@@ -128,7 +128,7 @@ class DamagedFilesTest(unittest.TestCase):
                 with self.subTest(name), h5py.File(path, "a") as file:
                     file["provenance/deck"] = np.bytes_(DECK)
                     file[f"meshes/00000001/{name}"][place] = value
-                with self.assertRaisesRegex(FileError, "don't make a plate of 3 plies"):
+                with self.assertRaisesRegex(FileError, "do not make a plate of 3 plies"):
                     results.read_panel(path)
 
     def test_histories(self) -> None:

@@ -28,6 +28,6 @@ contains
       if (status == 0) write (unit, '(a)', iostat=status) lines(i)%text
     end do
     if (status == 0) close (unit, iostat=status)
-    if (status /= 0) call fail(error, exit_files, 'Can''t write '//path//'.')
+    if (status /= 0) call fail(error, exit_files, 'Cannot write '//path//'.')
   end subroutine write_new_file
 end module new_files

@@ -69,7 +69,7 @@ contains
       call size_deck(job, error)
     end if
     if (job%chain .and. job%tasks > 0 .and. job%queue == 'pbs') call fail(error, exit_usage, &
-      'An array of PBS can''t be a chain; list the remaining runs with implam-sweep --array and submit that list.')
+      'An array of PBS cannot be a chain; list the remaining runs with implam-sweep --array and submit that list.')
     if (allocated(error)) return
     allocate (script(0))
     if (job%queue == 'slurm') then

@@ -77,7 +77,7 @@ contains
              ': no contact law is valid there; take less energy or a larger radius.'
     case (warning_slopes)
       text = 'The slope of the plate has exceeded '//to_text(max_slope)//' since '//at// &
-             ': its strains assume small rotations; later results are not valid.'
+             ': strains of moderate rotations are off by 2 % at that slope, and by more where it is steeper.'
     case (warning_steps)
       text = 'The error of steps has exceeded the tolerance of &adapt since '//at// &
              ' at the smallest step, which is too long for waves emitted by failures: compare with a run at an &

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 /* Descriptor that holds the lock; -1: there is none, as the file cannot be opened or locked or is a device, which may
-   serve many; -2: another process holds it. Nothing is written, but a file that isn't there is made. */
+   serve many; -2: another process holds it. Nothing is written, but a file that is not there is made. */
 int implam_lock_file(const char *path)
 {
   struct stat kind;

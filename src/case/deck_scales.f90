@@ -108,10 +108,10 @@ contains
     if (.not. deck%accuracy > 0) return
     associate (o => deck%expected)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
-        call remark(deck%settings, problems, case_group, key_accuracy, 'can''t be verified by preliminary elastic '// &
+        call remark(deck%settings, problems, case_group, key_accuracy, 'cannot be verified by preliminary elastic '// &
                     'impacts for this step: so many steps would take them too long.')
       else if (100*(o%step_error(1) + o%mesh_error(1)) > max_error_ratio*deck%accuracy) then
-        call remark(deck%settings, problems, case_group, key_accuracy, 'isn''t reached: by a preliminary elastic '// &
+        call remark(deck%settings, problems, case_group, key_accuracy, 'is not reached: by a preliminary elastic '// &
                     'impact the largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')
       end if
     end associate

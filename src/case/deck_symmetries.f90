@@ -46,7 +46,7 @@ contains
     associate (s => deck%settings, symmetry => deck%plate%symmetry)
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
         coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
-        'A45 isn''t 0), so a '//part//' can''t represent the plate; use ''none'' or ''point''.')
+        'A45 is not 0), so a '//part//' cannot represent the plate; use ''none'' or ''point''.')
       if (is_eccentric(deck%mesh%struck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &

@@ -260,7 +260,7 @@ contains
     if (.not. scan%collecting) then
       call report_stray_value(scan, token, problems)
     else if (token%kind == token_cut) then
-      call mark_faulty(scan, token%line, 'has a text whose closing quote isn''t in its line; close it', problems, &
+      call mark_faulty(scan, token%line, 'has a text whose closing quote is not in its line; close it', problems, &
                        any_key)
     else
       value%quoted = token%kind == token_quoted

@@ -37,7 +37,7 @@ module impactor_deck
     'impactor | rise | real | 1 | time | = end/4 | >= 0 | &
       &Time in which the prescribed velocity of the impactor rises smoothly to its constant value.', &
     'impactor | radius | real | 1 | length | none | > 0 | &
-      &Radius of the nose; needed if the contact stiffness k isn''t given.', &
+      &Radius of the nose; needed if the contact stiffness k is not given.', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
       &Area on which the contact force acts: the patch, or that in contact with a spherical nose if it is larger.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &

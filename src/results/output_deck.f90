@@ -22,7 +22,7 @@ module output_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: output_rows(*) = [character(len=key_row_length) :: &
     'output | directory | text | 1 | - | ''.'' | not empty | &
-      &Folder of the results, made if it isn''t there; --output overrides it.', &
+      &Folder of the results, made if it is not there; --output overrides it.', &
     'output | history_every | real | 1 | time | = 0, with central differences about 2000 rows | >= 0 | &
       &Time between rows of the history; 0: every accepted step.', &
     'output | fields_every | real | 1 | time | 0 | >= 0 | &

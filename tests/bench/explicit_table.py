@@ -128,7 +128,7 @@ def damaging(program, options):
     ended = quick = recorded = worked = closed = 0
     for seed in range(options.first, options.first + options.count):
         model = damaging_models.model(seed)
-        run = Run(program, explicit(damaging_models.deck(model)), seconds=600)
+        run = Run(program, explicit(damaging_models.deck(model), options.time), seconds=600)
         if run.wrong():
             row(f'damaging {seed}', run.wrong(), '', False)
             continue
@@ -159,7 +159,7 @@ def breaking(program, options):
     """Random models whose plies break."""
     held, worst = 0, [0.0, 0.0, 0.0]
     for seed in range(options.count):
-        run = Run(program, explicit(breaking_models.deck(seed, 1)), seconds=600)
+        run = Run(program, explicit(breaking_models.deck(seed, 1), options.time), seconds=600)
         if run.wrong():
             row(f'breaking {seed}', run.wrong(), '', False)
             continue
@@ -276,6 +276,7 @@ def main():
     parser.add_argument('parts', nargs='*', choices=[*PARTS, []], metavar='PART', help='all if none is given')
     parser.add_argument('--count', type=int, default=20, help='random models of a part')
     parser.add_argument('--first', type=int, default=1, help='first random model of damaging')
+    parser.add_argument('--time', default='', help='keys of &time of damaging and breaking, as step_factor=0.45')
     parser.add_argument('--max-steps', type=float, default=MAX_STEPS, help='longer elastic runs are left out')
     parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas; extremes by words')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')

@@ -19,7 +19,7 @@ EXPECTATION = re.compile(rb"^! expect(-warning)? (\d+): (.*?)\r?$", re.MULTILINE
 
 
 def run(program, path):
-    """Exit code and output lines of a check that must not take long, and must do without MPI: here it can't start."""
+    """Exit code and output lines of a check that must not take long, and must do without MPI: here it cannot start."""
     done = subprocess.run([program, "check", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60,
                           env=dict(os.environ, OMPI_MCA_pml="none"))
     return done.returncode, done.stdout.decode("utf-8", "replace").splitlines()

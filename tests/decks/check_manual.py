@@ -72,12 +72,12 @@ def check_table(program, topic, wrong):
             page.write(text)
     written = TABLE.search(text)
     if not written or written.group(0).strip() != table:
-        wrong.append(f"{path}: the table isn't the program's; run check_manual.py IMPLAM --write")
+        wrong.append(f"{path}: the table is not the program's; run check_manual.py IMPLAM --write")
     return text
 
 
 def check_examples(program, topic, text, wrong):
-    """Note in `wrong` which examples of a page aren't decks."""
+    """Note in `wrong` which examples of a page are not decks."""
     path = os.path.join(MANUAL, topic + ".md")
     examples = EXAMPLE.findall(text)
     if not examples:
@@ -88,7 +88,7 @@ def check_examples(program, topic, text, wrong):
             deck.flush()
             code, output = ask(program, "check", deck.name)
         if code != 0 or ": warning: " in output:
-            wrong.append(f"{path}: the example doesn't pass: {output}")
+            wrong.append(f"{path}: the example does not pass: {output}")
 
 
 def check_materials(program, wrong):
@@ -102,12 +102,12 @@ def check_materials(program, wrong):
         with open(path, "w", encoding="utf-8") as page:
             page.write(text)
     if table not in text:
-        wrong.append(f"{path}: the tables aren't the program's; run check_manual.py IMPLAM --write")
+        wrong.append(f"{path}: the tables are not the program's; run check_manual.py IMPLAM --write")
     check_examples(program, "materials", text, wrong)
 
 
 def check_ledger(program, wrong):
-    """Note in `wrong` which entries of the energy ledger its page doesn't define."""
+    """Note in `wrong` which entries of the energy ledger its page does not define."""
     path = os.path.join(MANUAL, "energy_ledger.md")
     with open(path, encoding="utf-8") as page:
         defined = re.findall(r"^\*\*(\w+)\*\*", page.read(), re.MULTILINE)
@@ -134,7 +134,7 @@ def written_members():
 
 
 def check_summary(program, wrong):
-    """Note in `wrong` which members of a summary its page doesn't name, and lines that a run doesn't print."""
+    """Note in `wrong` which members of a summary its page does not name, and lines that a run does not print."""
     path = os.path.join(MANUAL, "summary.md")
     with open(path, encoding="utf-8") as page:
         text = page.read()
@@ -147,16 +147,16 @@ def check_summary(program, wrong):
     ledger = {name for name in members if name.startswith("energy_")}
     missing = sorted(members - ledger - named)
     if missing:
-        wrong.append(f"{path}: it doesn't name {', '.join(missing)}")
+        wrong.append(f"{path}: it does not name {', '.join(missing)}")
     # Round-off differs between machines.
     shown = re.search(r"^```text\n(.*?)^```", text, re.DOTALL | re.MULTILINE)[1]
     for line in shown.splitlines():
         if "energy error" not in line and line.rstrip() not in [one.rstrip() for one in printed.splitlines()]:
-            wrong.append(f"{path}: the program doesn't print: {line}")
+            wrong.append(f"{path}: the program does not print: {line}")
 
 
 def check_exit_codes(program, wrong):
-    """Note in `wrong` which exit codes the page of the command line doesn't have, or has otherwise."""
+    """Note in `wrong` which exit codes the page of the command line does not have, or has otherwise."""
     path = os.path.join(MANUAL, "command_line.md")
     with open(path, encoding="utf-8") as page:
         listed = re.findall(r"^\| (\d+) \| [^|]+ \|$", page.read(), re.MULTILINE)

@@ -52,10 +52,10 @@ def faults_of_rows(program, topic):
     for row in rows:
         unknown = words_of(row["unit"]) - UNIT_WORDS - ONLY_IN_RESULTS
         if unknown or not row["unit"]:
-            yield f"{topic}: {row['name']} has the unit {row['unit']}, which isn't made of the deck's"
+            yield f"{topic}: {row['name']} has the unit {row['unit']}, which is not made of the deck's"
         # A row that is too long for its text loses its end.
         if not re.fullmatch(r"`\w+`", row["name"]) or not row.get("meaning", "").endswith("."):
-            yield f"{topic}: the row of {row['name']} isn't whole: {row}"
+            yield f"{topic}: the row of {row['name']} is not whole: {row}"
 
 
 def groups(program):

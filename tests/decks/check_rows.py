@@ -102,7 +102,7 @@ def breaches(sources, groups, keys):
     wanted = [(group,) for group in groups] + keys
     found = [f"&{'%'.join(name)} has {len(rows.get(name, []))} rows: {', '.join(rows.get(name, []))}"
              for name in wanted if len(rows.get(name, [])) != 1]
-    found += [f"{places[0]}: `implam explain` doesn't know the row of &{'%'.join(name)}"
+    found += [f"{places[0]}: `implam explain` does not know the row of &{'%'.join(name)}"
               for name, places in rows.items() if name not in wanted]
     others = {(path, text): reason for path, several, reason in OTHERS for text in several.split()}
     known = set()
@@ -136,7 +136,7 @@ def main():
     for spoilt in ("x = 'density'\n", "x = \"Below_Ply\" ! 'it''s'\n", "x = 'E1, &\n  &E2'\n",
                    "'plate | edges |a|b|c|d|e|f'"):
         if len(breaches(dict(sources, **{path: sources[path] + spoilt}), groups, keys)) <= len(found):
-            found.append(f"the check doesn't see {spoilt!r}")
+            found.append(f"the check does not see {spoilt!r}")
     print("\n".join(found) or f"{len(groups)} groups and {len(keys)} keys are named in their folders alone")
     return 1 if found else 0
 

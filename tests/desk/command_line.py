@@ -34,9 +34,9 @@ def check_help(implam):
     require(page == output_of(implam, "-h") == output_of(implam, "help"), "-h, help and --help differ.")
     require(max(map(len, page.splitlines())) <= 96, "A line of the help is longer than 96 characters.")
     for word in ("check", "explain", "restart", "new", "--output", "--wall-limit", "75", "USR1"):
-        require(word in page, f"The help doesn't speak of {word}.")
+        require(word in page, f"The help does not speak of {word}.")
     bare = output_of(implam, code=EXIT_USAGE)
-    require(bare.startswith(page) and "No deck given" in bare, "`implam` alone doesn't help.")
+    require(bare.startswith(page) and "No deck given" in bare, "`implam` alone does not help.")
     print("help: done")
 
 
@@ -63,16 +63,16 @@ def check_slips(implam, folder):
     deck = folder / "small.nml"
     shutil.copy(HERE.parents[1] / "input" / "small" / "cohesive.nml", deck)
     version = output_of(implam, "--version")
-    require("To cite: The Implam developers" in version, f"The version doesn't say how to cite: {version}")
+    require("To cite: The Implam developers" in version, f"The version does not say how to cite: {version}")
     for word in ("version", "-v"):
-        require(output_of(implam, word) == version, f"{word} doesn't print the version.")
+        require(output_of(implam, word) == version, f"{word} does not print the version.")
     for words, meant in ((["chek", deck], "did you mean check?"), (["exlpain"], "did you mean explain?"),
                          (["--ouput", "x", deck], "did you mean --output?"),
                          (["--check", deck], "did you mean implam check?"), (["explain", "lnegth"], "mean length?"),
                          (["--verify=1", deck], "takes no value"), (["--wall-limit=", deck], "number of seconds"),
                          (["--no-such=5", deck], "see implam help"),
                          (["nothing", "else"], "one deck")):
-        require(meant in output_of(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} isn't {meant}")
+        require(meant in output_of(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} is not {meant}")
     require("not the deck" in output_of(implam, "restart", str(deck), code=EXIT_FILES), "A deck is restarted.")
     text = deck.read_text(encoding="utf-8")
     for right, slip, meant in (("&plate", "&palte", "&plate"), ("velocity=", "veloctiy=", "velocity"),
@@ -81,7 +81,7 @@ def check_slips(implam, folder):
         printed = output_of(implam, "check", str(deck), code=EXIT_DECK)
         require(f"did you mean {meant}?" in printed, printed)
     deck.write_text(text, encoding="utf-8")
-    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A file that isn't there.")
+    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A file that is not there.")
     output_of(implam, str(deck), f"--output={folder / 'equals'}")
     require((folder / "equals" / "cohesive_summary.json").exists(), "--output=DIR has no effect.")
     print("slips: done")
@@ -150,7 +150,7 @@ def check_pages(implam, folder):
 def check_zsh(implam, folder):
     """In a zsh as it is started by hand, with the file where zsh looks for completions, the first key completes."""
     if not shutil.which("zsh"):
-        print("skipped: zsh isn't installed, its completions are not tried")
+        print("skipped: zsh is not installed, its completions are not tried")
         return
     (folder / "_implam").write_text(output_of(implam, "completion", "zsh"), encoding="utf-8")
     for typed, expected in (("implam expl", "implam explain "), ("implam explain plate.len", "plate.length "),
@@ -172,7 +172,7 @@ def check_zsh(implam, folder):
 
 
 def read_until(terminal, words):
-    """Return what a terminal shows up to some words; all of half a minute if they don't come."""
+    """Return what a terminal shows up to some words; all of half a minute if they do not come."""
     said, latest = "", time.monotonic() + 30
     while words not in said and time.monotonic() < latest:
         if select.select([terminal], [], [], 0.1)[0]:
@@ -204,7 +204,7 @@ def check_new(implam, folder):
     history = read_history(folder / "results" / "coarse_history.csv")
     area = history["delaminated_area"]
     print(f"new: peak force {max(history['force']):.0f} N, area {area[0]:.3g} to {area[-1]:.3g} m2")
-    require(area[0] == 0 and area[-1] > 1e-4 and history["force"][-1] == 0, "No growth, or the blow isn't over.")
+    require(area[0] == 0 and area[-1] > 1e-4 and history["force"][-1] == 0, "No growth, or the blow is not over.")
 
 
 def run_coarse(implam, folder):

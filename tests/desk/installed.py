@@ -30,7 +30,7 @@ def main():
     work.mkdir(parents=True)
     subprocess.run([cmake, "--install", build, "--prefix", prefix], check=True, stdout=subprocess.DEVNULL)
     for name in FILES:
-        require((prefix / name).is_file() and (prefix / name).stat().st_size > 0, f"{name} isn't installed.")
+        require((prefix / name).is_file() and (prefix / name).stat().st_size > 0, f"{name} is not installed.")
     implam, deck = prefix / "bin/implam", prefix / "share/implam/input/small/delamination.nml"
     subprocess.run([implam, deck, "--output", work], check=True, cwd=work, stdout=subprocess.DEVNULL, timeout=120)
     require((work / "delamination_history.csv").is_file(), "The installed program writes no history.")

@@ -45,7 +45,7 @@ def check_chain(slurm, folder, number, expected):
     require(job["JobState"] == "COMPLETED", f"The chain has ended with {job['JobState']}:\n{printed}")
     require(int(job["Restarts"]) >= PARTS - 1, f"The chain has {job['Restarts']} requeues only.")
     history = (folder / "results/deck_history.csv").read_bytes()
-    require(history == expected, "The history of the chain isn't that of the undisturbed run.")
+    require(history == expected, "The history of the chain is not that of the undisturbed run.")
 
 
 SWEEP = """deck = "swept.nml"
@@ -89,9 +89,9 @@ exec {HERE}/held.sh "${{!#}}/damage_restart.h5" {implam} "$@" """)
     states, again = [job["JobState"] for job in ended], [int(job["Restarts"]) for job in ended]
     print(f"array: {', '.join(states)}, requeued {again} times")
     # scancel sends again where Slurm requires it, so that the task may be stopped twice.
-    require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks haven't ended so.")
+    require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks have not ended so.")
     run([*sweep, "--output", "queued", "--program", implam, "--table"], folder=folder)
-    require(table_of(folder / "queued") == table_of(folder / "plain"), "The table isn't that without a queue.")
+    require(table_of(folder / "queued") == table_of(folder / "plain"), "The table is not that without a queue.")
 
 
 def main():

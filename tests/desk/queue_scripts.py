@@ -32,12 +32,12 @@ def check_requests(implam, folder):
     run([implam, "queue", "slurm", "--time", "1:30:00"], folder=folder)  # the only deck of the folder
     script = (folder / "deck.slurm").read_text(encoding="utf-8")
     for line in ("--ntasks=1", "--time=1:30:00", "--signal=B:USR1@600", "--no-requeue"):
-        require(line in script, f"The script doesn't ask for {line}.")
+        require(line in script, f"The script does not ask for {line}.")
     run([implam, "queue", "slurm", "deck.nml"], EXIT_FILES, folder)
     require((folder / "deck.slurm").read_text(encoding="utf-8") == script, "The script was overwritten.")
     run([implam, "queue", "pbs", "deck.nml", "--ranks", "8"], folder=folder)
     script = (folder / "deck.pbs").read_text(encoding="utf-8")
-    require("ncpus=8:mpiprocs=8" in script and "mpirun -n 8" in script, "The script doesn't ask for eight ranks.")
+    require("ncpus=8:mpiprocs=8" in script and "mpirun -n 8" in script, "The script does not ask for eight ranks.")
     for words, code in ((["lsf", "deck.nml"], EXIT_USAGE), (["slurm", "none.nml"], EXIT_DECK), ([], EXIT_USAGE),
                         (["slurm", "deck.nml", "--time", "90"], EXIT_USAGE),
                         (["slurm", "deck.nml", "--ranks", "0"], EXIT_USAGE), (["slurm", "array.txt"], EXIT_FILES)):
@@ -92,11 +92,11 @@ def check_chain_of_pbs(implam, folder):
             break
         parts += 1
         require(calls[-1] == f"qsub -v IMPLAM_PARTS={parts} deck.pbs", f"The job submits {calls[-1:]}.")
-        require(parts < 60, "The chain doesn't end.")
+        require(parts < 60, "The chain does not end.")
     print(f"chain of PBS: {parts + 1} jobs")
     require(code == 0 and len(calls) == parts >= 1, f"The chain ends with {code} after {parts} jobs.")
     same = (folder / "results/deck_history.csv").read_bytes() == (folder / "whole/deck_history.csv").read_bytes()
-    require(same, "The history of the chain isn't that of the undisturbed run.")
+    require(same, "The history of the chain is not that of the undisturbed run.")
 
 
 def check_signals(implam, folder):
@@ -116,7 +116,7 @@ def check_signals(implam, folder):
     again = subprocess.run(["bash", script, "restart"], cwd=folder, stdout=subprocess.DEVNULL, timeout=120, check=False)
     ended = len((folder / "results/deck_history.csv").read_text(encoding="utf-8").splitlines())
     print(f"signals: {rows} rows, then {ended}")
-    require(again.returncode == 0 and ended > rows, "The job doesn't go on.")
+    require(again.returncode == 0 and ended > rows, "The job does not go on.")
 
 
 def main():

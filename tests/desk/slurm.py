@@ -141,4 +141,4 @@ class Slurm:
             if dead:
                 raise MissingError(f"{dead[0]} has ended; its log is in {self.folder}")
             time.sleep(0.5)
-        raise MissingError(f"{what} isn't there after {seconds} s; logs are in {self.folder}")
+        raise MissingError(f"{what} is not there after {seconds} s; logs are in {self.folder}")

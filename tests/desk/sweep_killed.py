@@ -79,9 +79,9 @@ def main():
         require(ended(killed) < CASES, "It was killed too late.")
     run([*words, "--output", killed])
     rows, expected = table_of(killed), table_of(folder / "alone")
-    require(len(rows) == CASES and rows == expected, "The table isn't that of the sweep left alone.")
+    require(len(rows) == CASES and rows == expected, "The table is not that of the sweep left alone.")
     printed = [(output / "statistics.csv").read_text(encoding="utf-8") for output in (killed, folder / "alone")]
-    require(printed[0] == printed[1], "The statistics aren't those of the sweep left alone.")
+    require(printed[0] == printed[1], "The statistics are not those of the sweep left alone.")
     print(f"{CASES} cases: the same table and statistics")
 
 

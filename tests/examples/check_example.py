@@ -112,7 +112,7 @@ def explain_keys(work, layers, patch):
     printed = run(work.link("explain", work.compile(sources, layers)))
     for _, key in added:
         if not re.search(rf"^  {key} ", printed, re.MULTILINE):
-            sys.exit(f"the table doesn't explain {key}:\n{printed}")
+            sys.exit(f"the table does not explain {key}:\n{printed}")
     return [f"{group}%{key}" for group, key in added]
 
 

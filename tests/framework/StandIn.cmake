@@ -1,4 +1,4 @@
-# A small stand-in for pFUnit, used where that isn't installed: the same test files (.pf) and the
+# A small stand-in for pFUnit, used where that is not installed: the same test files (.pf) and the
 # same CMake call. It always runs on MPI; a test program on one process needs no mpirun.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(framework_dir ${CMAKE_CURRENT_BINARY_DIR}/framework)

@@ -141,7 +141,7 @@ contains
     character(len=*), intent(in) :: relation
     !> The two sides
     character(len=*), intent(in) :: expected, found
-    !> How blanks count; absent: trailing and leading ones don't
+    !> How blanks count; absent: trailing and leading ones do not
     integer, intent(in), optional :: whitespace
     !> What the author of the test wishes to say about it
     character(len=*), intent(in), optional :: message
@@ -159,7 +159,7 @@ contains
     end if
   end subroutine compare_strings
 
-  !> A string without the blanks that don't count.
+  !> A string without the blanks that do not count.
   pure function reduced(string, blanks) result(short)
     !> The string
     character(len=*), intent(in) :: string
@@ -184,7 +184,7 @@ contains
     end if
   end function reduced
 
-  !> Notes a failure if the shapes don't go together.
+  !> Notes a failure if the shapes do not go together.
   logical function shapes_differ(shape_expected, shape_found, message, location)
     !> The two shapes; a scalar expected goes with every shape
     integer, intent(in) :: shape_expected(:), shape_found(:)

@@ -32,7 +32,7 @@ CLASSES = {
     "assertIsInfinite": (".not. (ieee_is_nan({0}) .or. ieee_is_finite({0}))", "infinity"),
 }
 HEAD = """\
-!> Asserts that tests call; each notes a failure if what it expects isn't so.
+!> Asserts that tests call; each notes a failure if what it expects is not so.
 module asserts
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
   use, intrinsic :: iso_fortran_env, only: int32, int64, real32, real64

@@ -102,7 +102,7 @@ class Translator:
         options = split_options(text)
         unknown = set(options) - OPTIONS
         if keyword in ("test", "testcase") and unknown:
-            self.error(number, f"option {', '.join(sorted(unknown))} of @{spelling} isn't known here")
+            self.error(number, f"option {', '.join(sorted(unknown))} of @{spelling} is not known here")
         if keyword == "test":
             self.awaited = Test(options)
         elif keyword == "disable" and isinstance(self.awaited, Test):
@@ -114,7 +114,7 @@ class Translator:
         elif keyword == "suite":
             self.suite.name = options.get("name", "").strip("'\"")
         else:
-            self.error(number, f"@{spelling} isn't known here")
+            self.error(number, f"@{spelling} is not known here")
 
     def declaration(self, number, line):
         """Notes the names that the directives before them wait for."""

@@ -16,7 +16,7 @@ module test_runs
     private
     !> Rank of this process and number of processes
     integer :: rank = 0, processes = 1
-    !> Processes of the current test; MPI_COMM_NULL on those that don't take part
+    !> Processes of the current test; MPI_COMM_NULL on those that do not take part
     integer, public :: communicator = MPI_COMM_NULL
     !> How many tests were run, failed, were left out
     integer :: finished = 0, failed = 0, disabled = 0
@@ -24,7 +24,7 @@ module test_runs
     logical :: verbose = .false.
     !> Only tests with this text in their name are run
     character(len=:), allocatable :: pattern
-    !> Name of the current test; not allocated if it isn't to be run
+    !> Name of the current test; not allocated if it is not to be run
     character(len=:), allocatable :: name
   contains
     procedure :: start

@@ -33,7 +33,7 @@ KILLS = 6
 def check_h5(folder):
     with h5py.File(folder / "sample.h5") as file:
         assert file["provenance/citation"][()].decode().startswith("The Implam developers"), "no word on how to cite"
-        assert file["provenance/deck"][()].decode().startswith("&case"), "the deck isn't in the file"
+        assert file["provenance/deck"][()].decode().startswith("&case"), "the deck is not in the file"
         assert file["part"][()].decode() == "quarter"
         assert len(file["restarts"]) == 1
         assert [file["times"][name]["time"][()] for name in sorted(file["times"])] == TIMES
@@ -64,8 +64,8 @@ def check_values(points, connectivity, time_now, displacement, gap, layer, *stre
     corners = points[connectivity[:, :4], :2]
     following = np.roll(corners, -1, axis=1)
     areas = 0.5 * np.sum(corners[..., 0] * following[..., 1] - corners[..., 1] * following[..., 0], axis=1)
-    assert np.allclose(areas, 1), "corners aren't in order"
-    assert np.allclose(points[connectivity[:, 4:8], :2], (corners + following) / 2), "middles aren't on their sides"
+    assert np.allclose(areas, 1), "corners are not in order"
+    assert np.allclose(points[connectivity[:, 4:8], :2], (corners + following) / 2), "middles are not on their sides"
     assert np.allclose(points[connectivity[:, 8], :2], corners.mean(axis=1))
 
 
@@ -159,7 +159,7 @@ def main():
         if vtk_is_installed:
             check_vtk(folder)
         else:
-            print("VTK isn't installed, so its reader was left out")
+            print("VTK is not installed, so its reader was left out")
         check_kills(command, folder)
     print(f"outputs are right on {ranks} rank(s)")
 

@@ -48,7 +48,7 @@ contains
   subroutine write_fields(base, error)
     !> Folder and name
     character(len=*), intent(in) :: base
-    !> Raised if they can't be written
+    !> Raised if they cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(fields_file_t) :: fields, again
     integer, allocatable :: points(:), cells(:)
@@ -100,7 +100,7 @@ contains
     integer, intent(in) :: points(:)
     !> Elements of this rank
     integer, intent(in) :: cells(:)
-    !> Raised if it can't be written
+    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: coordinates(3, size(points))
     integer :: connectivity(9, size(cells)), layer(1, size(cells)), c, of_layer, first, i, j
@@ -132,7 +132,7 @@ contains
     integer, intent(in) :: points(:)
     !> Elements of this rank
     integer, intent(in) :: cells(:)
-    !> Raised if it can't be written
+    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: displacement(3, size(points)), gap(1, size(points)), stress(6, size(cells)), where(3)
     integer :: i
@@ -156,7 +156,7 @@ contains
   subroutine write_checkpoints(path, error)
     !> Path of the file
     character(len=*), intent(in) :: path
-    !> Raised if it can't be written
+    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(checkpoint_archive_t) :: archive
     real(wp), allocatable :: numbers(:)

@@ -2,7 +2,7 @@
 check_reach.py FOLDER
 
 A name counts as reached if a procedure that is reached mentions it. Calls through a variable are followed by its
-type; where that can't be decided, they reach every binding of that name. So what is reported is not used, but not all
+type; where that cannot be decided, they reach every binding of that name. So what is reported is not used, but not all
 that is unused is reported. Ends with code 1 if something is reported or stands in EXCEPTIONS without need.
 """
 
@@ -216,7 +216,7 @@ class Walk:
         return [t for types in self.types.values() for t in types if name in t.bindings or name in t.generics]
 
     def type_of_result(self, procedures):
-        """Type that a function returns; UNKNOWN if it can't be decided."""
+        """Type that a function returns; UNKNOWN if it cannot be decided."""
         kinds = [self.variable(p.result, p) if p.result else UNKNOWN for p in procedures]
         return kinds[0] if kinds and all(k is kinds[0] for k in kinds) else UNKNOWN
 
@@ -248,7 +248,7 @@ class Walk:
 
 
 def unreached(modules):
-    """Names of public procedures and of bindings that the main program doesn't reach."""
+    """Names of public procedures and of bindings that the main program does not reach."""
     walk = Walk(modules)
     names = []
     for module in modules.values():

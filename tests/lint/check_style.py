@@ -275,7 +275,7 @@ class Checker:
             if "implicit" not in scope.statements:
                 self.report(scope.line, f"module {scope.name} has no implicit none")
             if "private" not in scope.statements:
-                self.report(scope.line, f"module {scope.name} isn't private")
+                self.report(scope.line, f"module {scope.name} is not private")
         core = self.path.parent.name in CORE and self.path.parent.parent.name == "src"
         longest = MAX_CORE_PROCEDURE if core else MAX_PROCEDURE
         if scope.kind == "procedure" and statement.line - scope.line + 1 > longest:
@@ -285,7 +285,7 @@ class Checker:
         if scope.kind == "type" and scope.components > MAX_COMPONENTS and "because" not in self.doc_above(scope.line):
             self.report(
                 scope.line,
-                f"type {scope.name} has more than {MAX_COMPONENTS} components and doesn't say because of what",
+                f"type {scope.name} has more than {MAX_COMPONENTS} components and does not say because of what",
             )
 
     def doc_above(self, line):

@@ -70,6 +70,7 @@ WORDS = {
     r"(?:here stands?|should stand|stands? (?:where|without|outside))": "is, is expected, has",
     r"rounding spoils": "round-off dominates",
     r"first touch(?:es)?": "first contact",
+    r"(?:ca|wo|is|are|was|were|has|have|had|does|do|did|need|would|should|could|must)n'{1,2}t": "not, written out",
     r"in the plane(?! (?:of|x|y|z)(?!\w))": "in-plane",
 }
 # Parts of names in code.

@@ -219,7 +219,7 @@ CASES = {
             "shape_t%label",
         ],
     ),
-    "a type that can't be decided reaches all of the name": (
+    "a type that cannot be decided reaches all of the name": (
         "call leaf%grow()",
         "call choose(leaf)%grow()",
         [],

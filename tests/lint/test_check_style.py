@@ -86,7 +86,7 @@ BREACHES = {
     "blank": ("  private\n", "  private \n", "trailing blank"),
     "columns": ("twice = 3", "twice = 3" + "0" * 120, "more than 120 columns"),
     "implicit": ("  implicit none\n", "", "no implicit none"),
-    "private": ("  private\n", "", "isn't private"),
+    "private": ("  private\n", "", "is not private"),
     "name": ("module good", "module bad", "another name"),
     "save": ("    integer :: i\n", "    integer, save :: i\n", "keeps no state"),
     "stop": ("twice = 3", "stop 3", "only main stops"),

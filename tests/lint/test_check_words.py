@@ -37,6 +37,11 @@ class CheckWords(unittest.TestCase):
         """Only whole words count."""
         self.assertEqual(found("The header shows how the theory was untested; almost settled.", "page.md"), [])
 
+    def test_contractions_are_found(self):
+        """Also with the doubled quotes of Fortran's strings."""
+        text = "call fail(error, 'It isn''t there.') ! we can't"
+        self.assertEqual([word for _, word in found(text, "good.f90")], ["isn''t", "can't"])
+
     def test_phrases_and_capitals_are_found(self):
         """A phrase is found in any case."""
         self.assertEqual(found("Lengths Of The Whole Plate.\nSeconds on the wall", "page.md"),

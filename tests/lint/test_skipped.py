@@ -14,12 +14,12 @@ import skipped
 RUN = """<testsuite>
 <testcase name="whole" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>
 <system-out>started
-skipped: sbatch isn't installed
+skipped: sbatch is not installed
 </system-out></testcase>
 <testcase name="silent" status="notrun"><system-out/></testcase>
 <testcase name="parts" status="run"><system-out>test_a (tests.test_a.ATest.test_a)
-What it is for. ... skipped "pyNastran isn't installed"
-test_b (tests.test_b.BTest.test_b) ... skipped "pyNastran isn't installed"
+What it is for. ... skipped "pyNastran is not installed"
+test_b (tests.test_b.BTest.test_b) ... skipped "pyNastran is not installed"
 OK (skipped=2)
 </system-out></testcase>
 <testcase name="complete" status="run"><system-out>steps are skipped here and there
@@ -43,8 +43,8 @@ class SkippedTest(unittest.TestCase):
     def test_reasons(self):
         """Each reason once, and a test that gives none."""
         self.assertEqual(self.printed(RUN), [
-            "Skipped:", "  whole: sbatch isn't installed", "  silent: without a reason",
-            "  parts, a part of it: pyNastran isn't installed"])
+            "Skipped:", "  whole: sbatch is not installed", "  silent: without a reason",
+            "  parts, a part of it: pyNastran is not installed"])
 
     def test_none(self):
         """A run in which nothing was skipped."""

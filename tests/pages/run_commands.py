@@ -56,7 +56,7 @@ class Clone:
         done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)  # fmt: skip
         taken = processor_time() - begun
-        if done.returncode and "isn't installed" in done.stdout:
+        if done.returncode and "is not installed" in done.stdout:
             print(f"skipped: {done.stdout.strip()}")
             return "", taken
         fault = f"code {done.returncode}\n{done.stdout[-2000:]}" if done.returncode else ""

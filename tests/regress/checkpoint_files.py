@@ -22,7 +22,7 @@ REASONS = {errno.ENOSPC: "no space is left on the disk", errno.EDQUOT: "the quot
 
 
 def check_damaged(implam, folder, _):
-    """Files that aren't checkpoints, or not whole ones."""
+    """Files that are not checkpoints, or not whole ones."""
     deck = write_deck(folder / "sound", IMPACT, split_at(0.53, SHORT))
     run_deck(implam, deck)
     sound = checkpoint_of(deck.parent).read_bytes()

@@ -145,7 +145,7 @@ def check_navier(implam, folder):
             found = results.cells[f"ply_{number}_{name}"]
             worst = max(worst, np.max(np.abs(found - right)) / np.max(np.abs(right)))
     print(f"Navier's plate: the worst stress is {worst:.1e} of the largest of its kind off")
-    require(worst < 1e-5, "The stresses aren't those of Navier's plate.")
+    require(worst < 1e-5, "The stresses are not those of Navier's plate.")
 
 
 def check_damaged_layers(implam, folder):
@@ -168,7 +168,7 @@ def check_damaged_layers(implam, folder):
                 worst = max(worst, np.max(np.abs(found - right)[inside]) / np.max(np.abs(right)))
     require(failed > 0, "No ply failed.")
     print(f"damaged layers: {failed} failures; the worst stress is {worst:.1e} of the largest of its kind off")
-    require(worst < 1e-13, "The stresses don't follow from the motion of the nodes.")
+    require(worst < 1e-13, "The stresses do not follow from the motion of the nodes.")
 
 
 def check_energy_release(implam, folder):
@@ -188,7 +188,7 @@ def check_energy_release(implam, folder):
     for i in np.flatnonzero(ratio > 0):
         common = np.minimum(results.high[i], results.high) - np.maximum(results.low[i], results.low)
         beside = np.all(common > -tiny, axis=1) & (np.sum(common > tiny, axis=1) == 1)
-        require(below[i] and not apart[i], "There is a rate where the interface isn't intact.")
+        require(below[i] and not apart[i], "There is a rate where the interface is not intact.")
         require(np.any(apart & beside), "A rate stands away from the front.")
     print(f"energy release: {np.count_nonzero(ratio)} cells ahead of the front, G/G_c up to {np.max(ratio):.3f}")
 
@@ -223,7 +223,7 @@ def check_onset(implam, folder):
         loaded = (np.abs(middle) < 0.04) & ((name != "apart") | (np.abs(middle - 0.02) > 0.03))
         worst = np.max(np.abs(index[loaded] / expected - 1))
         print(f"onset, {name}: {np.count_nonzero(loaded)} elements, {worst:.1e} off beam theory")
-        require(worst < 1e-11, "The index isn't that of beam theory.")
+        require(worst < 1e-11, "The index is not that of beam theory.")
         require(set(ply[loaded]) <= {1, 2}, "It stands in another interface.")
         alone = (np.abs(middle - 0.02) < 0.009) & (results.first_ply == 3)
         require(name != "apart" or (np.any(alone) and not np.any(index[alone])), "A single ply has an interface.")
@@ -266,7 +266,7 @@ def check_opening(implam, folder):
     beside = (away > 5e-3) & np.all(middles[0] < 20e-3, axis=1)
     worst = np.max(np.abs(opening - held)[beside]) / np.max(held[beside])
     print(f"opening: up to {np.max(held[beside]):.3g}, {worst:.3f} of it off what holds the layers together")
-    require(worst < 0.1, "Opening isn't what holds the layers together.")
+    require(worst < 0.1, "Opening is not what holds the layers together.")
     near = (away > 3e-3) & np.all(middles[0] < 20e-3, axis=1)
     worst = np.max(np.abs(opening - held)[near]) / np.max(held[near])
     print(f"nearer, up to {np.max(held[near]):.3g}, {worst:.3f} of it off")
@@ -326,13 +326,13 @@ def check_columns(implam, folder):
         "algorithmic"))
     mass, velocity = deck.number("impactor", "mass"), deck.number("impactor", "velocity")
     error = energies - history["work_external"] - mass * velocity**2 / 2
-    require(np.max(np.abs(error - history["energy_error"])) < 1e-15, "The energies don't add up to their error.")
+    require(np.max(np.abs(error - history["energy_error"])) < 1e-15, "The energies do not add up to their error.")
     indentation = history["impactor_displacement"] - history["patch_deflection"]
     require(np.allclose(history["indentation"], indentation, rtol=0, atol=1e-12), "The indentation is another one.")
     steps = np.diff(history["time"])
     require(np.allclose(steps, history["step_length"][1:], rtol=1e-9), "The step has another length.")
     for name in ("iterations", "force_iterations", "contact_iterations"):
-        require(np.all(np.cumsum(history[name]) == history[f"total_{name}"]), f"total_{name} isn't the sum.")
+        require(np.all(np.cumsum(history[name]) == history[f"total_{name}"]), f"total_{name} is not the sum.")
     grown = history["delaminated_area"] - history["delaminated_area"][0]
     fracture = deck.number("delamination", "G_c") * grown
     require(np.allclose(history["energy_delamination"], fracture, rtol=1e-12) and grown[-1] > 0, "G_c A is missing.")

@@ -38,7 +38,7 @@ from solver_runs import (
 IMPACT, COMPRESSION = "cai_impact", "cai_compression"
 CHECKPOINT = f"{IMPACT}_restart.h5"
 AREA = 40e-3 * 2.4e-3
-REST_TIME, LENGTH = 80e-6, 60e-3
+REST_TIME, LENGTH = 270e-6, 60e-3
 # Of all energy. Measured: 2e-10 before plies and interfaces break again, 2e-9 with cracks that close, 3.6e-3 in the
 # collapse on these coarse cells.
 CLOSED, CLOSED_IN_COLLAPSE = 5e-8, 1e-2
@@ -144,7 +144,7 @@ def check_chain(implam, folder, _):
 def check_again(implam, folder, _):
     """From a checkpoint while layers buckle and break, after the impact's has been removed."""
     strike(implam, folder)
-    path = press(implam, folder, ["output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."])
+    path = press(implam, folder, ["output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."])
     reference = folder / "reference.csv"
     shutil.copy(path, reference)
     (folder / CHECKPOINT).unlink()
@@ -163,7 +163,7 @@ def check_restart(implam, folder, reference, launcher=()):
 def check_ranks(implam, folder, launcher):
     """Three ranks from the impact's checkpoint, that of one; two go on, and three from the midst of the collapse."""
     strike(implam, folder)
-    settings = ["output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."]
+    settings = ["output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."]
     reference = folder / "reference.csv"
     shutil.copy(press(implam, folder, settings), reference)
     deck = deck_of(folder, COMPRESSION, settings)
@@ -176,7 +176,7 @@ def check_ranks(implam, folder, launcher):
 def check_mapped(implam, folder, launcher):
     """On other cells than the impact's, of which some lie across the old ones."""
     strike(implam, folder)
-    path = press(implam, folder, [*FINER, "output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."])
+    path = press(implam, folder, [*FINER, "output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."])
     rows, reference = read_history(path), folder / "reference.csv"
     shutil.copy(path, reference)
     kept = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["mapping"]
@@ -220,7 +220,7 @@ def check_unfolded(implam, folder, half):
     line = re.search(r"&line .*/", text).group()
     other = line.replace("at=30e-3", "at=-30e-3").replace("-0.4e-3", "0.4e-3")
     text = text.replace("symmetry='point'", "symmetry='none'").replace("elements=14", "elements=28")
-    text = text.replace("end=0.4e-3", "end=0.2e-3")
+    text = text.replace("end=0.59e-3", "end=0.4e-3")
     (folder / f"{COMPRESSION}.nml").write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
     run([implam, f"{COMPRESSION}.nml"], folder=folder)
     whole = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["mapping"]
@@ -362,7 +362,7 @@ def check_closing(implam, folder, _):
     summary = folder / f"{COMPRESSION}_summary.json"
     without = json.loads(summary.read_text(encoding="utf-8"))["residual_strength"]
     run([implam, deck_of(folder, IMPACT, closing)], folder=folder)
-    path = press(implam, folder, [*closing, "output%checkpoint_every=0.27e-3", "output%checkpoint_at_end=.false."])
+    path = press(implam, folder, [*closing, "output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."])
     rows = read_history(path)
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
     error = max(abs(value) for value, time in zip(rows["energy_error"], rows["time"], strict=True)

@@ -1,7 +1,7 @@
 """Deflections by other programs: exported panels, intact, with failed plies and delaminated; and the example of the
 manual. Starters of decks as the program takes them. Usage: exchange.py calculix|mystran|manual|starters IMPLAM FOLDER
 
-Ends with 77 where ccx, mystran or pyNastran isn't installed."""
+Ends with 77 where ccx, mystran or pyNastran is not installed."""
 
 import contextlib
 import importlib.util
@@ -123,7 +123,7 @@ def differences(own, other):
     found = []
     for mine, theirs in zip(own, other, strict=True):
         shared = [place for place in theirs if place in mine]
-        require(len(shared) > len(theirs) / 5, "The grids aren't in the same places.")
+        require(len(shared) > len(theirs) / 5, "The grids are not in the same places.")
         largest = max(abs(w) for w in mine.values())
         found.append(max(abs(mine[place] - theirs[place]) for place in shared) / largest)
     return found
@@ -146,7 +146,7 @@ def check(program, implam, folder):
               f"{softest[name]:.4g}, {max(other[0].values()):.4g} by {program}; differences "
               f"{100 * found[0]:.2f} % on the struck face, {100 * found[1]:.2f} % on the back")
         require(found[0] <= struck and found[1] <= back, f"{name}: the deflections differ.")
-    require(softest["failed"] > 1.05 * softest["whole"], "The failed plies don't show in the deflection.")
+    require(softest["failed"] > 1.05 * softest["whole"], "The failed plies do not show in the deflection.")
 
 
 def check_starters(implam, folder):
@@ -179,10 +179,10 @@ def check_manual(implam, folder):
     with contextlib.chdir(folder):
         bulk, *options = commands["implam-from-nastran"]
         code, printed = quietly(from_nastran.main, [str(ROOT / bulk), *options])
-        require(code == 0 and printed == shown, f"The page doesn't show what is printed:\n{printed}")
+        require(code == 0 and printed == shown, f"The page does not show what is printed:\n{printed}")
         missing = [line for line in Path("panel.nml").read_text().splitlines()
                    if not line.startswith(("!", "&mesh", "    ")) and line not in deck]
-        require(not missing, f"The page's deck hasn't got {missing}.")
+        require(not missing, f"The page's deck has not got {missing}.")
         Path("panel.nml").write_text(deck, encoding="utf-8")
         run([implam, "check", "panel.nml"])
         run([implam, *commands["implam"]])
@@ -218,7 +218,7 @@ TRIALS = {"calculix": ("ccx", check), "mystran": ("mystran", check), "manual": (
 if __name__ == "__main__":
     needed, trial = TRIALS[sys.argv[1]]
     if not (shutil.which(needed) or importlib.util.find_spec(needed)):
-        print(f"skipped: {needed} isn't installed")
+        print(f"skipped: {needed} is not installed")
         raise SystemExit(SKIPPED)
     program = [sys.argv[1]] if trial is check else []
     raise SystemExit(exit_code_of(trial, *program, Path(sys.argv[2]).resolve(), Path(sys.argv[3])))

@@ -206,7 +206,7 @@ def check_spring(row, tolerance):
 
 
 def check_hertz(row, tolerance):
-    """Peak force on a plate that doesn't give: k**0.4 (1.25 m v**2)**0.6."""
+    """Peak force on a plate that does not give: k**0.4 (1.25 m v**2)**0.6."""
     peak = row.key("indentation", "k")**0.4 * (2.5 * row.summary["energy_impact"])**0.6
     return compare("peak", max(row.history["force"]), peak, tolerance)
 

@@ -23,7 +23,7 @@ def check_fields(history_path):
     with h5py.File(base + ".h5") as file:
         stored = [file["times"][name]["time"][()] for name in sorted(file["times"])]
         require(np.allclose(stored, TIMES, rtol=1e-12), f"{base}.h5 has the times {stored}.")
-        require(file["provenance/deck"][()].decode().startswith("!"), f"{base}.h5 hasn't got the deck.")
+        require(file["provenance/deck"][()].decode().startswith("!"), f"{base}.h5 has not got the deck.")
     with meshio.xdmf.TimeSeriesReader(base + ".xdmf") as reader:
         points, cells = reader.read_points_cells()
         require(points.shape == ((2 * SIDE + 1)**2, 3), f"{base}.xdmf has {len(points)} points.")
@@ -33,7 +33,7 @@ def check_fields(history_path):
         for number, expected in enumerate(TIMES):
             time, at_points, _ = reader.read_data(number)
             require(abs(time - expected) <= 1e-12 * expected, f"{base}.xdmf: {time} instead of {expected}.")
-            require(np.all(np.isfinite(at_points["displacement"])), "A displacement isn't finite.")
+            require(np.all(np.isfinite(at_points["displacement"])), "A displacement is not finite.")
             deflection = np.interp(time, history["time"], history["deflection"])
             found = at_points["displacement"][centre, 2]
             require(abs(found - deflection) <= 1e-12 * deflection, f"At {time}: {found} instead of {deflection}.")

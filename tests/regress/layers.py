@@ -31,7 +31,7 @@ def without_zone(folder):
     path = write_deck(folder, CROSSPLY, COARSE)
     text = path.read_text(encoding="utf-8")
     changed = text.replace("zone=48e-3, 24e-3", "")
-    require(changed != text, "The deck's zone isn't the one expected.")
+    require(changed != text, "The deck's zone is not the one expected.")
     path.write_text(changed, encoding="utf-8")
     return path
 
@@ -60,7 +60,7 @@ def require_no_energy(history, name):
     missed = max(map(abs, history["energy_error"]))/impact
     print(f"{name}: energy of layers {lost:.1e}, not accounted for {missed:.1e} of the impact's")
     require(lost <= ROUNDING, "Energy was made or lost where layers appeared.")
-    require(missed <= 1e-7, "The ledger doesn't close.")
+    require(missed <= 1e-7, "The ledger does not close.")
 
 
 def sizes(history, ply):
@@ -75,7 +75,7 @@ def check_same(implam, folder):
     fixed = read_history(run_deck(implam, write_deck(folder / "fixed", CROSSPLY, zone)))
     grown, wide = sizes(follows, 2), fixed["layered_below_2"][-1]
     print(f"Layers of {', '.join(f'{1e6*area:.0f}' for area in grown)} mm2 against {1e6*wide:.0f}")
-    require(len(grown) > 2 and grown[-1] < 0.8*wide, "Layers didn't grow twice, or not less than the zone.")
+    require(len(grown) > 2 and grown[-1] < 0.8*wide, "Layers did not grow twice, or not less than the zone.")
     require(not any(follows["border_reached"]), "Damage has reached the border of the layers.")
     force = distance(follows, fixed, "force")
     area = follows["delaminated_area"][-1]/fixed["delaminated_area"][-1] - 1

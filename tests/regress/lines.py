@@ -113,7 +113,7 @@ def check_plane(implam, folder, _):
 
 
 def check_turned(implam, folder, _):
-    """A plate turned by 180 degrees about z can't tilt, so that one line and its image hold it."""
+    """A plate turned by 180 degrees about z cannot tilt, so that one line and its image hold it."""
     found = {}
     for symmetry, elements, sides in (("none", "8,4", (1, -1)), ("point", "4,4", (1,))):
         case = folder / symmetry

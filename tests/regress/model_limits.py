@@ -80,7 +80,7 @@ def main(implam, folder):
         since = time_of(printed[0])
         closing = [warning for warning in json.loads((here / "limits_summary.json").read_text("utf-8"))["warnings"]
                    if sentence in json.dumps(warning)]
-        require(len(closing) == 1, f"The summary doesn't report '{sentence}'.")
+        require(len(closing) == 1, f"The summary does not report '{sentence}'.")
         times = [time_of(line) for line in said.splitlines() if line.startswith("implam: warning:") and AT.search(line)]
         history = read_history(here / "limits_history.csv")
         for time, passed in zip(history["time"], history["limits_passed"], strict=True):
@@ -89,9 +89,9 @@ def main(implam, folder):
         deck.write_text("&case name='limits' strict=.true. /\n" + plate + rest, "utf-8")
         run([implam, deck, "--output", here], EXIT_CONVERGENCE)
         log = (here / "limits.log").read_text("utf-8")
-        require(sentence in log or min(times) < since, f"The log of a strict run doesn't report '{sentence}'.")
+        require(sentence in log or min(times) < since, f"The log of a strict run does not report '{sentence}'.")
         last = read_history(here / "limits_history.csv")["time"][-1]
-        require(abs(last - min(times)) <= 1e-3*last, "The history doesn't end at the limit.")
+        require(abs(last - min(times)) <= 1e-3*last, "The history does not end at the limit.")
     return EXIT_DONE
 
 

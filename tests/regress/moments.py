@@ -177,7 +177,7 @@ def check_kills(implam, folder, count, launcher):
             while not ended:
                 if kills >= count or mine >= 12:
                     ended = end_of(model.start(deck)) == EXIT_DONE
-                    require(ended, "The run doesn't end when it is left alone.")
+                    require(ended, "The run does not end when it is left alone.")
                     break
                 hit, written, ended = kill_once(model, deck, moments, kills % 2 == 1)
                 kills, writing, mine = kills + hit, writing + (hit and written), mine + hit
@@ -234,7 +234,7 @@ def check_signalled(model, target, stop, times, rows, what):
     else:
         require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
         require(said.count("signal received") == 1, f"{what}: not one line announces the end but\n{said}")
-    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it doesn't go on.")
+    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it does not go on.")
     model.check_end(deck, what)
     return saved
 
@@ -262,7 +262,7 @@ def check_early(implam, folder, _, launcher):
         mark.unlink()
         saved = bool(list(deck.parent.glob("*_restart.h5")))
         require(code == EXIT_STOPPED and saved, f"{stop.name} ({moment}): code {code}, checkpoint: {saved}.")
-        require(end_of(model.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it doesn't go on.")
+        require(end_of(model.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it does not go on.")
         model.check_end(deck, f"{stop.name} ({moment})")
         print(f"{stop.name} ({moment}): code {code}, with a checkpoint")
 

@@ -81,7 +81,7 @@ def calculix(folder):
 def main(implam, folder):
     """Compare both."""
     if shutil.which("ccx") is None:
-        print("skipped: ccx isn't installed")
+        print("skipped: ccx is not installed")
         return SKIPPED
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

@@ -42,7 +42,7 @@ DAMAGE = "../small/damage.nml"
 PATIENCE = 240
 # A strong blow on a coarse mesh: von Karman strains of several thicknesses where asked for.
 SHORT = ["mesh%elements=6,6", "impactor%velocity=30", "time%step=2e-6", "time%end=120e-6"]
-# Steps so long that equilibrium isn't found in some within few iterations.
+# Steps so long that equilibrium is not found in some within few iterations.
 PERIOD = 60e-6
 LONG_STEPS = ["mesh%elements=6,6", "impactor%velocity=300", "case%kinematics='von_karman'", f"time%step={PERIOD!r}",
               "impactor%integrator='conserving'", "solver%tolerance=1e-10", "adapt%on=.false.", "adapt%iterations=1"]

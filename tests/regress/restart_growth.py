@@ -186,7 +186,7 @@ def stop_during(implam, deck, step, stop, delay):
     process = start(implam, deck, "--output", deck.parent)
     wait_until(lambda: rows_written(deck.parent) >= step - 1, process)
     time.sleep(delay)
-    # Frozen, so that it is certain that the step isn't over yet when the signal comes.
+    # Frozen, so that it is certain that the step is not over yet when the signal comes.
     process.send_signal(signal.SIGSTOP)
     inside = rows_written(deck.parent) == step - 1
     process.send_signal(stop)
@@ -202,7 +202,7 @@ def check_moments(implam, folder, _):
     """Stopped and killed in the step with the most releases."""
     reference = run_deck(implam, write_deck(folder / "uninterrupted", DECK, RUNNING))
     cells = released_cells(reference)
-    require(len(cells) == len(read_history(reference)["time"]), "The fields aren't those of every step.")
+    require(len(cells) == len(read_history(reference)["time"]), "The fields are not those of every step.")
     releases = [0, *(min_releases(before, after) for before, after in pairwise(cells))]
     step = 1 + max(range(len(releases)), key=releases.__getitem__)
     print(f"Step {step} has {releases[step - 1]} releases at least, {len(cells[step - 1] - cells[step - 2])} cells")

@@ -57,14 +57,14 @@ def histories_of_ranks(implam, deck, folder, launcher, settings):
         path = write_deck(folder / f"ranks_{ranks}", deck, settings)
         history = run_deck(implam, path, [*launcher, str(ranks)])
         log = next(path.parent.glob("*.log")).read_text(encoding="utf-8")
-        require(f"{ranks} rank" in log, f"The log doesn't name {ranks} ranks.")
+        require(f"{ranks} rank" in log, f"The log does not name {ranks} ranks.")
         yield f"{ranks} ranks", read_history(history), damage_of(history)
     for first, second in CHANGES:
         again = folder / f"ranks_{first}_{second}"
         shutil.rmtree(again, ignore_errors=True)
         shutil.copytree(folder / f"ranks_{first}", again)
         said = run([*launcher, str(second), implam, "restart", checkpoint_of(again)])
-        require(f"{second} rank" in said, f"The restart isn't on {second} ranks.")
+        require(f"{second} rank" in said, f"The restart is not on {second} ranks.")
         history = history_of(again)
         yield f"from {first} to {second} ranks", read_history(history), damage_of(history)
 
@@ -128,7 +128,7 @@ def compare(kind, implam, deck, folder, tolerance, *words):
     _, reference, reference_damage = next(runs)
     area = reference["delaminated_area"]
     require(area[0] == 0 or area[-1] > area[0], "Nothing grew: the trial proves nothing.")
-    require(bool(reference_damage) >= (area[-1] > 0), "The fields don't show what delaminated.")
+    require(bool(reference_damage) >= (area[-1] > 0), "The fields do not show what delaminated.")
     for name, history, damage in runs:
         difference, column = largest_difference(history, reference, left_out)
         within = difference <= float(tolerance) and damage == reference_damage

@@ -93,13 +93,13 @@ def checkpoint_of(folder):
 
 
 def read_history(path):
-    """Return the columns of a history by name; a number that isn't finite fails."""
+    """Return the columns of a history by name; a number that is not finite fails."""
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     require(rows, f"{path} has no rows.")
     history = {name: [float(row[name]) for row in rows] for name in rows[0]}
     for name, values in history.items():
-        require(all(map(math.isfinite, values)), f"{path}: the column {name} isn't finite throughout.")
+        require(all(map(math.isfinite, values)), f"{path}: the column {name} is not finite throughout.")
     return history
 
 

@@ -163,7 +163,7 @@ def check_figures(implam, folder, _):
     run_deck(implam, write_deck(folder / "cohesive", COHESIVE))
     one = check_against_history(folder / "cohesive")
     require("threshold_force_at_starter" not in one, "There is no starter.")
-    require(any("process zone" in warning["text"] for warning in one["warnings"]), "The process zone isn't reported.")
+    require(any("process zone" in warning["text"] for warning in one["warnings"]), "The process zone is not reported.")
     require(any("below ply 2 has reached" in warning["text"] for warning in one["warnings"]), "The border is missing.")
     run_deck(implam, two_interfaces(folder / "two"))
     two = check_against_history(folder / "two")
@@ -367,7 +367,7 @@ def check_static(implam, folder, _):
         close(ratio[row], ratio[-1] * load**2, 1e-6, f"The ratio at load {load}")
     wider, _ = static_run(implam, folder / "large", 38e-3)
     growth = wider["delaminated_area"][-1] - history["delaminated_area"][-1]
-    require(growth > 0, "The larger starter isn't larger.")
+    require(growth > 0, "The larger starter is not larger.")
     # Under a given load twice the release is what the load's work gains.
     mean = (wider["energy_strain"][-1] - history["energy_strain"][-1]) / growth / 400
     print(f"largest {ratio[-1]:.4g}, mean {mean:.4g}")

@@ -29,16 +29,16 @@ def main(implam, folder):
     printed = run(command)
     by_hand = read_history(run_deck(implam, write_deck(folder / "by_hand", DECK, BY_HAND)))
     finer = read_history(deck.parent / "plate_finer1_history.csv")
-    require(finer == by_hand, "The finer run isn't that of a deck refined by hand.")
+    require(finer == by_hand, "The finer run is not that of a deck refined by hand.")
 
     figures = json.loads((deck.parent / "plate_verification.json").read_text("utf-8"))["figures"]
     force = figures["peak_force"]
     for name, value in (("plate", force["as_it_is"]), ("plate_finer1", force["finer"])):
         require(value == max(read_history(deck.parent / f"{name}_history.csv")["force"]),
-                f"The peak force of {name} isn't that of its history.")
+                f"The peak force of {name} is not that of its history.")
     line, = [line for line in printed.splitlines() if line.startswith("  peak force") and line.endswith("%")]
     change = 100 * (force["finer"] / force["as_it_is"] - 1)
-    require(abs(float(line.split()[-2]) - change) <= 0.05 * abs(change), f"The change isn't {change} %: {line}")
+    require(abs(float(line.split()[-2]) - change) <= 0.05 * abs(change), f"The change is not {change} %: {line}")
     require(set(figures) >= {"impactor_velocity", "largest_deflection", "delaminated_area"}, f"Only {list(figures)}.")
 
     stopped = write_deck(folder / "stopped", DECK, SHORT)
@@ -46,18 +46,18 @@ def main(implam, folder):
     for name in ("plate", "plate_finer1"):
         said = run([*command, *AT_ONCE], EXIT_STOPPED)
         require("with the same command" in said, f"Nothing says how to go on: {said}")
-        require(len(rows(stopped.parent, name)) == 2, f"{name} wasn't stopped after its first step.")
+        require(len(rows(stopped.parent, name)) == 2, f"{name} was not stopped after its first step.")
         if name == "plate":
             # The first run to its end, the second not yet.
             run([implam, "restart", stopped.parent / "plate_restart.h5"])
     said = run(command)
     require(said.count("has been run before") == 1, f"The first run was done again: {said}")
     for name in ("plate", "plate_finer1"):
-        require(rows(stopped.parent, name) == rows(deck.parent, name), f"{name} isn't that without a stop.")
+        require(rows(stopped.parent, name) == rows(deck.parent, name), f"{name} is not that without a stop.")
     # Another deck of the same name is run.
     changed = write_deck(folder / "changed", DECK, [*SHORT, "impactor%velocity=2"])
     said = run([implam, changed, "--verify", "--output", stopped.parent])
-    require("has been run before" not in said, "A changed deck wasn't run.")
+    require("has been run before" not in said, "A changed deck was not run.")
     return EXIT_DONE
 
 

@@ -1,5 +1,5 @@
 /* Loaded ahead of a program (LD_PRELOAD), sends it the signal numbered EARLY_SIGNAL at a moment that no clock would
-   meet: EARLY_MOMENT=load, while libraries start and main hasn't begun; metis, while METIS has TERM's handler in its
+   meet: EARLY_MOMENT=load, while libraries start and main has not begun; metis, while METIS has TERM's handler in its
    hands. The file EARLY_MARK shows that it was sent. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -21,7 +21,7 @@ static void send_if(const char *moment)
 
 __attribute__((constructor)) static void at_load(void)
 {
-  unsetenv("LD_PRELOAD"); /* the daemon that Open MPI starts isn't meant */
+  unsetenv("LD_PRELOAD"); /* the daemon that Open MPI starts is not meant */
   send_if("load");
 }
 

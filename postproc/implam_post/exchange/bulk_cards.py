@@ -9,7 +9,7 @@ from typing import Any
 
 from implam_post.io.errors import DeckError
 
-# What pyNastran raises about fields that it can't read.
+# What pyNastran raises about fields that it cannot read.
 READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)
 # Cards that a deck is made from. A line that begins with blanks and one of these names is a card and no continuation.
 KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "PSHELL", "MAT1", "MAT8", "SPC1", "SPC",
@@ -42,7 +42,7 @@ class BulkCard:
             raise self.unread(error) from None
         for text in filter(None, card.card[1:]):
             if _is_infinite(text):
-                raise self.error(f"{text} isn't a finite number.")
+                raise self.error(f"{text} is not a finite number.")
         return card
 
     def error(self, sentence: str) -> DeckError:
@@ -54,17 +54,17 @@ class BulkCard:
         lines = [line.strip() for line in str(error).splitlines() if line.strip() and "card_name=" not in line]
         sentence = (lines or [type(error).__name__])[0].rstrip(".")
         if match := re.match(r"invalid literal for int\(\) with base 10: ('.*')$", sentence):
-            sentence = f"{match[1]} isn't an integer"
+            sentence = f"{match[1]} is not an integer"
         if match := re.match(r"field=('.*') is not (\d+) characters long", sentence):
             sentence = f"{match[1]} has more than {match[2]} characters"
         if isinstance(error, (LookupError, AttributeError, TypeError)):
-            sentence = "its fields aren't those of such a card"  # words of Python on pyNastran's inside
+            sentence = "its fields are not those of such a card"  # words of Python on pyNastran's inside
         for word, plain in _WORDS:
             sentence = sentence.replace(word, plain)
         return self.error(f"{sentence}.")
 
     def given(self, number: int) -> bool:
-        """Return whether a field is there and isn't zero."""
+        """Return whether a field is there and is not zero."""
         text = self.fields.field(number)
         return text is not None and re.fullmatch(r"[-+]?0*\.?0*([-+DdEe]+\d+)?", text.strip()) is None
 
@@ -87,7 +87,7 @@ class _Splitter:
     def begin(self, name: str, number: int, line: str) -> None:
         """Begin a card."""
         if name.startswith("="):
-            raise self.error(number, f"{name}: replicated cards aren't read: write each card out, as ECHO = SORT "
+            raise self.error(number, f"{name}: replicated cards are not read: write each card out, as ECHO = SORT "
                                      "prints them.")
         if not name[0].isalpha():
             raise self.error(number, f"{name}: no card begins like this; a continuation has blanks, + or * in columns "

@@ -24,7 +24,7 @@ class BulkData:
         try:
             import pyNastran.bdf.bdf  # noqa: F401
         except ImportError as error:
-            raise ImplamError(f"Nastran's files are read by pyNastran, and {error.name} isn't installed: "
+            raise ImplamError(f"Nastran's files are read by pyNastran, and {error.name} is not installed: "
                               "pip install 'implam-post[nastran]' and pip install --no-deps pyNastran.") from None
         self.path = path
         self.cards: list[BulkCard] = []
@@ -106,7 +106,7 @@ class BulkData:
         self.temperature_set = next(iter(temperatures), None)
         for line in lines:
             if re.match(r"\s*INCLUDE\b", line, re.I):
-                raise self.missing("INCLUDE in the case control isn't followed: put all into one file.")
+                raise self.missing("INCLUDE in the case control is not followed: put all into one file.")
             if match := re.match(r"\s*PARAM\s*,\s*WTMASS\s*,\s*([^\s,$]+)", line, re.I):
                 self.mass_factor = self._plain_number(match[1])
         if len(chosen) > 1:

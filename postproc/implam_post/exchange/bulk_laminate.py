@@ -39,8 +39,8 @@ def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, s
         if any(ply != other or _rest(ply.material) != _rest(other.material)
                for ply, other in zip_longest(plies, found[0][1], fillvalue=None)):
             first = found[0][0]
-            raise bulk.error(card, f"it isn't the lay-up of {first.name} {first.fields.field(1)} in line {first.line}: "
-                                   "a panel has one laminate.")
+            raise bulk.error(card, f"it is not the lay-up of {first.name} {first.fields.field(1)} in line "
+                                   f"{first.line}: a panel has one laminate.")
     return found[0][1]
 
 
@@ -72,8 +72,8 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
         _refuse_repeated(bulk, card, [*laminate.global_ply_ids])
     symmetric = (laminate.lam or "") == "SYM" and card.name == "PCOMP"
     if laminate.lam and not symmetric:
-        raise bulk.error(card, f"LAM = {laminate.lam} isn't taken: a laminate's plies are written out, or half of them "
-                               "with SYM on a PCOMP.")
+        raise bulk.error(card, f"LAM = {laminate.lam} is not taken: a laminate's plies are written out, or half of "
+                               "them with SYM on a PCOMP.")
     materials = _materials(bulk, {*laminate.mids}, card, remarks, shear_23)
     plies = [Ply(materials[mid], float(angle), float(thickness))
              for mid, angle, thickness in zip(laminate.mids, laminate.thetas, laminate.thicknesses, strict=True)]
@@ -85,7 +85,7 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     thickness = sum(ply.thickness for ply in plies)
     plies = _with_nonstructural_mass(bulk, card, plies, thickness, remarks)
     if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
-        remarks.add(card, "Z0 isn't taken: the panel lies about its grids with its middle, where it is supported")
+        remarks.add(card, "Z0 is not taken: the panel lies about its grids with its middle, where it is supported")
     return plies
 
 
@@ -107,13 +107,13 @@ def _only_ply(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float 
                                 "MID1, MID2 and MID3 need to be one material and MID4 blank: give other sections as a "
                                 "PCOMP."))
     if abs(shell.twelveIt3 - 1) > 1e-6:
-        raise bulk.error(card, "12I/T**3 isn't 1: give the plies that make the section up as a PCOMP.")
+        raise bulk.error(card, "12I/T**3 is not 1: give the plies that make the section up as a PCOMP.")
     if shell.t is None or shell.t <= 0:
         raise bulk.error(card, "T needs to be greater than zero.")
     if shell.mid3 is None:
         remarks.add(card, "MID3 is blank: Implam takes transverse shear of the material")
     elif abs(shell.tst - 5 / 6) > _NEAR:
-        remarks.add(card, "TS/T isn't taken: Implam has 5/6")
+        remarks.add(card, "TS/T is not taken: Implam has 5/6")
     ply = Ply(_materials(bulk, {first}, card, remarks, shear_23)[first], 0.0, float(shell.t))
     return _with_nonstructural_mass(bulk, card, [ply], ply.thickness, remarks, 8)[0]
 
@@ -136,10 +136,10 @@ def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: 
     cards = _unique(bulk, "MAT1", "MAT8", "MAT2", "MAT3", "MAT9", "MAT11", "MATORT")
     for number in numbers:
         if number not in cards:
-            raise bulk.error(user, f"material {number} isn't there as a MAT1 or MAT8.")
+            raise bulk.error(user, f"material {number} is not there as a MAT1 or MAT8.")
         if cards[number].name not in ("MAT1", "MAT8"):
-            raise bulk.error(cards[number], f"a ply can't be made of it, as the {user.name} in line {user.line} needs: "
-                                            "give E1, E2, NU12, G12, G1Z and G2Z as a MAT8.")
+            raise bulk.error(cards[number], f"a ply cannot be made of it, as the {user.name} in line {user.line} "
+                                            "needs: give E1, E2, NU12, G12, G1Z and G2Z as a MAT8.")
     return {number: _isotropic(bulk, cards[number], remarks) if cards[number].name == "MAT1"
             else _orthotropic(bulk, cards[number], remarks, shear_23) for number in numbers}
 
@@ -157,7 +157,7 @@ def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
     if g is not None and abs(g - shear) > _NEAR * shear:
         raise bulk.error(card, f"G = {g:g} contradicts E and NU, which give {shear:.5g}.")
     if g is not None and card.given(2) and card.given(4) and abs(g - shear) > 1e-6 * shear:
-        remarks.add(card, f"G isn't taken: E and NU give {shear:.5g}")
+        remarks.add(card, f"G is not taken: E and NU give {shear:.5g}")
     remarks.untaken(card, _UNTAKEN["MAT1"])
     expansion = bulk.real(card, 6) or 0.0
     return Material(_density(bulk, card, found.rho, remarks), e, e, shear, shear, shear, nu, _name(card),

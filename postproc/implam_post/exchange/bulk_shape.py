@@ -65,15 +65,15 @@ def read_shape(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, t
                                         f"line {quads[0].card.line}, so that plies are counted from both sides: number "
                                         "all alike.")
         if quad.normal @ normal < 1 - _NEAR:
-            raise bulk.error(quad.card, f"its normal isn't that of the element in line {quads[0].card.line}: the panel "
-                                        "isn't flat.")
+            raise bulk.error(quad.card, f"its normal is not that of the element in line {quads[0].card.line}: the "
+                                        "panel is not flat.")
     axes = _axes(quads[0], struck_last)
     used = {number for quad in quads for number in quad.read.nodes if number}
     local = {number: axes @ points[number] for number in used}
     low, high = (limit(list(local.values()), axis=0) for limit in (np.min, np.max))
     lengths = high - low
     if lengths[2] > _NEAR * max(lengths):
-        raise bulk.missing("the grids of the panel don't lie in one plane.")
+        raise bulk.missing("the grids of the panel do not lie in one plane.")
     area = sum(np.linalg.norm(np.cross(quad.corners[2] - quad.corners[0], quad.corners[3] - quad.corners[1])) / 2
                for quad in quads)
     if abs(area - lengths[0] * lengths[1]) > _NEAR * area:
@@ -96,22 +96,22 @@ def _no_rectangle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndar
                                          "degrees to the basic system, to which the panel's edges need to be parallel: "
                                          "give the grids in the axes of the edges.")
     others = _other_elements(bulk) or " A panel has no holes, notches or skew edges."
-    return bulk.missing(f"the CQUAD4 and CQUAD8 don't make up a rectangle: they cover {area:.6g} of the "
+    return bulk.missing(f"the CQUAD4 and CQUAD8 do not make up a rectangle: they cover {area:.6g} of the "
                         f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.{others}")
 
 
 def _other_elements(bulk: BulkData) -> str:
-    """Return a sentence on elements that a panel can't have; empty if there are none."""
+    """Return a sentence on elements that a panel cannot have; empty if there are none."""
     cards = list(bulk.named(*_OTHERS))
     if not cards:
         return ""
     names = " and ".join(dict.fromkeys(card.name for card in cards))
     lines = ranges((card.line for card in cards), [card.line for card in bulk.cards])
-    return f" {names}, {lines}, can't be taken: mesh the panel with CQUAD4 or CQUAD8 alone."
+    return f" {names}, {lines}, cannot be taken: mesh the panel with CQUAD4 or CQUAD8 alone."
 
 
 def _refuse_cuts(bulk: BulkData, places: Mapping[int, np.ndarray], size: float) -> None:
-    """Refuse grids at the same place: elements that don't share a grid don't hold together."""
+    """Refuse grids at the same place: elements that do not share a grid do not hold together."""
     first_at: dict[tuple[int, int], int] = {}
     for number, place in sorted(places.items()):
         first = first_at.setdefault(tuple(np.round(place[:2] / (1e-5 * size)).astype(int)), number)
@@ -192,14 +192,14 @@ def _ends_in_basic(system: Any, systems: Mapping[int, Any]) -> bool:
 
 
 def _no_system(bulk: BulkData, user: BulkCard, number: int) -> DeckError:
-    """Return an error about a coordinate system that isn't there as a CORD2R."""
+    """Return an error about a coordinate system that is not there as a CORD2R."""
     for card in bulk.cards:
         # A CORD1R or its like may define two systems, in fields 1 and 5.
         fields = (1, 5) if card.name.startswith("CORD1") else (1,)
         if card.name.startswith("CORD") and str(number) in [str(card.fields.field(field) or "") for field in fields]:
             return bulk.error(card, f"coordinate system {number}, which the {user.name} in line {user.line} takes, "
                                     "needs to be a CORD2R, rectangular and given by points.")
-    return bulk.error(user, f"coordinate system {number} isn't there as a CORD2R.")
+    return bulk.error(user, f"coordinate system {number} is not there as a CORD2R.")
 
 
 def _position(bulk: BulkData, systems: Mapping[int, Any], card: BulkCard, grid: Any) -> np.ndarray:
@@ -220,7 +220,7 @@ def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: R
             raise bulk.error(card, f"number {read.eid} is taken by the {other.name} in line {other.line}.")
         for place, number in enumerate(read.nodes):
             if number not in points and (number or place < 4):
-                raise bulk.error(card, f"grid {number or 0} isn't there.")
+                raise bulk.error(card, f"grid {number or 0} is not there.")
         corners = np.array([points[number] for number in read.nodes[:4]])
         normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
         if not np.linalg.norm(normal) > 0:
@@ -237,7 +237,7 @@ def _axes(quad: _Quadrilateral, struck_last: bool) -> np.ndarray:
     normal = quad.normal
     along = int(np.argmax(np.abs(normal)))
     if abs(normal[along]) < 1 - _NEAR:
-        raise quad.card.error("the panel isn't parallel to a plane of the basic coordinate system: give the grids in "
+        raise quad.card.error("the panel is not parallel to a plane of the basic coordinate system: give the grids in "
                               "axes of the panel.")
     z = np.zeros(3)
     z[along] = np.sign(normal[along]) * (-1 if struck_last else 1)

@@ -44,11 +44,12 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
     pins = _pins(bulk, held, on_edges, common, kinds, remarks)
     if pins and (fixed or len(pins) > _RIGID_MOTIONS):
         card, grid = pins[0]
-        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, which isn't the support of an entire edge.")
+        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, "
+                                   "which is not the support of an entire edge.")
     for card, _ in pins:
         remarks.add(card, "part of it suppresses in-plane rigid-body motion; Implam does so by itself")
     for number in sorted({edge for edge, _ in lines}):
-        remarks.edge(EDGES[number], "held in-plane by &line, as the edges aren't held alike or both ways")
+        remarks.edge(EDGES[number], "held in-plane by &line, as the edges are not held alike or both ways")
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
 
 
@@ -58,7 +59,7 @@ def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shap
     held: Held = {}
     for card, numbers, components in _constraints(bulk, _sets(bulk, chosen)):
         if any(number not in shape.places for number in numbers):
-            remarks.add(card, "some of its grids aren't the panel's")
+            remarks.add(card, "some of its grids are not the panel's")
         _hold(bulk, held, card, numbers, components, grids, shape)
     for number in shape.places:
         card, grid = grids[number]
@@ -82,7 +83,7 @@ def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
     sets = added.get(wanted, {wanted})
     if absent := sets - there:
         origin = "of the case control" if chosen is None else "by --spc"
-        raise bulk.missing(f"SPC = {wanted} {origin} needs an SPC1 or SPC of set {min(absent)}, which isn't there.")
+        raise bulk.missing(f"SPC = {wanted} {origin} needs an SPC1 or SPC of set {min(absent)}, which is not there.")
     return sets
 
 
@@ -147,7 +148,7 @@ def _common(bulk: BulkData, held: Held, along: list[int], number: int) -> set[in
     for component in sorted((somewhere - common) & {3, 4, 5}):
         grid, card = next((grid, held[grid][component]) for grid in along if component in held.get(grid, {}))
         bare = next(grid for grid in along if component not in held.get(grid, {}))
-        raise bulk.error(card, f"it holds grid {grid} on the edge {EDGES[number]}, but grid {bare} there isn't held "
+        raise bulk.error(card, f"it holds grid {grid} on the edge {EDGES[number]}, but grid {bare} there is not held "
                                "alike: only entire edges can be supported.")
     return common
 
@@ -191,7 +192,7 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
         missing = expected - set(there)
         if missing & {1, 2, 3}:
             card = _card_on(held, on_edges, edges[0]) or _card_on(held, on_edges, edges[-1])
-            sentence = (f"the corner grid {grid} doesn't hold component {min(missing)} (in the panel's axes) as its "
+            sentence = (f"the corner grid {grid} does not hold component {min(missing)} (in the panel's axes) as its "
                         "edges do: only entire edges can be supported.")
             raise card.error(sentence) if card else bulk.missing(sentence)
         if missing:
@@ -203,7 +204,7 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
             if component in expected:
                 continue
             if component > 2:
-                raise bulk.error(card, f"it holds grid {grid}, which isn't on an edge supported like that: only entire "
-                                       "edges can be supported.")
+                raise bulk.error(card, f"it holds grid {grid}, which is not on an edge supported like that: only "
+                                       "entire edges can be supported.")
             pins.append((card, grid))
     return pins

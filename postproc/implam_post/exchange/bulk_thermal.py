@@ -36,8 +36,8 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
     temperature = _temperature(bulk, defaults, remarks)
     if len(references) > 1 and temperature is not None:
         first, *others = references.values()
-        raise bulk.error(others[0], f"its TREF isn't that of the {first.name} in line {first.line}: all plies are free "
-                                    "of stress at one temperature.")
+        raise bulk.error(others[0], f"its TREF is not that of the {first.name} in line {first.line}: all plies are "
+                                    "free of stress at one temperature.")
     reference = next(iter(references), 0.0)
     if temperature is not None:
         _note_blank_laminates(bulk, properties, cards, remarks)
@@ -45,7 +45,7 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
     for card in cards:
         if card.given(_TREF[card.name]):
             remarks.add(card, "TREF stands in a comment of the deck, as there is no temperature by TEMPD"
-                        if len(references) == 1 else "TREF isn't taken, as it differs")
+                        if len(references) == 1 else "TREF is not taken, as it differs")
     return Thermal(None, reference if len(references) == 1 and reference else None)
 
 
@@ -80,7 +80,7 @@ def _temperature(bulk: BulkData, cards: Iterable[BulkCard], remarks: Remarks) ->
         chosen = next(iter(found))
     for number, (card, _) in found.items():
         if number != chosen:
-            remarks.add(card, f"set {number} isn't taken: it isn't TEMPERATURE(LOAD) of the case control")
+            remarks.add(card, f"set {number} is not taken: it is not TEMPERATURE(LOAD) of the case control")
     if chosen not in found:
         return None
     card, temperature = found[chosen]

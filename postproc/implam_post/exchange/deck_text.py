@@ -102,7 +102,7 @@ def _constants(material: Material) -> Iterator[str]:
 
 def _wrapped(head: str, text: str) -> list[str]:
     """Return a group within the width of a line."""
-    # A blank that doesn't break keeps the closing slash with the last key.
+    # A blank that does not break keeps the closing slash with the last key.
     lines = textwrap.wrap(f"{head}{text}\u00a0/", 110, subsequent_indent=len(head) * " ", break_long_words=False,
                           break_on_hyphens=False)
     return [line.replace("\u00a0", " ") for line in lines]

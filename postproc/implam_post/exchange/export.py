@@ -26,7 +26,7 @@ def summary(panel: Panel) -> Iterator[str]:
     if panel.imperfection:
         yield f"initial deflection in the coordinates of the nodes, amplitude {panel.imperfection:g}"
     for group in panel.unwritten:
-        yield f"note: &{group} isn't written: add what it holds or loads."
+        yield f"note: &{group} is not written: add what it holds or loads."
 
 
 def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]]

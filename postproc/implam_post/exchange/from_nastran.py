@@ -26,7 +26,7 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
             shear_23: float | None = None) -> tuple[str, Remarks]:
     """Return the deck of a panel and remarks on its cards."""
     for card in bulk.named("INCLUDE"):
-        raise bulk.error(card, "it isn't followed: put all bulk data into one file.")
+        raise bulk.error(card, "it is not followed: put all bulk data into one file.")
     remarks = Remarks()
     systems, grids = read_systems(bulk), read_grids(bulk)
     shape = read_shape(bulk, systems, grids, struck_last, remarks)
@@ -105,7 +105,7 @@ def _command(options: argparse.Namespace) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
     parser = CommandParser("implam-from-nastran", description="Turn Nastran's bulk data of a rectangular composite "
-                           "panel into a deck, and report which cards were taken and which weren't.")
+                           "panel into a deck, and report which cards were taken and which were not.")
     parser.add_argument("bulk", type=Path, metavar="FILE.bdf", help="bulk data, with or without case control")
     parser.add_argument("-o", "--output", type=Path, metavar="DECK.nml", help="the deck (default: FILE.nml)")
     parser.add_argument("--struck", choices=("first", "last"), default="first",

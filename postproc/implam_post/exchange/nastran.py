@@ -114,4 +114,4 @@ def real(number: float, width: int) -> str:
         written = f"{integer}.{fraction}" + (f"{int(exponent):+d}" if exponent else "")
         if len(written) <= width:
             return written
-    raise ValueError(f"{number} doesn't fit into {width} characters")
+    raise ValueError(f"{number} does not fit into {width} characters")

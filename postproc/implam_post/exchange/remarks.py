@@ -23,10 +23,10 @@ class Remarks:
         self._edges.append(f"edge {edge}: {sentence}")
 
     def untaken(self, card: BulkCard, names: Mapping[int, str]) -> None:
-        """Add which of these fields of a card are there, for they aren't taken."""
+        """Add which of these fields of a card are there, for they are not taken."""
         for number, name in names.items():
             if card.given(number):
-                self.add(card, f"{name} isn't taken")
+                self.add(card, f"{name} is not taken")
 
     def texts(self, bulk: BulkData) -> list[str]:
         """Return the remarks in the order of the file, those on edges at the end."""

@@ -36,7 +36,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
         written = set(file["times"][min(file["times"])].get("cells", {}))
     for group, field in _STATES.items():
         if deck.has(group) and field not in written:
-            raise FileError(f"{path} doesn't hold the state of &{group}: run again with '{group}' among the fields of "
+            raise FileError(f"{path} does not hold the state of &{group}: run again with '{group}' among the fields of "
                             f"&output.")
     plies = plies_of(deck)
     if snapshot.mesh.last_ply.max() != len(plies):
@@ -46,7 +46,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
     x, y, stacks = _completed(x, y, stacks, fields.part)
     every_cell = {(column, row) for column in range(len(x) - 1) for row in range(len(y) - 1)}
     if stacks.keys() != every_cell or not all(_is_complete(found, len(plies)) for found in stacks.values()):
-        raise FileError(f"{path} is damaged: its cells don't make a plate of {len(plies)} plies.")
+        raise FileError(f"{path} is damaged: its cells do not make a plate of {len(plies)} plies.")
     return _panel(deck, plies, x, y, stacks)
 
 
@@ -122,7 +122,7 @@ def _from_deck(deck: Deck) -> Panel:
 def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
     """Combine the panel with supports and load of the deck."""
     if "elastic" in deck.edges():
-        raise deck.error("plate", "edges = 'elastic' can't be written: give other edges, and add springs there.")
+        raise deck.error("plate", "edges = 'elastic' cannot be written: give other edges, and add springs there.")
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
         raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
     fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"

@@ -87,7 +87,7 @@ def _around(panel: Panel, i: int, j: int) -> list[Cell]:
 
 
 def _element(cell: Cell, stack: Stack, numbers: dict[Place, dict[int, int]]) -> Element:
-    """Return the element of a stack: at each place the lowest grid that isn't below the stack's top; 0 if none."""
+    """Return the element of a stack: at each place the lowest grid that is not below the stack's top; 0 if none."""
     def grid(place: Place) -> int:
         at = numbers.get(place, {})
         return at[max(first for first in at if first <= stack.first)] if at else 0

@@ -43,14 +43,14 @@ class Deck:
         return group.lower() in self.groups
 
     def values(self, group: str, key: str) -> list[Value]:
-        """Return all values of a key; empty if the deck doesn't give it."""
+        """Return all values of a key; empty if the deck does not give it."""
         found = self.groups.get(group.lower(), [])
         if len(found) > 1:
             raise self.error(group, "stands in the deck more than once.")
         return found[0].get(key.lower(), []) if found else []
 
     def value(self, group: str, key: str, default: Value | None = None) -> Value:
-        """Return the value of a key, or `default` if the deck doesn't give it; no default means it must be there."""
+        """Return the value of a key, or `default` if the deck does not give it; no default means it must be there."""
         return self.single(self.values(group, key), group, key, default)
 
     def number(self, group: str, key: str, default: float | None = None) -> float:
@@ -58,7 +58,7 @@ class Deck:
         return as_number(self.value(group, key, default), f"{self.path.name}: &{group} {key}")
 
     def numbers(self, group: str, key: str) -> list[float]:
-        """Return all values of a key as numbers; empty if the deck doesn't give it."""
+        """Return all values of a key as numbers; empty if the deck does not give it."""
         return [as_number(value, f"{self.path.name}: &{group} {key}") for value in self.values(group, key)]
 
     def choice(self, group: str, key: str, allowed: Iterable[str]) -> str:
@@ -104,7 +104,7 @@ class Deck:
 def as_number(value: Value, where: str) -> float:
     """Return `value` if it is a finite number."""
     if isinstance(value, (bool, str)) or not np.isfinite(value):
-        raise DeckError(f"{where}: {value!r} isn't a number.")
+        raise DeckError(f"{where}: {value!r} is not a number.")
     return value
 
 

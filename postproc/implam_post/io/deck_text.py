@@ -75,11 +75,11 @@ def deck_value(value: object) -> str:
         return value if not value or _reads_as_values(value) else "'" + value.replace("'", "''") + "'"
     if isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
         return repr(value)
-    raise DeckError(f"{value!r} can't stand in a deck.")
+    raise DeckError(f"{value!r} cannot stand in a deck.")
 
 
 def set_keys(text: str, settings: Mapping[KeyPath, str], name: str = "deck") -> str:
-    """Return the deck with keys set; an empty value takes the key out. A group that isn't there is added at the end."""
+    """Return the deck with keys set; an empty value takes the key out. A missing group is added at the end."""
     for path, value in settings.items():
         places = [place for place in _places(text, name) if place.name == path.group]
         if path.number is None and len(places) > 1:
@@ -124,7 +124,7 @@ def number_of(text: str, path: KeyPath, name: str = "deck") -> float:
         raise DeckError(f"{name}: {path}: there are {len(groups)} groups &{path.group}.")
     values: list[Value] = groups[number - 1].get(path.key.lower(), [])
     if len(values) != 1 or isinstance(values[0], (bool, str)):
-        raise DeckError(f"{name}: {path} isn't a single number in the deck.")
+        raise DeckError(f"{name}: {path} is not a single number in the deck.")
     return values[0]
 
 

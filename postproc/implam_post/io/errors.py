@@ -17,7 +17,7 @@ class ImplamError(Exception):
 
 
 class DeckError(ImplamError):
-    """The deck can't be read, or describes what the semi-analytic solution doesn't cover."""
+    """The deck cannot be read, or describes what the semi-analytic solution does not cover."""
 
     exit_code = EXIT_DECK
 
@@ -46,7 +46,7 @@ def count(text: str) -> int:
     """Return an integer greater than zero, out of a command line."""
     number = int(text)
     if number < 1:
-        raise argparse.ArgumentTypeError(f"{text} isn't greater than zero")
+        raise argparse.ArgumentTypeError(f"{text} is not greater than zero")
     return number
 
 
@@ -54,7 +54,7 @@ def finite(text: str) -> float:
     """Return a finite number, out of a command line."""
     number = float(text)
     if not math.isfinite(number):
-        raise argparse.ArgumentTypeError(f"{text} isn't a finite number")
+        raise argparse.ArgumentTypeError(f"{text} is not a finite number")
     return number
 
 
@@ -62,7 +62,7 @@ def positive(text: str) -> float:
     """Return a finite number greater than zero, out of a command line."""
     number = float(text)
     if not (math.isfinite(number) and number > 0):
-        raise argparse.ArgumentTypeError(f"{text} isn't a number greater than zero")
+        raise argparse.ArgumentTypeError(f"{text} is not a number greater than zero")
     return number
 
 

@@ -220,7 +220,7 @@ def read_fields(path: Path | str) -> Fields:
     if not snapshots:
         raise NoTimeError(f"{path} holds no time yet.")
     if part not in IMAGES:
-        raise FileError(f"{path} holds a part of the plate that isn't known here: {part}.")
+        raise FileError(f"{path} holds a part of the plate that is not known here: {part}.")
     return Fields(str(path), part, snapshots)
 
 
@@ -234,7 +234,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
         raise FileError(f"{path} is a folder; give the fields NAME.h5 in it." if path.is_dir() else
                         f"the fields {path} cannot be read (there is no such file).")
     if not h5py.is_hdf5(path):
-        raise FileError(f"{path} isn't a file of fields written by implam; give NAME.h5.")
+        raise FileError(f"{path} is not a file of fields written by implam; give NAME.h5.")
     try:
         with h5py.File(path, "r") as file:
             if "meshes" not in file and _CHECKPOINT in path.name:
@@ -243,7 +243,8 @@ def opened(path: Path) -> Iterator[h5py.File]:
     except OSError as error:
         raise FileError(f"the fields {path} cannot be read ({_reason(error)}).") from None
     except _DAMAGED as error:
-        raise FileError(f"{path} isn't a file of fields written by implam, or is damaged ({_reason(error)}).") from None
+        raise FileError(f"{path} is not a file of fields written by implam, or is damaged "
+                        f"({_reason(error)}).") from None
 
 
 class _MemberError(ValueError):
@@ -254,13 +255,13 @@ def _reason(error: Exception) -> str:
     """Return what is wrong; libraries describe it by their internals, which do not help a user."""
     if isinstance(error, _MemberError):
         return str(error)
-    if lacking := re.search(r"object '([^']*)' doesn't exist", str(error)):
+    if lacking := re.search(r"object '([^']*)' doesn.t exist", str(error)):
         return f"it has no {lacking[1]}"
     if isinstance(error, OSError) and error.errno:
         return os.strerror(error.errno).lower()
     if isinstance(error, OSError) and "truncated" in str(error):
         return "it ends too early"
-    return "part of it isn't what implam writes"
+    return "part of it is not what implam writes"
 
 
 def _in_order(group: h5py.Group) -> list[h5py.Group]:

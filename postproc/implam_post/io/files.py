@@ -39,7 +39,7 @@ def write_table(path: Path, table: "pd.DataFrame", float_format: str | None = No
 
 
 def read_text(path: Path, what: str) -> str:
-    """Return the text of a file; `what` it is stands in the message if it can't be read."""
+    """Return the text of a file; `what` it is stands in the message if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8-sig")
     except OSError as error:
@@ -63,7 +63,7 @@ def refuse_equal_names(paths: Sequence[Path], folder: Path | None) -> None:
 
 
 def try_lock(path: Path) -> int | None:
-    """Lock a file, made if it isn't there; return its descriptor, or nothing if somebody else has locked it.
+    """Lock a file, made if it is not there; return its descriptor, or nothing if somebody else has locked it.
 
     The lock belongs to whoever has the descriptor, children that inherit it too, and ends with the last of them.
     """

@@ -21,7 +21,7 @@ def find_program(words: str | None) -> list[str]:
     for position in dict.fromkeys((0, len(chosen) - 1)):
         found = shutil.which(chosen[position]) if chosen else None
         if found is None:
-            raise FileError(f"the program '{shlex.join(chosen)}' isn't there: name it by --program or by IMPLAM in "
+            raise FileError(f"the program '{shlex.join(chosen)}' is not there: name it by --program or by IMPLAM in "
                             "the environment, or put implam on the PATH.")
         chosen[position] = str(Path(found).absolute())
     return chosen

@@ -204,12 +204,12 @@ def read_summary(path: Path) -> Summary:
     try:
         summary = json.loads(read_text(path, "the summary"))
     except json.JSONDecodeError as error:
-        raise FileError(f"{path} isn't a summary written by implam (line {error.lineno} is no JSON).") from None
+        raise FileError(f"{path} is not a summary written by implam (line {error.lineno} is no JSON).") from None
     except (ValueError, RecursionError):
-        raise FileError(f"{path} isn't a summary written by implam.") from None
+        raise FileError(f"{path} is not a summary written by implam.") from None
     if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():
-        raise FileError(f"{path} isn't a summary written by implam.")
+        raise FileError(f"{path} is not a summary written by implam.")
     take_earlier_names(summary)
     if wrong := misshapen_member(summary):
-        raise FileError(f"{path} isn't a summary written by implam, or it is damaged ({wrong}).")
+        raise FileError(f"{path} is not a summary written by implam, or it is damaged ({wrong}).")
     return Summary(summary, path)

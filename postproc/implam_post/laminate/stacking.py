@@ -29,7 +29,7 @@ class _Reader:
 
     def error(self) -> DeckError:
         """Return an error that names the place."""
-        return DeckError(f"stacking '{self.text}' can't be read from character {self.at + 1} on.")
+        return DeckError(f"stacking '{self.text}' cannot be read from character {self.at + 1} on.")
 
     def plies(self) -> tuple[list[float], bool]:
         """Read items separated by slashes; return their angles, and whether the last is the middle one of a mirror."""

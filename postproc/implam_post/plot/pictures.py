@@ -187,7 +187,7 @@ def _names(paths: Sequence[str]) -> list[str]:
 
 
 def _save(figure: Figure, path: Path, style: PictureStyle = _PLAIN) -> Path:
-    """Write the figure, making the folder if it isn't there, and return the path."""
+    """Write the figure, making the folder if it is not there, and return the path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         lay_out(figure)

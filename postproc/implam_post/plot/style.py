@@ -20,7 +20,7 @@ STYLES = [{"color": f"C{place}", "linestyle": line_style} for place, line_style 
 
 @dataclass(frozen=True)
 class PictureStyle:
-    """What holds for all pictures of a command; `system` is that of the results, empty if it isn't known."""
+    """What holds for all pictures of a command; `system` is that of the results, empty if it is not known."""
 
     system: str = ""
     dots_per_inch: int = 150

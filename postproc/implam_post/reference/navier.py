@@ -22,7 +22,7 @@ class Plate:
         """Refuse boundary conditions that the series cannot satisfy."""
         if not self.section.is_specially_orthotropic():
             raise DeckError("the laminate couples bending with twisting or stretching (A16, A26, D16, D26, B or the "
-                            "eccentricity of its mass isn't zero): Navier's series does not hold.")
+                            "eccentricity of its mass is not zero): Navier's series does not hold.")
 
     def stiffness(self, m: np.ndarray, n: np.ndarray) -> np.ndarray:
         """Return the 3x3 stiffness of (W, X, Y) a unit of area/4 for each pair of half-wave numbers."""

@@ -17,7 +17,7 @@ from implam_post.io.quantities import QUANTITIES
 from implam_post.regress.compare import Comparison
 from implam_post.regress.expectations import Expectation, Expectations, parse_expectations
 
-# Of a deck of which nothing is expected yet; those that its history doesn't have are left out.
+# Of a deck of which nothing is expected yet; those that its history does not have are left out.
 _FIGURES = ("peak_force", "max_deflection", "rebound_velocity", "absorbed_energy", "first_growth_force")
 _TIMES = ("peak_force_time", "contact_duration")
 _COLUMNS = ("delaminated_area", "fibre_failures", "matrix_cracks", "matrix_crushings")
@@ -27,7 +27,7 @@ _NUMBER = r"(\s*{key}\s*=\s*)([-+\w.]+)(.*)"
 
 
 def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison]]) -> list[str]:
-    """Write what was found where it isn't within the tolerance; return what was changed, a line for each entry.
+    """Write what was found where it is not within the tolerance; return what was changed, a line for each entry.
 
     `comparisons` are those of each variant. Entries that were met, comments and everything else stay.
     """
@@ -42,7 +42,7 @@ def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison
     changed = _change(text, {place: (found[place][0].expected, new) for place, new in changes.items()})
     if _all_entries(expectations.path, changed) != {
             place: changes.get(place, entries[0].expected) for place, entries in found.items()}:
-        raise FileError("its entries aren't [[expect]] tables with a line for each key.")
+        raise FileError("its entries are not [[expect]] tables with a line for each key.")
     write_text(expectations.path, changed)
     names = [variant.name for variant in expectations.variants]
     return [_change_text(found[place][0].expected, new, names[place[0]] if place[0] >= 0 and len(names) > 1 else "")
@@ -86,7 +86,7 @@ def _accepted(entries: Sequence[Comparison]) -> Expectation:
     expected = entries[0].expected
     values = [comparison.found for comparison in entries]
     if not all(map(math.isfinite, values)):
-        raise FileError(f"{expected.label} isn't found in the history.")
+        raise FileError(f"{expected.label} is not found in the history.")
     value = (min(values) + max(values)) / 2
     new = replace(expected, relative=None, absolute=expected.tolerance) if not value and expected.relative else expected
     new = replace(new, value=_short(value, abs(new.relative * value) if new.absolute is None else new.absolute))

@@ -44,7 +44,7 @@ def deck_path(expectations: Expectations, decks: Path | None) -> Path:
 
 
 def _accept(expectations: Expectations, outcomes: Sequence[Outcome]) -> bool:
-    """Write the results of the runs of one file, and print its name; return False if they can't be accepted."""
+    """Write the results of the runs of one file, and print its name; return False if they cannot be accepted."""
     if all(outcome.passed for outcome in outcomes):
         return True
     path = expectations.path
@@ -104,7 +104,7 @@ def _command(options: argparse.Namespace) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; the exit code is 1 if anything isn't as expected."""
+    """Run the command; the exit code is 1 if anything is not as expected."""
     parser = CommandParser(
         "implam-regress", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
         description="Run decks and compare the results with expected values, NAME.toml beside NAME.nml. A deck\n"

@@ -82,7 +82,7 @@ def _command(options: argparse.Namespace) -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; the exit code is 1 if an expectation isn't met."""
+    """Run the command; the exit code is 1 if an expectation is not met."""
     parser = CommandParser("implam-compare", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
                            description="Compare a history with expected values.")
     parser.add_argument("history", type=Path, metavar="HISTORY.csv", help="history written by implam")

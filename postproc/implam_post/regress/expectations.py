@@ -37,7 +37,7 @@ The file of expectations, of which at least one is needed:
     [[expect]]
     quantity = "rms_force"           # over the first contact, as a fraction of the peak
     against = "deck.nml"             # a deck: its semi-analytic solution; else another history, beside this file or,
-    value = 0.0                      # if it isn't there, beside the history; deck.nml there is the deck of the run
+    value = 0.0                      # if it is not there, beside the history; deck.nml there is the deck of the run
     absolute = 0.01                  # l2_force: relative L2 difference over the reference's time, as of a measured one
 
     [[curve]]                        # optional: a measured curve for --plot, a CSV beside this file; its first two
@@ -166,7 +166,7 @@ def _variant(table: dict, common: list[Expectation]) -> Variant:
         target, _, value = setting.partition("=")
         key = key_path(target)
         if key is None or not value.strip():
-            raise FileError(f"variant {name}: '{setting}' isn't group%key=value.")
+            raise FileError(f"variant {name}: '{setting}' is not group%key=value.")
         keys[key] = value.strip()
     expectations = common + _entries(table.get("expect", []))
     if not expectations:

@@ -11,7 +11,7 @@ _NOT_XML = re.compile(r"[^\t\n\r\u0020-\uD7FF\uE000-\uFFFD\U00010000-\U0010FFFF]
 
 
 def junit(outcomes: Sequence[Outcome], seconds: float) -> str:
-    """Return the XML: a test case a run; one that couldn't be compared is an error, one that differs a failure."""
+    """Return the XML: a test case a run; one that could not be compared is an error, one that differs a failure."""
     errors = sum(bool(outcome.fault) for outcome in outcomes)
     counts = {"tests": len(outcomes), "failures": sum(not outcome.passed for outcome in outcomes) - errors,
               "errors": errors}
@@ -34,5 +34,5 @@ def junit(outcomes: Sequence[Outcome], seconds: float) -> str:
 
 
 def _clean(text: str) -> str:
-    """Return a text without what XML can't hold."""
+    """Return a text without what XML cannot hold."""
     return _NOT_XML.sub("?", text)

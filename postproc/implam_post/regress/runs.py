@@ -85,7 +85,7 @@ def _finite_history(folder: Path) -> History:
     history = read_history(path)
     for name, values in history.columns.items():
         if not np.all(np.isfinite(values)):
-            raise FileError(f"the column {name} of the history isn't finite throughout.")
+            raise FileError(f"the column {name} of the history is not finite throughout.")
     return history
 
 

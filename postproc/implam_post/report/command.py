@@ -236,7 +236,7 @@ def write_report(path: Path, output: Path | None, undamaged: float | None = None
     if path.is_dir():
         return write_page(path, output)
     if not path.name.endswith(SUMMARY):
-        raise FileError(f"{path} isn't NAME{SUMMARY}; a report needs that file, or the folder that holds it.")
+        raise FileError(f"{path} is not NAME{SUMMARY}; a report needs that file, or the folder that holds it.")
     run_shown = open_run(path)
     written = (output or path.parent) / f"{run_shown.name}_report.html"
     if missing := missing_member(run_shown.summary):

@@ -35,9 +35,9 @@ def write_page(folder: Path, output: Path | None) -> Path:
     try:
         content = json.loads(read_text(path, "the statistics"))
     except ValueError as error:
-        raise FileError(f"{path} isn't written by implam-sweep, or is damaged ({error}).") from None
+        raise FileError(f"{path} is not written by implam-sweep, or is damaged ({error}).") from None
     if wrong := misshapen(content, _STATISTICS, "") or _misshapen_tables(content):
-        raise FileError(f"{path} isn't written by implam-sweep, or is damaged ({wrong.removeprefix('.')}).")
+        raise FileError(f"{path} is not written by implam-sweep, or is damaged ({wrong.removeprefix('.')}).")
     try:
         text = _page(content, folder)
     except OSError as error:

@@ -62,7 +62,7 @@ class _Tables:
 
 
 def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
-    """Write and check the decks, run what hasn't ended, and write what there is."""
+    """Write and check the decks, run what has not ended, and write what there is."""
     sweep.write_decks()
     for case in study.cases if options.retry else ():
         remove_results(sweep.folder(case))

@@ -32,7 +32,7 @@ class References:
         self._known: dict[str, History] = {}
 
     def of(self, trial: Trial) -> History | None:
-        """Return the reference of a trial whose first run has ended; nothing if it is a run that hasn't."""
+        """Return the reference of a trial whose first run has ended; nothing if it is a run that has not."""
         reference = trial.problem.reference
         if isinstance(reference, Case):
             return None if self._sweep.failure(reference) else self._read(_history(self._sweep.folder(reference)))

@@ -165,7 +165,7 @@ def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lo
 
 
 def _is_useless(checkpoint: Path, folder: Path) -> bool:
-    """Return whether a restart ended because its checkpoint can't be read, rather than a file not be written."""
+    """Return whether a restart ended because its checkpoint cannot be read, rather than a file not be written."""
     printed = last_words(read_text(folder / OUTPUT, "the output"))
     return checkpoint.name in printed and not printed.startswith(("Cannot write", "Cannot complete"))
 
@@ -180,7 +180,7 @@ def _command(options: argparse.Namespace) -> int:
     """Run the case."""
     decks = sorted(options.folder.glob("*.nml"))
     if len(decks) != 1:
-        raise FileError(f"{options.folder} isn't the folder of a case, with its deck.")
+        raise FileError(f"{options.folder} is not the folder of a case, with its deck.")
     stop = _Stop(options.lifeline)
     code = run_case(options.folder, decks[0], find_program(options.program), stop)
     print(f"{decks[0]}: {_STOPPING if code == EXIT_STOPPED else f'ended with {code}'}")

@@ -22,7 +22,7 @@ from implam_post.sweep.case_run import case_command, remove_results
 from implam_post.sweep.plan import FORMAT, Case, is_random, only, read_plan
 from implam_post.sweep.runs import NOT_RUN, STOPPED, Sweep, run_cases
 
-if TYPE_CHECKING:  # it takes numpy, which a faulty sweep needn't wait for
+if TYPE_CHECKING:  # it takes numpy, which a faulty sweep need not wait for
     from implam_post.sweep.table import Table
 
 _TABLE_EVERY = 10.0  # seconds between tables written on the way

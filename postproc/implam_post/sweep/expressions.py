@@ -71,12 +71,12 @@ def _path(node: ast.expr) -> str | None:
 def _number(value: object, what: str) -> Number:
     """Return `value` if it is a finite number."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise DeckError(f"'{what}' isn't a number.")
+        raise DeckError(f"'{what}' is not a number.")
     return _finite(value)
 
 
 def _finite(value: Number) -> Number:
     """Return `value` if it is finite and real."""
     if isinstance(value, complex) or not math.isfinite(value):
-        raise DeckError("a value on the way isn't finite.")
+        raise DeckError("a value on the way is not finite.")
     return value

@@ -50,14 +50,14 @@ class Sweep:
         return self.folder(case) / case.deck_name
 
     def write_decks(self) -> None:
-        """Write the decks that aren't there yet."""
+        """Write the decks that are not there yet."""
         for case in self.plan.cases:
             path = self.deck(case)
             if not path.exists() or read_text(path, "the deck") != case.deck:
                 write_text(path, case.deck)
 
     def open_cases(self) -> list[Case]:
-        """Return the cases whose run hasn't ended for good, one of each deck."""
+        """Return the cases whose run has not ended for good, one of each deck."""
         first: dict[str, Case] = {}
         for case in self.plan.cases:
             first.setdefault(case.key, case)

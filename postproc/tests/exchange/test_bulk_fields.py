@@ -123,7 +123,7 @@ class TemperatureTest(ImportTest):
         self.assertIn("alpha1=-3e-7 alpha2=2.8e-5", text)
         self.assertIn("alpha1=2.3e-5 alpha2=2.3e-5", text)
         self.assertIn("\n&thermal   delta_T=-160 /\n", text)
-        self.assertIn("set 5 isn't taken", self.printed)
+        self.assertIn("set 5 is not taken", self.printed)
         self.assertIn("PCOMP, line 38: TREF is blank: that of the materials is taken", self.printed)
         self.assertIn("delta_T=20 /", self.imported(self.cured(180.0, 0.0, head=HEAD, more=temperature)))
         self.assertNotIn("is blank", self.printed)
@@ -146,7 +146,7 @@ class TemperatureTest(ImportTest):
         """Two references, two sets, or single grids with their own."""
         bulk = self.cured(head=HEAD, more=[("TEMPD", 4, 20.0)])
         bulk.materials[1] = (*bulk.materials[1][:-1], 20.0)
-        self.refused(bulk, "its TREF isn't that of the MAT8")
+        self.refused(bulk, "its TREF is not that of the MAT8")
         self.refused(self.cured(head=HEAD.replace("BEGIN", "TEMP = 5\nBEGIN")), "the temperatures [4, 5]")
         text = self.imported(self.cured(head=HEAD, more=[("TEMPD", 4, 20.0), ("TEMP", 4, 1, 50.0)]))
         self.assertNotIn("\n&thermal", text)
@@ -188,7 +188,7 @@ class DefaultsTest(ImportTest):
     def test_grdset(self) -> None:
         """Its components, and its system where the grid gives none."""
         bulk = Bulk(edges=("34", "34", "35", "35"), more=[("GRDSET", None, None, None, None, None, None, 126)])
-        self.refused(bulk, "in the panel's plane, which isn't the support of an entire edge")
+        self.refused(bulk, "in the panel's plane, which is not the support of an entire edge")
         bulk.more = [("GRDSET", None, None, None, None, None, None, 6)]
         self.assertEqual(self.deck(bulk).edges(), 4 * ["simple"])
         bulk.more = [("GRDSET", None, 4, None, None, None, None, 6), ("CORD2R", 4, None, *3 * [0.0], 0.0, 0.0, 1.0,

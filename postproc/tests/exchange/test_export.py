@@ -37,7 +37,7 @@ DECK = """
 &pressure value=0.25 /
 &static /
 """
-WITHOUT_PYNASTRAN = None if importlib.util.find_spec("pyNastran") else "pyNastran isn't installed"
+WITHOUT_PYNASTRAN = None if importlib.util.find_spec("pyNastran") else "pyNastran is not installed"
 
 
 class ExportTest(unittest.TestCase):
@@ -189,11 +189,11 @@ class PanelTest(ExportTest):
         self.keep_deck(DECK + "&support window=10, 10 /\n&line at=0 displacement=0 /")
         code, text = self.run_command(to_nastran, self.results)
         self.assertEqual(code, 0, text)
-        self.assertIn("note: &support isn't written", text)
-        self.assertIn("note: &line isn't written", text)
+        self.assertIn("note: &support is not written", text)
+        self.assertIn("note: &line is not written", text)
 
     def test_refused(self) -> None:
-        """Results without the state of what the deck models, times outside, what isn't in the deck."""
+        """Results without the state of what the deck models, times outside, what is not in the deck."""
         with h5py.File(self.results, "a") as file:
             for group in file["times"].values():
                 del group["cells/ply_1_failure"]
@@ -204,7 +204,7 @@ class PanelTest(ExportTest):
         self.assertEqual(self.run_command(to_nastran, self.folder / "damaged.nml", "--time", "1")[0], 1)
         self.assertEqual(self.run_command(to_nastran, self.results, "--time", "7")[0], 1)
         for change, key in ((("'clamped','clamped'", "'clamped','glued'"), "edges"),
-                            (("'clamped','clamped'", "'elastic','clamped'"), "can't be written"),
+                            (("'clamped','clamped'", "'elastic','clamped'"), "cannot be written"),
                             (("elements=3, 3", "elements=3"),
                             "elements"), (("below_ply=2", "below_ply=3"), "below_ply"), (("d=100", "d=0.5"), "d must")):
             self.keep_deck(DECK.replace(*change))

@@ -18,7 +18,7 @@ from implam_post.io.deck import Deck, read_deck
 from implam_post.laminate.decks import plies_of
 from tests.bulk import LAMINATE, MATERIALS, Bulk, free, large, small
 
-WITHOUT = None if importlib.util.find_spec("pyNastran") else "pyNastran isn't installed"
+WITHOUT = None if importlib.util.find_spec("pyNastran") else "pyNastran is not installed"
 
 
 class ImportTest(unittest.TestCase):
@@ -167,7 +167,7 @@ class CardsTest(ImportTest):
         bulk.more = [("SPC1", 1, "12", 1), ("SPC1", 1, "2", bulk.number(8, 0))]
         self.assertEqual(self.deck(bulk).value("plate", "in_plane"), "free")
         bulk.more.append(("SPC1", 1, "1", bulk.number(4, 2), bulk.number(4, 4)))
-        self.refused(bulk, "in the panel's plane, which isn't the support of an entire edge")
+        self.refused(bulk, "in the panel's plane, which is not the support of an entire edge")
         self.assertEqual(self.deck(Bulk(edges=("", "", "", ""))).edges(), 4 * ["free"])
 
     def test_softer_supports_are_reported(self) -> None:
@@ -249,7 +249,7 @@ class ReportTest(ImportTest):
 
         self.assertIn("lines 1-4: executive and case control", printed)
         self.assertRegex(printed, rf"GRID     20, lines {first('GRID')}-{first('GRID') + 19}\n")
-        for name, text in (("MAT8", "TREF isn't taken, as it differs"), ("PCOMP", "NSM is spread over the plies")):
+        for name, text in (("MAT8", "TREF is not taken, as it differs"), ("PCOMP", "NSM is spread over the plies")):
             self.assertIn(f"{name}, line {first(name)}: {text}", printed)
         untaken = printed[printed.index("not taken:"):]
         self.assertRegex(untaken, r"PARAM    2, lines 5-7\n")
@@ -271,7 +271,7 @@ class ReportTest(ImportTest):
         bulk = Bulk(laminate=[laminate], materials=materials)
         code, printed = self.run_command(bulk.text())
         self.assertEqual(code, 0, printed)
-        for text in ("Z0 isn't taken", "G1Z is blank", "no RHO", "XT isn't taken", "G isn't taken"):
+        for text in ("Z0 is not taken", "G1Z is blank", "no RHO", "XT is not taken", "G is not taken"):
             self.assertIn(text, printed)
         carbon = plies_of(read_deck(self.folder / "panel.nml"))[0].material
         self.assertEqual((carbon.g13, carbon.strengths), (4.5e9, ()))
@@ -344,18 +344,18 @@ class RefusedTest(ImportTest):
         without = re.sub(r"CQUAD4 +12 .*\n", "", Bulk().text())
         code, printed = self.run_command(without)
         self.assertEqual((code, printed.count("\n")), (2, 1), printed)
-        self.assertIn("don't make up a rectangle", printed)
-        self.refused(Bulk(place=lambda x, y: (x + 0.3 * y, y, 0.0), write=large), "don't make up a rectangle")
+        self.assertIn("do not make up a rectangle", printed)
+        self.refused(Bulk(place=lambda x, y: (x + 0.3 * y, y, 0.0), write=large), "do not make up a rectangle")
         self.refused(Bulk(place=lambda x, y: (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y, 0.0), write=large),
                      "its first side is at 36.8699 degrees")
-        self.refused(Bulk(place=lambda x, y: (x, y, x * y), write=large), "its normal isn't that of the element")
-        self.refused(Bulk(place=lambda x, y: (x, 0.8 * y, 0.6 * y), write=large), "isn't parallel to a plane")
+        self.refused(Bulk(place=lambda x, y: (x, y, x * y), write=large), "its normal is not that of the element")
+        self.refused(Bulk(place=lambda x, y: (x, 0.8 * y, 0.6 * y), write=large), "is not parallel to a plane")
         self.assertIn("there is no CQUAD4", self.run_command(re.sub(r"CQUAD4.*\n", "", Bulk().text()))[1])
         printed = self.run_command(Bulk().text().replace("CQUAD4", "CQUADR"))[1]
         self.assertIn("CQUADR, lines", printed)
         self.assertIn("mesh the panel with CQUAD4 or CQUAD8 alone", printed)
         self.assertIn("=(3): replicated cards", self.run_command("GRID,1\n=(3)\n")[1])
-        self.assertIn("grid 3 isn't there", self.run_command(re.sub(r"GRID +3 .*\n", "", Bulk().text()))[1])
+        self.assertIn("grid 3 is not there", self.run_command(re.sub(r"GRID +3 .*\n", "", Bulk().text()))[1])
         bulk = Bulk(more=[("GRID", 99, None, 0.1, 0.1, 0.0)])
         cut = bulk.text().replace(small("CQUAD4", 11, 1, 41, 43, 61, 59)[0], small("CQUAD4", 11, 1, 99, 43, 61, 59)[0])
         code, printed = self.run_command(cut)
@@ -363,12 +363,12 @@ class RefusedTest(ImportTest):
         self.assertIn("the grids 41 and 99 are at the same place", printed)
 
     def test_laminates(self) -> None:
-        """Two properties, a missing one, options of the laminate that aren't taken, materials that aren't there."""
+        """Two properties, a missing one, options of the laminate that are not taken, materials that are not there."""
         other = ("PCOMP", 2, *LAMINATE[0][2:11], 30.0, *LAMINATE[0][12:])
         two = Bulk(laminate=[*LAMINATE, other]).text().replace(small("CQUAD4", 3, 1)[0], small("CQUAD4", 3, 2)[0])
         code, printed = self.run_command(two)
         self.assertEqual((code, printed.count("\n")), (2, 1), printed)
-        self.assertIn("it isn't the lay-up of PCOMP 1", printed)
+        self.assertIn("it is not the lay-up of PCOMP 1", printed)
         same = two.replace("30.", "45.")
         self.assertEqual(self.run_command(same)[0], 0)
         weak = small("MAT8", 3, *MATERIALS[0][2:12], 1e9, *MATERIALS[0][13:])
@@ -376,15 +376,15 @@ class RefusedTest(ImportTest):
         weaker = Bulk(laminate=[*LAMINATE, other]).text().replace(small("CQUAD4", 3, 1)[0], small("CQUAD4", 3, 2)[0])
         code, printed = self.run_command(weaker + "\n".join(weak))
         self.assertEqual(code, 2, printed)
-        self.assertIn("it isn't the lay-up of PCOMP 1", printed)
+        self.assertIn("it is not the lay-up of PCOMP 1", printed)
         self.refused(Bulk(laminate=[]), "property 1")
         self.refused(Bulk(laminate=[(*LAMINATE[0][:8], "SMEAR", *LAMINATE[0][9:])]), "LAM = SMEAR")
         self.refused(Bulk(laminate=[*LAMINATE, *LAMINATE]), "number 1 is taken")
-        self.refused(Bulk(materials=MATERIALS[:1]), "material 2 isn't there")
+        self.refused(Bulk(materials=MATERIALS[:1]), "material 2 is not there")
         self.refused(Bulk(materials=[*MATERIALS, ("MAT1", 1, 70e9, None, 0.3)]), "number 1 is taken by the MAT8")
 
     def test_materials(self) -> None:
-        """Moduli that are missing, contradict each other or don't make a stiffness."""
+        """Moduli that are missing, contradict each other or do not make a stiffness."""
         metal = MATERIALS[1]
         for material, text in (((*metal[:3], 20e9, *metal[4:]), "contradicts E and NU"),
                                ((*metal[:4], None, *metal[5:]), "two of E, G and NU"),
@@ -398,7 +398,7 @@ class RefusedTest(ImportTest):
             self.refused(Bulk(materials=[material, metal]), text)
 
     def test_axes(self) -> None:
-        """Material axes that differ and systems that aren't there."""
+        """Material axes that differ and systems that are not there."""
         turned = Bulk().text().replace(small("CQUAD4", 3, 1, 5, 7, 25, 23, None)[0],
                                        small("CQUAD4", 3, 1, 5, 7, 25, 23, 10.0)[0])
         code, printed = self.run_command(turned)
@@ -416,7 +416,7 @@ class RefusedTest(ImportTest):
         bulk = Bulk(edges=("1234", "1234", "1235", ""))
         bulk.more = [("SPC1", 1, "3", *bulk.on_edge(3)[:3])]
         self.refused(bulk, "on the edge y-max", "only entire edges can be supported")
-        self.refused(Bulk(more=[("SPC1", 1, "3", 41)]), "it holds grid 41, which isn't on an edge")
+        self.refused(Bulk(more=[("SPC1", 1, "3", 41)]), "it holds grid 41, which is not on an edge")
         self.refused(Bulk(edges=("15", "1234", "24", "1235")), "line of symmetry")
         self.refused(Bulk(edges=("12", "34", "35", "35")), "x-min is held, but not against deflection")
         self.refused(Bulk(cells=(1, 1)), "no grid between its corners")
@@ -434,17 +434,17 @@ class RefusedTest(ImportTest):
         self.assertEqual(self.deck(Bulk(edges=4 * ("3",), more=[("SPC1", 1, "45", 1)])).edges(), 4 * ["simple"])
         self.refused(Bulk(edges=("3", "3", "", ""), more=[("SPC1", 1, "45", 1)]), "it holds grid 1")
         self.refused(Bulk(edges=("", "34", "", ""), more=[("SPC1", 1, "34", *inner)]),
-                     "the corner grid 1 doesn't hold component 3")
+                     "the corner grid 1 does not hold component 3")
 
     def test_files(self) -> None:
-        """Cards that change what others mean, fields that can't be read, grids that differ."""
-        self.refused(Bulk(more=[("INCLUDE", "'more.bdf'")], write=free), "INCLUDE: it isn't followed")
+        """Cards that change what others mean, fields that cannot be read, grids that differ."""
+        self.refused(Bulk(more=[("INCLUDE", "'more.bdf'")], write=free), "INCLUDE: it is not followed")
         self.refused(Bulk(more=2 * [("GRDSET", None, None, None, None, None, None, 6)]), "GRDSET: there is another one")
         self.refused(Bulk(more=[("GRID", 1, None, 5.0, 0.0, 0.0)]), "grid 1 is another one in line 1")
         self.refused(Bulk(more=[("SPC1", 1, "7", 1)]), "SPC1")
         for text in ("nan", "1e400", "1.+400"):
             self.refused(Bulk(materials=[(*MATERIALS[0][:2], text, *MATERIALS[0][3:]), MATERIALS[1]]),
-                         f"{text} isn't a finite number")
-        self.refused(Bulk(more=[("CQUAD4", 99, 1, 0, 1, 3, 21)]), "grid 0 isn't there")
+                         f"{text} is not a finite number")
+        self.refused(Bulk(more=[("CQUAD4", 99, 1, 0, 1, 3, 21)]), "grid 0 is not there")
         self.refused(Bulk(head="+,1,2\n"), "a continuation without a card")
         self.refused(Bulk(more=[("GRID", 99, 4, 5.0, 0.0, 0.0)]), "coordinate system 4")

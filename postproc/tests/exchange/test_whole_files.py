@@ -101,7 +101,7 @@ SAME = {
 REFUSED = {
     "MAT2": (whole(material="MAT2,1,139000.,3000.,0.,9400.,0.,4500.,1.6-9\n"), "8: MAT2", "as a MAT8"),
     "MAT9": (whole(material="MAT9,1,139000.,3000.,3000.\n"), "8: MAT9", "as a MAT8"),
-    "no material": (whole(material=""), "8: PCOMP", "material 1 isn't there"),
+    "no material": (whole(material=""), "8: PCOMP", "material 1 is not there"),
     "membrane": (whole(material="MAT1,1,7.+4,,.3\n", laminate="PSHELL,1,1,2.\n"), "9: PSHELL", "give MID2 = MID1"),
     "cylinder": (whole(grids="CORD2C" + SYSTEM[6:] + free_grids(system="7")), "13: CORD2C", "needs to be a CORD2R"),
     "system of grids": (whole(grids="CORD1R,7,1,2,6\n" + free_grids(), elements=free_elements(more=",7")),
@@ -124,8 +124,8 @@ REFUSED = {
                        ": GRID", "leave CD blank"),
     "other set": (whole(head=HEAD.replace("SPC = 1", "SPC = 10")), "SPC = 10", "SPC1 or SPC of set 10"),
     "number": (whole(material=MATERIAL.replace("139000.", "139000")), "8: MAT8", "E11", "with a decimal point"),
-    "steps of a range": (whole(supports="SPC1,1,123456,6,THRU,16,BY,5\n"), "54: SPC1", "'BY' isn't an integer"),
-    "plies that don't continue": (whole(laminate="PCOMP,1\n1,1,.25,45.,YES\n"), "11: 1", "a continuation has blanks"),
+    "steps of a range": (whole(supports="SPC1,1,123456,6,THRU,16,BY,5\n"), "54: SPC1", "'BY' is not an integer"),
+    "plies that do not continue": (whole(laminate="PCOMP,1\n1,1,.25,45.,YES\n"), "11: 1", "a continuation has blanks"),
     "no first material": (whole(laminate="PCOMP,1\n,,.25,45.\n"), "10: PCOMP", "MID1 is blank"),
     "no first thickness": (whole(laminate="PCOMPG,1\n,1,1,,45.\n"), "10: PCOMPG", "T1 is blank"),
     "no plies": (whole(laminate="PCOMP,1\n"), "10: PCOMP", "it has no plies"),
@@ -142,7 +142,7 @@ REFUSED = {
                   "CTRIA3, lines 38-39", "CQUAD4 or CQUAD8 alone"),
     "two laminates": (whole(laminate=LAMINATE + LAMINATE.replace("PCOMP,1", "PCOMP,2").replace("45.", "30."),
                             elements=re.sub(r"^(CQUAD4,\d),1", r"\1,2", free_elements(), flags=re.MULTILINE)),
-                      "13: PCOMP", "isn't the lay-up"),
+                      "13: PCOMP", "is not the lay-up"),
 }
 
 

@@ -17,7 +17,7 @@ class DeckTest(unittest.TestCase):
     """Defaults, broadcast values and refusals."""
 
     def test_contact_stiffness_by_suns_formula(self) -> None:
-        """Without k: 4/3 sqrt(R) E2 for a rigid ball, softer for one that isn't."""
+        """Without k: 4/3 sqrt(R) E2 for a rigid ball, softer for one that is not."""
         rigid = indentation_law_of(deck(SUN_CHEN, ("k=8.112e8", "")))
         self.assertAlmostEqual(rigid.stiffness / (4 / 3 * np.sqrt(6.35e-3) * 7.9e9), 1, delta=1e-14)
         steel = indentation_law_of(deck(SUN_CHEN, ("k=8.112e8", "impactor_E=206.8e9 impactor_nu=0.28")))
@@ -27,7 +27,7 @@ class DeckTest(unittest.TestCase):
         self.assertTrue(indentation_law_of(elastic).hertz)
 
     def test_laminate(self) -> None:
-        """One thickness and one material serve all plies, and G13 is G12 if it isn't given."""
+        """One thickness and one material serve all plies, and G13 is G12 if it is not given."""
         section = section_of_deck(deck(SUN_CHEN))
         self.assertAlmostEqual(section.thickness, 2.69e-3, delta=1e-17)
         self.assertAlmostEqual(section.s[0, 0] / (5 / 6 * 5.5e9 * 2.69e-3), 1, delta=1e-14)
@@ -70,7 +70,7 @@ class DeckTest(unittest.TestCase):
             "none of tan_sun": ("law='hertz'", "law='plastic'"),
             "no support but the edges": ("&time", "&support window=0.1, 0.1 /\n&time"),
             "free impactor": ("velocity=3", "travel=1e-4"),
-            "isn't a number": ("velocity=3", "velocity=NaN"),
+            "is not a number": ("velocity=3", "velocity=NaN"),
             "load but the impactor": ("&time", "&pressure value=1 /\n&time"),
         }
         for reason, change in changes.items():

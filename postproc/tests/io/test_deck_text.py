@@ -59,13 +59,13 @@ class DeckTextTest(unittest.TestCase):
                          ({"below_ply", "zone", "eta"}, [{"end": [1]}], ["a"], False))
 
     def test_what_cannot_be_set(self) -> None:
-        """Several groups without a number, a gap, and a deck that can't be read."""
+        """Several groups without a number, a gap, and a deck that cannot be read."""
         for path, deck in (("delamination.G_c", DECK), ("delamination[4].G_c", DECK), ("case.title", "&case name= /")):
             with self.assertRaises(DeckError):
                 set_keys(deck, {key_path(path): "1"})
 
     def test_numbers(self) -> None:
-        """A number of the deck, or an error if there isn't one."""
+        """A number of the deck, or an error if there is not one."""
         self.assertEqual(number_of(SUN_CHEN, key_path("impactor.mass")), 8.537e-3)
         self.assertEqual(number_of(DECK, key_path("delamination[2].below_ply")), 2)
         for path in ("delamination.G_c", "delamination[2].G_c", "delamination[3].G_c", "case.name", "time.end"):

@@ -58,7 +58,7 @@ def flags(number: int) -> dict[str, np.ndarray]:
         apart[CELLS.index((i, 0)), 1] = 1
     back[[CELLS.index((0, 0)), CELLS.index((1, 0))], 1] = 2
     front[CELLS.index((2, 2)), 0] = 7
-    # The solver leaves what doesn't belong to an element's plies at zero; a stray flag must not count.
+    # The solver leaves what does not belong to an element's plies at zero; a stray flag must not count.
     back[CELLS.index((2, 2)), 0] = 2
     for i, j in CELLS:
         beside = (i, j) == (number, 0) or (j == 1 and i < number)
@@ -184,7 +184,7 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(in_plan.get_title(), "time 0.5")
 
     def test_times_asked_for(self) -> None:
-        """A time that the fields don't reach is reported."""
+        """A time that the fields do not reach is reported."""
         self.assertEqual(self.plot(self.path, "--times", "0.5", "1.5")[0], 0)
         code, text = self.plot(self.path, "--times", "2")
         self.assertEqual((code, text.count("outside the fields")), (1, 1), text)

@@ -53,7 +53,7 @@ class QuantitiesTest(unittest.TestCase):
         self.assertFalse(np.isfinite(QUANTITIES["energy_error"](History(columns))))
 
     def test_energy_rise(self) -> None:
-        """From the lowest row before; what the pressure puts in and what is lost don't count."""
+        """From the lowest row before; what the pressure puts in and what is lost do not count."""
         columns = {name: np.zeros(6) for name in ENERGIES}
         columns |= {"time": np.arange(6.0), "work_external": np.array([0, 0, 0, 1.0, 1, 1])}
         columns["energy_impactor"] = np.array([10.0, 8, 6, 8, 7, 6])
@@ -82,7 +82,7 @@ class QuantitiesTest(unittest.TestCase):
                 self.assertTrue(np.isnan(QUANTITIES[name](one)), name)
 
     def test_energy_of_the_impactor_on_a_stressed_plate(self) -> None:
-        """The energy that the plate had before the impact, of residual stress, isn't the impactor's."""
+        """The energy that the plate had before the impact, of residual stress, is not the impactor's."""
         columns = dict(pulses(2, 8, 0).columns)
         columns |= {name: np.zeros(3) for name in (*ENERGIES, "work_external")}
         columns |= {"energy_impactor": np.array([9.96, 1, 5]), "energy_strain": np.array([7.04, 9, 5])}

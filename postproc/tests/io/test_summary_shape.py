@@ -102,7 +102,7 @@ class SummaryShapeTest(unittest.TestCase):
                 try:
                     report.write_report(self.path, None)
                 except FileError as error:
-                    self.assertRegex(str(error), f"lacks '{name}'|isn't a summary")
+                    self.assertRegex(str(error), f"lacks '{name}'|is not a summary")
 
     def test_faults_of_the_program_are_none_of_the_file(self) -> None:
         """An error within the page is not said to be the summary's."""

@@ -32,7 +32,7 @@ class StackingTest(unittest.TestCase):
                 self.assertEqual(angles_of(sequence), angles)
 
     def test_faults(self) -> None:
-        """What isn't a sequence is refused with its place."""
+        """What is not a sequence is refused with its place."""
         for sequence, place in {"[45/x]2s": 5, "[0/90": 6, "0/90]": 5, "[0/]": 4, "[0/90s]": 6, "[0/400]": 4,
                                 "[02/90]": 2, "[45/-045]": 5, "[00.5]": 2,
                                 "[0]2000": 4, "[0/90~]": 8, "[0,90]": 3, "[0/\N{MINUS SIGN}45]": 4}.items():

@@ -70,7 +70,7 @@ class PicturesTest(unittest.TestCase):
         return code, text.getvalue()
 
     def test_axes_have_units_and_runs_their_styles(self) -> None:
-        """2 kN at 1 ms are drawn as 2 and 1; two runs differ without colours; the gap isn't drawn as indentation."""
+        """2 kN at 1 ms are drawn as 2 and 1; two runs differ without colours; the gap is not drawn as indentation."""
         axes = Figure().subplots()
         pictures._draw(axes, [history("a"), history("b", 0.5)], "force", PictureStyle("SI"))
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time [ms]", "contact force [kN]"))

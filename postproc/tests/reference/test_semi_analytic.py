@@ -86,7 +86,7 @@ class ClosedFormTest(unittest.TestCase):
     """Parts of the method with known solutions."""
 
     def test_rigid_plate(self) -> None:
-        """On a plate that doesn't move: Hertz' peak and contact time, rebound at the speed of approach."""
+        """On a plate that does not move: Hertz' peak and contact time, rebound at the speed of approach."""
         history = semi_analytic(deck(KARAS, ("E=206.8e9", "E=206.8e17"), ("density=7833", "density=7833e6")))
         expected = 1.49595e10**0.4 * (1.25 * 0.0328108)**0.6
         max_indentation = (expected / 1.49595e10)**(2 / 3)

@@ -101,7 +101,7 @@ class RegressTest(unittest.TestCase):
         self.assertEqual((code, text.count("the run took longer than 0.01 s. FAIL")), (1, 2), text)
 
     def test_accept_changes_what_differs(self) -> None:
-        """The value that isn't met is replaced, its tolerance, comments and other values stay; then all passes."""
+        """The value that is not met is replaced, its tolerance, comments and other values stay; then all passes."""
         self.write(fast=800)
         text = self.expect.read_text().replace('[[variant.expect]]\nquantity = "rms_force"\nagainst = "fast.csv"\n'
                                                'value = 0\nabsolute = 1e-12\n', "")

@@ -173,8 +173,8 @@ class ReportTest(unittest.TestCase):
         del older["plate_size"]
         (self.folder / "older_summary.json").write_text(json.dumps(older), encoding="utf-8")
         for path, sentence in ((self.folder / "older_summary.json", "lacks 'plate_size'"),
-                               (self.folder / "no_summary.json", "isn't a summary"),
-                               (self.folder / "damage.h5", "isn't NAME_summary.json"),
+                               (self.folder / "no_summary.json", "is not a summary"),
+                               (self.folder / "damage.h5", "is not NAME_summary.json"),
                                (self.folder / "missing_summary.json", "cannot be read"), (output, "holds no summary")):
             code, text = run_quietly(report.main, path)
             self.assertEqual((code, len(text.splitlines())), (4, 1), text)

@@ -78,7 +78,7 @@ class StudyPlanTest(unittest.TestCase):
             self.assertEqual(len(set(first)), len(first), path)
 
     def test_faults(self) -> None:
-        """What can't be meant is reported with the name of the file."""
+        """What cannot be meant is reported with the name of the file."""
         grid = '[grid]\n"time.step" = [1e-6]\n'
         for text, expected in (
                 ('deck = "karas.nml"\n' + grid, "a reference is missing"),

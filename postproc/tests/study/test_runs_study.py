@@ -137,7 +137,7 @@ class StudyTest(unittest.TestCase):
         self.assertLess(abs(float(fine["peak_force_error"])), 1e-3)
 
     def test_results_that_cannot_be_read(self) -> None:
-        """A trial whose history is damaged is counted, and the study doesn't end as if all were well."""
+        """A trial whose history is damaged is counted, and the study does not end as if all were well."""
         arguments = self.arguments(STEPS)
         self.assertEqual(run_quietly(study.main, *arguments)[0], 0)
         (self.output / self.table()[0]["folder"] / "karas_history.csv").write_text("time,force\n0,zero\n")
@@ -147,7 +147,7 @@ class StudyTest(unittest.TestCase):
         self.assertEqual([row["peak_force"] == "" for row in self.table()], [True, False, False, False])
 
     def test_killed(self) -> None:
-        """A study that was killed goes on: what had ended isn't run again."""
+        """A study that was killed goes on: what had ended is not run again."""
         with start("study", *self.arguments(STEPS)) as process:
             latest = time.monotonic() + PATIENCE
             while len(self.ended()) < 3 and time.monotonic() < latest:

@@ -40,7 +40,7 @@ class ErrorTest(unittest.TestCase):
         self.assertAlmostEqual(found / ((np.pi * spacing)**2 / 2 * math.sqrt(1 / 30)), 1, delta=0.01)
 
     def test_common_time(self) -> None:
-        """What only one of the two has doesn't count; without any force in common there is no error."""
+        """What only one of the two has does not count; without any force in common there is no error."""
         reference = self.history(2000)
         self.assertAlmostEqual(force_history_error(self.history(1000, 1.02, last=0.5), reference), 0.02, delta=1e-6)
         nothing = History({"time": reference.time, "force": 0 * reference.time})

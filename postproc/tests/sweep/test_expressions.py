@@ -29,7 +29,7 @@ class ExpressionsTest(unittest.TestCase):
             self.assertIs(type(found), type(value), formula)
 
     def test_refused(self) -> None:
-        """Neither code, nor names that aren't there, nor what isn't a finite number; none takes long."""
+        """Neither code, nor names that are not there, nor what is not a finite number; none takes long."""
         for formula in ("__import__('os').system('true')", "().__class__", "energy.real", "open('x')", "lambda: 1",
                         "m == 1",
                         "[x for x in (1,)]", "m if m else 2", "'a'", "word", "on", "nothing", "impactor.speed", "True",

@@ -95,7 +95,7 @@ class PlanTest(unittest.TestCase):
                   "both": f"[grid]\n{patch}[list]\n{patch}", "neither a key": '[grid]\n"mesh[0].patch" = [1]',
                   "is the name of another": '[grid]\ncase = [1]', "a number from 1": "[samples]\nseed = 1",
                   "a distribution": '[samples]\nnumber = 1\n"mesh.patch" = 1',
-                  "can't stand": "[grid]\nmesh.patch=[nan]",
+                  "cannot stand": "[grid]\nmesh.patch=[nan]",
                   "as text": grid + '[derived]\n"mesh.patch" = 1', "only\\.": "[grid]\n'mesh[3].patch' = [1]",
                   "the most": f"[grid]\na={list(range(400))}\nb={list(range(400))}",
                   "single number": grid + '[derived]\nmesh.patch = "energy*mesh.elements"', "units": "units = 'feet'",

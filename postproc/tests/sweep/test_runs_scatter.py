@@ -121,7 +121,8 @@ class ScatterTest(unittest.TestCase):
         self.assertEqual((self.output / "statistics.csv").read_text(), before)
         first = self.output / self.rows("table.csv")[0]["folder"] / "damage.h5"
         first.write_bytes(b"no fields")
-        self.assertRegex(self.sweep(), "note: case 1 is left out of the statistics: .*damage.h5 isn't a file of fields")
+        self.assertRegex(self.sweep(), "note: case 1 is left out of the statistics: "
+                         ".*damage.h5 is not a file of fields")
         self.assertEqual(self.rows("statistics.csv")[0]["runs"], "3")
 
 

@@ -228,7 +228,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((self.output / "decks.txt").read_text(), "")
 
     def test_useless_checkpoint(self) -> None:
-        """A file that isn't a checkpoint doesn't stop a case: it is run afresh."""
+        """A file that is not a checkpoint does not stop a case: it is run afresh."""
         text = 'deck = "ply_damage.nml"\n[grid]\n"impactor.mass" = [0.2]'
         self.assertEqual(run_quietly(sweep.main, *self.arguments(text, "--array"))[0], 0)
         case = next((self.output / "cases").iterdir())
@@ -237,7 +237,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((code, self.called("restart"), self.called("run")), (0, 1, 1), said)
 
     def test_one_sweep_a_folder(self) -> None:
-        """A second sweep in a folder and a program that isn't there end with one sentence and 4."""
+        """A second sweep in a folder and a program that is not there end with one sentence and 4."""
         self.output.mkdir()
         with (self.output / "lock").open("w") as file:
             fcntl.flock(file, fcntl.LOCK_EX)

@@ -38,7 +38,7 @@ class SamplesTest(unittest.TestCase):
         self.assertNotEqual(draw("impactor.mass", UNIFORM, 3, 2, "random"), found)
 
     def test_refused(self) -> None:
-        """Distributions that aren't any."""
+        """Distributions that are not any."""
         for wrong in (3, {}, {"distribution": "beta"}, {"distribution": "uniform", "low": 1},
                       {**UNIFORM, "mean": 3}, {**UNIFORM, "low": 4}, {**NORMAL, "deviation": 0},
                       {**LOGNORMAL, "mean": -1}, {**NORMAL, "mean": "a"}, {**NORMAL, "mean": float("nan")}):

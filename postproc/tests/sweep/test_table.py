@@ -33,7 +33,7 @@ class TableTest(unittest.TestCase):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def test_columns(self) -> None:
-        """The names that a sweep can't have begin with those of the table's other columns."""
+        """The names that a sweep cannot have begin with those of the table's other columns."""
         names = tuple(table({}, [1.0]).columns)
         self.assertEqual(names, COLUMNS[: len(names)])
 
@@ -54,7 +54,7 @@ class TableTest(unittest.TestCase):
             self.assertEqual(list(file["table/laminate.angles"].asstr()), ["0, 90", "90"])
 
     def test_series(self) -> None:
-        """Rows are joined where they differ in the energy alone, in its order; derived values don't part them."""
+        """Rows are joined where they differ in the energy alone, in its order; derived values do not part them."""
         grid = table({"G_c": [1, 1, 2, 2], "energy": [3.0, 2, 3, 2], "velocity": [6.0, 4, 6, 4]}, [3.0, 2, 3, 2],
                      ("velocity",))
         found = {label: rows.tolist() for label, rows in series(grid).items()}

@@ -72,7 +72,7 @@ contains
     if (alpha > state%alpha_max) stiffness = min(stiffness, 1.5_wp*law%k*sqrt(law%yield))
   end function contact_stiffness
 
-  !> Mean force over a path that doesn't turn: work over way, for the integrator that keeps the energy.
+  !> Mean force over a path that does not turn: work over way, for the integrator that keeps the energy.
   pure real(wp) function mean_force(law, state, alpha_from, alpha_to) result(mean)
     !> The law
     type(plastic_law_t), intent(in) :: law

@@ -43,7 +43,7 @@ contains
     jumps = size*[0.6_wp*sin(angle), -0.8_wp*sin(angle), cos(angle)]
   end function jumps_of
 
-  !> Toughness of jumps that don't close, written out.
+  !> Toughness of jumps that do not close, written out.
   pure real(wp) function toughness_by_hand(law, jumps) result(toughness)
     type(cohesive_law_t), intent(in) :: law
     real(wp), intent(in) :: jumps(3)
