@@ -140,12 +140,12 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    real(wp) :: square
+    real(wp) :: frequency, square
 
     if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, steps_between_frequencies) == 0) then
-      square = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%motion)
-      if (square > self%stiffened .or. square < lengthening_ratio*self%stiffened) &
-        self%stiffened = stiffened_reserve*square
+      frequency = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%motion)
+      if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
+        self%stiffened = stiffened_reserve*frequency
     end if
     square = self%stiffened**2
     if (model%setup%has_impactor) &
