@@ -42,7 +42,8 @@ contains
     lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
-    sentence = 'About '//counted(rounded_text(steps), 'step')//' of '//rounded_text(step)//' for '// &
+    sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '//rounded_text(step)// &
+               ' for '// &
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
                time_bound//duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor'
     if (lengthened) &

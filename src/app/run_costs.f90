@@ -60,7 +60,8 @@ contains
 
     steps = deck%stepping%time%end/deck%stepping%time%step
     solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
-    sentence = 'About '//counted(rounded_text(steps), 'step')//' of '//rounded_text(deck%stepping%time%step)
+    sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
+               rounded_text(deck%stepping%time%step)
     if (is_error_controlled(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
     sentence = sentence//min_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
   end function implicit_sentence

@@ -42,7 +42,7 @@ module starter_decks
     '&delamination below_ply=12  G_Ic=280  G_IIc=790    ! fracture energies per area, opening and shear', &
     '              zone=36e-3, 24e-3 /      ! where it may grow', &
     '', &
-    '&time         end=4e-3  step=20e-6 /   ! contact lasts about 3.5 ms', &
+    '&time         end=4e-3 /               ! contact lasts about 3.5 ms', &
     '&output       directory=''results''  fields_every=0.5e-3 /   ! history, fields for ParaView, checkpoint']
 
 contains

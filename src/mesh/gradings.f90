@@ -149,8 +149,9 @@ contains
     edges(low:0:-1) = struck - cored_half_line(length/2 + struck, low, patch/2, grading, core/2, side)
   end function off_centre_line
 
-  !> Moves edges to required coordinates: the nearest edge is moved, and those up to the next fixed edge on either side
-  !> are scaled uniformly. A coordinate without a free edge is left out.
+  !> Moves edges to required coordinates: the nearest edge is moved, of equally near ones that next to the middle of the
+  !> plate, so that both sides of it have the same mesh. Edges up to the next fixed edge on either side are scaled
+  !> uniformly. A coordinate without a free edge is left out.
   pure subroutine move_to_lines(edges, kept, lines)
     !> Ascending coordinates of the element edges
     real(wp), intent(inout) :: edges(0:)
@@ -159,7 +160,7 @@ contains
     !> Coordinates to meet; those beyond the edges are left out
     real(wp), intent(in) :: lines(:)
     logical :: fixed(0:ubound(edges, 1))
-    real(wp) :: distance
+    real(wp) :: distance, gaps(0:ubound(edges, 1))
     integer :: i, line, nearest, low, high
 
     distance = rounding*(edges(ubound(edges, 1)) - edges(0))
@@ -168,7 +169,8 @@ contains
     do i = 1, size(lines)
       if (lines(i) <= edges(0) .or. lines(i) >= edges(ubound(edges, 1)) .or. all(fixed)) cycle
       if (any(fixed .and. abs(edges - lines(i)) <= distance)) cycle
-      nearest = minloc(abs(edges - lines(i)), dim=1, mask=.not. fixed) - 1
+      gaps = merge(huge(distance), abs(edges - lines(i)), fixed)
+      nearest = minloc(abs(edges), dim=1, mask=gaps <= minval(gaps) + distance) - 1
       low = findloc(fixed(:nearest), .true., dim=1, back=.true.) - 1
       high = nearest + findloc(fixed(nearest:), .true., dim=1) - 1
       if (lines(i) <= edges(low) .or. lines(i) >= edges(high)) cycle
