@@ -200,12 +200,17 @@ contains
     character(len=*), intent(in) :: group
     !> The table
     type(line_t), allocatable, intent(out) :: lines(:)
-    !> Raised if there is no such group
+    !> Raised if there is no such group, or if it is a key
     type(error_t), allocatable, intent(inout) :: error
     integer :: i
 
     allocate (lines(0))
-    call require_group(vocabulary, group, error)
+    if (scan(group, '%. ') > 0 .or. &
+        (vocabulary%group_index(group) == 0 .and. size(vocabulary%groups_with(group)) > 0)) then
+      call fail(error, exit_usage, '--markdown prints tables of groups; explain the key '//group//' without it.')
+    else
+      call require_group(vocabulary, group, error)
+    end if
     if (allocated(error)) return
     call append(lines, '| key | type | values | unit | default | allowed | meaning |')
     call append(lines, '|---|---|---|---|---|---|---|')
