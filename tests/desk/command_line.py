@@ -53,6 +53,9 @@ def check_explain(implam):
     require("one deck" in three, "Three topics pass.")
     column = output_of(implam, "explain", "impactor_velocity")
     require(column == output_of(implam, "explain", "history", "impactor_velocity"), "A column with its table differs.")
+    for words in (["plate", "length"], ["length"]):
+        slip = output_of(implam, "explain", *words, "--markdown", code=EXIT_USAGE)
+        require("--markdown prints tables of groups" in slip, slip)
     slip = output_of(implam, "explain", "history", "vorce", code=EXIT_USAGE)
     require("There is no vorce in the results; `implam explain history` lists" in slip, slip)
     print("explain: done")
