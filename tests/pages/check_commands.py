@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Tries the commands of the pages that no test runs: decks are checked, quick commands run, options and files of the
-others must exist. Usage: check_commands.py IMPLAM ROOT BUILD
+"""Tries the commands of the pages that no test runs to the end: decks are checked, quick commands run, options and
+files of the others must exist. Usage: check_commands.py IMPLAM ROOT BUILD
 
 These are the lines of blocks marked `sh long` and `sh elsewhere` (page_commands.py), indented lines that begin with one
 of the programs below, and commands of the program within sentences and tables. Those of blocks marked `sh` are run by
-docs_commands and docs_tutorial. The manual gives each command of Python at least once.
+docs_commands and docs_tutorial, which also start those of blocks marked `sh long`. The manual gives each command of
+Python at least once.
 """
 
 import os
@@ -52,7 +53,7 @@ def commands(page):
     text = page.read_text(encoding="utf-8")
     yield from indented(text.splitlines())
     for part in parts_of(text):
-        match = FENCED.match(part.text) if isinstance(part, Command) and not part.is_run else None
+        match = FENCED.match(part.text) if isinstance(part, Command) and part.kind != "run" else None
         if match:
             yield part.line, match[1], words_of(match[2])
     for number, line in enumerate(text.splitlines(), 1):

@@ -1,9 +1,9 @@
 """Commands and files of pages, as the tests of this folder read them.
 
-A block of code marked `sh` holds commands that a test runs, in the order of the page. `sh long` holds commands that
-take longer than about 20 s, `sh elsewhere` those that another page runs or that need a queue, a screen, a network or
-files of the reader's own: they are checked without being run. A block after <!-- file PATH --> is the content of a
-file that the reader saves.
+A block of code marked `sh` holds commands that a test runs, in the order of the page. `sh long` holds commands of
+minutes to hours, which a test starts and stops. `sh elsewhere` holds those that another page or test runs, or that need
+a queue, a screen, a network or files of the reader's own: they are checked without being run. A block after
+<!-- file PATH --> is the content of a file that the reader saves.
 """
 
 import re
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 FENCE = re.compile(r"^( *)```(.*)$")
 SAVED = re.compile(r"^ *<!-- file (\S+) -->$")
 # Marks of blocks with commands, and what a test does with them.
-KINDS = {"sh": "run", "sh long": "check", "sh elsewhere": "check"}
+KINDS = {"sh": "run", "sh long": "start", "sh elsewhere": "check"}
 # A command given within a sentence or a table.
 INLINE = re.compile(r"`(implam (?!FILE|queue)[^`\n]*)`")
 
@@ -25,7 +25,7 @@ class Command:
 
     line: int
     text: str
-    is_run: bool
+    kind: str
 
 
 @dataclass
@@ -81,4 +81,4 @@ def parts_of(page):
         if name:
             yield SavedFile(first, name, block)
         elif mark in KINDS:
-            yield from (Command(number, text, KINDS[mark] == "run") for number, text in commands_of(block, first))
+            yield from (Command(number, text, KINDS[mark]) for number, text in commands_of(block, first))

@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Runs the commands of the manual as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
+"""Runs the commands of the pages as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
 a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
 ends with code 0, unless it reports a Python package that is not installed. The times printed show which commands belong
-into `sh long`: those of more than half a minute on a usual processor.
+into `sh long`: those of more than half a minute on a usual processor. These are started, and after some seconds stopped
+by the signal TERM, as a queue would: they end with code 0, with code 75, or by the signal.
 Usage: run_commands.py IMPLAM ROOT FOLDER [PAGE...]
 
-Blocks marked `sh long` and `sh elsewhere` are left to check_commands.py, the tutorial to tutorial.py. Ends with code 77
-where the Python commands are not installed."""
+Blocks marked `sh elsewhere` are left to check_commands.py, the tutorial to tutorial.py. Ends with code 77 where the
+Python commands are not installed."""
 
 import os
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +20,13 @@ from pathlib import Path
 from page_commands import Command, SavedFile, parts_of
 
 SKIPPED = 77
+# Folders of the pages.
+PAGES = ("doc", "doc/manual", "doc/studies", "doc/theory")
+# Seconds after which a long command is stopped, time to read a deck and to do some steps; then for its orderly end.
+STARTED, ENDED = 10, 120
+STOPPED = (0, 75, -signal.SIGTERM)
+# Kinds of commands that are tried here.
+TRIED = ("run", "start")
 # What commands read of a clone, besides the decks, which they may add files to.
 LINKED = (".venv", "doc", "postproc", "tests")
 
@@ -62,14 +71,36 @@ class Clone:
         fault = f"code {done.returncode}\n{done.stdout[-2000:]}" if done.returncode else ""
         return fault, taken
 
+    def start(self, command):
+        """Start a long command and stop it; return what is wrong and the time of the processor."""
+        begun = processor_time()
+        with subprocess.Popen(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              start_new_session=True) as process:  # fmt: skip
+            try:
+                printed = process.communicate(timeout=STARTED)[0]
+            except subprocess.TimeoutExpired:
+                printed = self.stop(process)
+        fault = "" if process.returncode in STOPPED else f"code {process.returncode}\n{printed[-2000:]}"
+        return fault, processor_time() - begun
+
+    def stop(self, process):
+        """Stop a command and what it has started; return what it has printed."""
+        os.killpg(process.pid, signal.SIGTERM)
+        try:
+            return process.communicate(timeout=ENDED)[0]
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            return process.communicate()[0]
+
 
 def run_page(page, clone):
     """Run the commands of a page; return what is wrong. After a fault the rest of the page is left out."""
     for part in parts_of(page.read_text(encoding="utf-8")):
         if isinstance(part, SavedFile):
             clone.save(part)
-        elif isinstance(part, Command) and part.is_run:
-            fault, taken = clone.run(part.text)
+        elif isinstance(part, Command) and part.kind in TRIED:
+            fault, taken = clone.run(part.text) if part.kind == "run" else clone.start(part.text)
             print(f"{page.name}:{part.line}: {taken:.1f} s: {part.text}", flush=True)
             if fault:
                 return [f"{page.name}:{part.line}: {part.text}: {fault}"]
@@ -83,10 +114,10 @@ def main(arguments):
         print("skipped: the Python commands are not installed")
         return SKIPPED
     wrong, begun, count = [], processor_time(), 0
-    for page in sorted((root / "doc" / "manual").glob("*.md")):
+    for page in sorted(page for pages in PAGES for page in (root / pages).glob("*.md")):
         if arguments[3:] and page.stem not in arguments[3:]:
             continue
-        if any(isinstance(part, Command) and part.is_run for part in parts_of(page.read_text(encoding="utf-8"))):
+        if any(isinstance(part, Command) and part.kind in TRIED for part in parts_of(page.read_text(encoding="utf-8"))):
             wrong += run_page(page, Clone(implam, root, folder / page.stem))
             count += 1
     if not count:

@@ -20,7 +20,7 @@ PICTURE = re.compile(r"!\[[^\]]*\]\(pictures/([\w.-]+)\)")
 
 def commands_of(page):
     """The commands of a page that are run."""
-    return [part.text for part in parts_of(page) if isinstance(part, Command) and part.is_run]
+    return [part.text for part in parts_of(page) if isinstance(part, Command) and part.kind == "run"]
 
 
 def main(arguments):
