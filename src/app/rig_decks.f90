@@ -27,7 +27,7 @@ module rig_decks
     '! cell=1.5e-3 with elements=34, 50 takes some ten times as long.', &
     '', &
     '&material     name=''ply''  library=''im7_8552'' /   ! `implam explain materials` lists values and sources;', &
-    '                                             ! keys given here win, such as E1=165e9', &
+    '                                             ! keys given here replace them, such as E1=165e9', &
     '&laminate     materials=''ply''  stacking=''[45/0/-45/90]4s''  ply_thickness=0.131e-3 /   ! 4.19 mm', &
     '', &
     '&impactor     mass=5.5  energy=28.1          ! 6.7 J/mm times 4.19 mm', &

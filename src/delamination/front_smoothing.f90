@@ -23,6 +23,9 @@ module front_smoothing
   !> Stiffness of the parabola against slope and bend relative to that of one edge, for a front of one edge or two: a
   !> fit of three changes by 1e-6.
   real(wp), parameter :: regularisation = 1.0e-6_wp
+  !> Sum of normals relative to one edge below which they cancel: far above 1e-16, and the sum of a bent front is of the
+  !> order of one.
+  real(wp), parameter :: cancellation = 1.0e-6_wp
 
   !> The edges of a front.
   type :: edges_t
@@ -33,6 +36,16 @@ module front_smoothing
     !> Directions of symmetry
     logical :: mirrored(2) = .false.
   end type edges_t
+
+  !> Edges within a distance of one edge.
+  type :: neighbours_t
+    !> Their number
+    integer :: number = 0
+    !> Midpoints relative to that of the edge, and outward normals, (2, places)
+    real(wp), allocatable :: from(:, :), normal(:, :)
+    !> Lengths, multiplied by a factor that decreases from one to zero within the distance, (places)
+    real(wp), allocatable :: weight(:)
+  end type neighbours_t
 
   !> A front with its smooth line.
   type :: smooth_front_t
@@ -111,24 +124,21 @@ contains
     real(wp), intent(in) :: reach
     !> Receive point and normal
     real(wp), intent(out) :: place(2), normal(2)
-    real(wp) :: matrix(3, 3), fit(3), powers(3), from(2), near
-    integer :: t, image
+    type(neighbours_t) :: near
+    real(wp) :: matrix(3, 3), fit(3), powers(3), weight
+    integer :: t
     logical :: singular
 
-    normal = mean_normal(edges, s, reach)
+    near = neighbours_of(edges, s, reach)
+    normal = mean_normal(near, edges%normal(:, s), edges%width(s))
     matrix = 0
     fit = 0
-    do image = 0, 3
-      if (.not. is_image(image, edges%mirrored)) cycle
-      do t = 1, size(edges%width)
-        from = signs(image)*edges%middle(:, t) - edges%middle(:, s)
-        near = 1 - norm2(from)/reach
-        if (.not. near > 0) cycle
-        near = near*edges%width(t)*max(0.0_wp, dot_product(signs(image)*edges%normal(:, t), normal))
-        powers = [1.0_wp, dot_product(from, turned(normal))/reach, (dot_product(from, turned(normal))/reach)**2]
-        matrix = matrix + near*spread(powers, 1, 3)*spread(powers, 2, 3)
-        fit = fit + near*powers*dot_product(from, normal)
-      end do
+    do t = 1, near%number
+      weight = near%weight(t)*max(0.0_wp, dot_product(near%normal(:, t), normal))
+      powers = [1.0_wp, dot_product(near%from(:, t), turned(normal))/reach, &
+                (dot_product(near%from(:, t), turned(normal))/reach)**2]
+      matrix = matrix + weight*spread(powers, 1, 3)*spread(powers, 2, 3)
+      fit = fit + weight*powers*dot_product(near%from(:, t), normal)
     end do
     matrix(2, 2) = matrix(2, 2) + regularisation*matrix(1, 1)
     matrix(3, 3) = matrix(3, 3) + regularisation*matrix(1, 1)
@@ -139,29 +149,52 @@ contains
     normal = normal/norm2(normal)
   end subroutine fit_line
 
-  !> Mean normal of the edges around an edge, with weights that decrease to zero within a distance.
-  pure function mean_normal(edges, s, reach) result(normal)
+  !> Edges within a distance of an edge, with the images of a symmetric plate.
+  pure function neighbours_of(edges, s, reach) result(near)
     !> The edges
     type(edges_t), intent(in) :: edges
     !> The edge
     integer, intent(in) :: s
     !> The distance
     real(wp), intent(in) :: reach
-    !> The normal
-    real(wp) :: normal(2)
-    real(wp) :: mean(2), near
-    integer :: t, image
+    !> The edges near it
+    type(neighbours_t) :: near
+    real(wp) :: from(2), closeness
+    integer :: t, image, n
 
-    mean = 0
+    n = 4*size(edges%width)
+    allocate (near%from(2, n), near%normal(2, n), near%weight(n))
     do image = 0, 3
       if (.not. is_image(image, edges%mirrored)) cycle
       do t = 1, size(edges%width)
-        near = 1 - norm2(signs(image)*edges%middle(:, t) - edges%middle(:, s))/reach
-        if (near > 0) mean = mean + near*edges%width(t)*signs(image)*edges%normal(:, t)
+        from = signs(image)*edges%middle(:, t) - edges%middle(:, s)
+        closeness = 1 - norm2(from)/reach
+        if (.not. closeness > 0) cycle
+        near%number = near%number + 1
+        near%from(:, near%number) = from
+        near%normal(:, near%number) = signs(image)*edges%normal(:, t)
+        near%weight(near%number) = closeness*edges%width(t)
       end do
     end do
-    ! A front that faces another part of itself across one cell keeps its own normal.
-    normal = merge(mean/max(norm2(mean), tiny(near)), edges%normal(:, s), norm2(mean) > regularisation*edges%width(s))
+  end function neighbours_of
+
+  !> Mean normal of the edges around an edge. It is the edge's own where the others cancel, as on a front that faces
+  !> another part of itself across one cell.
+  pure function mean_normal(near, own, width) result(normal)
+    !> The edges around it
+    type(neighbours_t), intent(in) :: near
+    !> Its own normal, and its length
+    real(wp), intent(in) :: own(2), width
+    !> The normal
+    real(wp) :: normal(2)
+    real(wp) :: mean(2)
+    integer :: t
+
+    mean = 0
+    do t = 1, near%number
+      mean = mean + near%weight(t)*near%normal(:, t)
+    end do
+    normal = merge(mean/max(norm2(mean), tiny(mean)), own, norm2(mean) > cancellation*width)
   end function mean_normal
 
   !> Weighted sums along the line about a segment, with weights that decrease to zero within a distance.

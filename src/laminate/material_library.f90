@@ -51,7 +51,7 @@ module material_library
     'Rivallant, Bouvet, Hongkarnjanakul (2013)', &
     'b | the same paper, for the panel of 25 J of Hongkarnjanakul, Bouvet, Rivallant, Composite Structures 106 '// &
     '(2013) 549', &
-    'c | assumed, as such laminates have it', &
+    'c | assumed, a usual value of such laminates', &
     'd | P. P. Camanho, P. Maimi, C. G. Davila, Composites Science and Technology 67 (2007) 2715-2727', &
     'e | P. P. Camanho, M. A. Bessa, G. Catalanotti, M. Vogler, R. Rolfes, Mechanics of Materials 59 (2013) 36-49', &
     'f | G. Catalanotti, P. P. Camanho, J. Xavier, C. G. Davila, A. T. Marques, Composites Science and Technology '// &

@@ -36,7 +36,7 @@ TABLE = """&material library names one of these; keys that the deck leaves out g
   G_IIc    J/m^2    788 e          -
   eta      -        1.634 e        -
 
-  c  assumed, as such laminates have it.
+  c  assumed, a usual value of such laminates.
 """
 
 
