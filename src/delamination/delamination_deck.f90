@@ -44,7 +44,7 @@ module delamination_deck
       &Exponent of Benzeggagh and Kenane''s mixed-mode law.', &
     'delamination | zone | real | 2 | length | = adaptive, with law = cohesive | > 0 | &
       &Full extents along x and y of the rectangle with separate layers, centred on the struck point.', &
-    'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
+    'delamination | starter | real | 1 | length | = square of 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, or diameter of the round one.', &
     'delamination | starter_shape | choice | 1 | - | ''square'' | square round | &
       &Outline of the starter, in whole cells.', &
