@@ -269,7 +269,7 @@ contains
       text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
              shown(zone)
       if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
-      if (deck%delaminations(place)%is_adaptive) text = text//'. The zone follows the damage'
+      if (deck%delaminations(place)%is_adaptive) text = text//'. The zone grows with the damage'
       lines(place)%text = text//'.'
     end do
   end function extent_lines

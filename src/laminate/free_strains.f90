@@ -9,7 +9,7 @@ module free_strains
 
 contains
 
-  !> Forces and moments of the strains that go without stress, and the energy of suppressing them.
+  !> Forces and moments of the stress-free strains, and the energy of suppressing them.
   pure function free_resultants(plies, elasticity) result(resultants)
     !> Neighbouring plies: all of the laminate or those of one layer
     type(ply_t), intent(in) :: plies(:)

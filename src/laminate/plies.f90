@@ -33,7 +33,7 @@ module plies
     real(wp) :: cosine = 1, sine = 0
     !> z of the face towards the struck side and of the other one
     real(wp) :: z_top = 0, z_bottom = 0
-    !> Strains that go without stress: along and across the fibres, as by cooling, and shear strain, which is permanent
+    !> Stress-free strains: along and across the fibres, as by cooling, and shear strain, which is permanent
     real(wp) :: free_strain(3) = 0
   end type ply_t
 

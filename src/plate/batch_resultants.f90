@@ -67,7 +67,7 @@ contains
     end do
   end subroutine add_free_energy
 
-  !> Takes the resultants of strains that go without stress off those of all strains.
+  !> Takes the resultants of stress-free strains off those of all strains.
   pure subroutine take_free_resultants(free, weight, s)
     !> Their resultants Nxx to Mxy, and their energy per area
     real(wp), intent(in) :: free(lanes, 7)

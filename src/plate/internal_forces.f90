@@ -29,7 +29,7 @@ contains
     real(wp), intent(out) :: energy
     !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
-    !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
+    !> Resultants Nxx to Mxy of stress-free strains, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
     !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
     real(wp), contiguous, intent(out), optional :: energies(:, :)
@@ -124,7 +124,7 @@ contains
     real(wp), intent(inout) :: r(lanes, 9, 5)
     !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
-    !> Resultants of strains that go without stress, and their energy per area
+    !> Resultants of stress-free strains, and their energy per area
     real(wp), intent(in), optional :: free(lanes, 7)
     real(wp) :: shear(shear_size)
 

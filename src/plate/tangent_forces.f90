@@ -26,7 +26,7 @@ contains
     real(wp), contiguous, intent(in) :: u(:, :), v(:, :)
     !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
-    !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
+    !> Resultants Nxx to Mxy of stress-free strains, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
     real(wp) :: at(lanes, 9, 5), r(lanes, 9, 5), forces(lanes, 9, 6), strains(lanes, 9, 6)
     real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes)

@@ -49,7 +49,7 @@ module solution_controls
     !> (`step_controllers`, as all below)
     real(wp) :: ratio_near_growth = 0.8_wp
     !> Ratio of the smaller to the larger mass factor of step and lagged operator, below which it is renewed. Half and
-    !> twice a step have .25; an operator that serves twice the step, by .1, makes runs 23 % dearer
+    !> twice a step have .25; an operator that serves twice the step, by .1, makes runs 23 % costlier
     real(wp) :: min_mass_ratio = 0.3_wp
     !> Errors, relative to the tolerance, above which the next step is halved, and above which a step is rejected. The
     !> error is of third order in the step length: halving reduces the first to a quarter

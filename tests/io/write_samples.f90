@@ -52,8 +52,8 @@ contains
     type(fields_file_t) :: fields, again
     integer, allocatable :: points(:), cells(:)
 
-    points = dealt(points_across*points_along*layers)
-    cells = dealt(across*along*layers)
+    points = share_of(points_across*points_along*layers)
+    cells = share_of(across*along*layers)
     call fields%describe(rows)
     call again%describe(rows)
     call fields%create(communicator, base, this_run(sample_build(), deck, communicator%size), 'quarter', error)
@@ -67,7 +67,7 @@ contains
   end subroutine write_fields
 
   !> This rank's share of numbered items, distributed cyclically with the last first.
-  function dealt(number) result(mine)
+  function share_of(number) result(mine)
     !> Number of items
     integer, intent(in) :: number
     !> Numbers of the rank's items
@@ -75,7 +75,7 @@ contains
     integer :: i
 
     mine = pack([(i, i=number, 1, -1)], [(mod(i, communicator%size) == communicator%rank, i=number, 1, -1)])
-  end function dealt
+  end function share_of
 
   !> Position of a point.
   pure function place(point)

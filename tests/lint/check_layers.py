@@ -41,7 +41,7 @@ def breaches(compiler, modules, searched, tiers):
             module = min(path.stem for path in Path(modules, other).glob("*.mod"))
             allowed = tier < tiers[name]
             if other != name and compiles(compiler, module, folders) != allowed:
-                yield f"{name} {'can use none' if allowed else 'can use'} of the modules of {other}"
+                yield f"{name} {'can use none' if allowed else 'can use some'} of the modules of {other}"
 
 
 def listed(root):

@@ -63,6 +63,13 @@ class CheckWords(unittest.TestCase):
                          [(1, "Booked"), (1, "leaves no trace"), (2, "stands where")])  # fmt: skip
         self.assertEqual(found("handbook, bookmark; it stands alone", "page.md"), [])
 
+    def test_everyday_words_of_tests_are_found(self):
+        """Impacts, timers, paths and stress-free strains have their terms."""
+        text = "! Strains that go without stress\n! A blow, by a stopwatch\n! Layers follow damage along a winding path"
+        self.assertEqual(found(text, "a.f90"), [(1, "go without stress"), (2, "blow"), (2, "stopwatch"),
+                                                (3, "follow damage"), (3, "winding path")])  # fmt: skip
+        self.assertEqual(found("! Blowing winds follow a path; stop, watch.", "a.f90"), [])
+
     def test_advice_is_printed(self):
         """A breach has its replacement."""
         self.assertEqual(str(check_words.check_text("a tup", "page.md")[0]), "page.md:1: tup: impactor")

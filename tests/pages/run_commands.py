@@ -122,7 +122,7 @@ def main(arguments):
             count += 1
     if not count:
         wrong = ["No page has commands to run."]
-    print("\n".join(wrong) or f"The commands of {count} pages run, in {processor_time() - begun:.0f} s of a processor.")
+    print("\n".join(wrong) or f"Commands of {count} pages run in {processor_time() - begun:.0f} s of processor time.")
     return 1 if wrong else 0
 
 

@@ -96,7 +96,7 @@ def navier_strains(deck, results, amplitude):
     a, b = np.pi / np.array(plate.lengths)
     arguments = np.array([a, b]) * np.array([results.low, results.high])
     sides = results.high - results.low
-    # The impact point is the origin: half-sines are cosines here.
+    # The struck point is the origin: half-sines are cosines here.
     cosine = np.diff(np.sin(arguments), axis=0)[0] / ([a, b] * sides)
     sine = -np.diff(np.cos(arguments), axis=0)[0] / ([a, b] * sides)
     both, mixed, (x_only, y_only) = np.prod(cosine, axis=1), np.prod(sine, axis=1), (

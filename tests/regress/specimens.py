@@ -90,7 +90,7 @@ def uneven_parts(ratio):
 
 
 def check_uneven(implam, folder, ratio):
-    """The moment of steady growth, and the mode II fraction by moment and energy, against the closed form."""
+    """The moment of steady growth, and the share of shear by moment and energy, against the closed form."""
     opening, shear = uneven_parts(ratio)
     share = shear/(opening + shear)
     toughness = 250 + 550*share**1.75
@@ -104,14 +104,14 @@ def check_uneven(implam, folder, ratio):
     found = [abs(row["line_force_2"])/exact for row in grown]
     mean = sum(found)/len(found)
     by_moment, by_energy = growth_shares(path, opening + shear, "line_force_2")
-    print(f"M1/M2 = {ratio:g}: mean {mean:.4f}, {min(found):.4f} to {max(found):.4f} of the exact moment; mode II "
-          f"fraction {by_moment:.4f} by the moment, {by_energy:.4f} by the energy, {share:.4f} in closed form")
+    print(f"M1/M2 = {ratio:g}: mean {mean:.4f}, {min(found):.4f} to {max(found):.4f} of the exact moment; share of "
+          f"shear {by_moment:.4f} by the moment, {by_energy:.4f} by the energy, {share:.4f} in closed form")
     require(abs(mean - 1) <= 0.01 and max(found) <= 1.03, "The moment differs.")
-    require(max(abs(by_moment - share), abs(by_energy - share)) <= 0.01, "The mode II fraction differs.")
+    require(max(abs(by_moment - share), abs(by_energy - share)) <= 0.01, "The share of shear differs.")
 
 
 def growth_shares(path, flexibility, moment):
-    """Return the mode II fraction by the moment of steady growth, G = flexibility M^2, and by the dissipated energy."""
+    """Return the share of shear by the moment of steady growth, G = flexibility M^2, and by the dissipated energy."""
     grown = [row for row in path if row["energy_delamination"] > 0.3*path[-1]["energy_delamination"]]
     by_moment = sum(row[moment]**2 for row in grown)/len(grown)*flexibility
     first, last = grown[0], grown[-1]
@@ -121,14 +121,14 @@ def growth_shares(path, flexibility, moment):
 
 
 def check_unequal(implam, folder, elements):
-    """The mode II fraction is the same by moment and by energy."""
+    """The share of shear is the same by moment and by energy."""
     text = (DECKS / "moment_unequal.nml").read_text(encoding="utf-8").replace("120, 2", f"{elements}, 2")
     (folder / "deck.nml").write_text(text, encoding="utf-8")
     flexibility = sum(6/(139e9*arm**3) for arm in (0.75e-3, 2.25e-3))/20e-3**2
     by_moment, by_energy = growth_shares(path_of(implam, folder / "deck.nml", folder), flexibility, "line_force_1")
-    print(f"{elements} elements: mode II fraction {by_moment:.4f} by the moment, {by_energy:.4f} by the energy")
+    print(f"{elements} elements: share of shear {by_moment:.4f} by the moment, {by_energy:.4f} by the energy")
     require(abs(by_moment - by_energy) < 0.0015, "Moment and energy differ.")
-    require(0.311 < by_energy < 0.3125, "The mode II fraction differs.")
+    require(0.311 < by_energy < 0.3125, "The share of shear differs.")
 
 
 def buckled_strains(length, toughness):

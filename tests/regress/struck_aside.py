@@ -2,7 +2,7 @@
 Usage: struck_aside.py IMPLAM FOLDER
 
 Navier's series for a simply supported plate under a force on a square at any position, quasi-static as in frame.py; and
-the plate with the mirrored impact point, whose response must be the same."""
+the plate with the mirrored struck point, whose response must be the same."""
 
 import math
 import sys

@@ -3,14 +3,14 @@
 Usage: panel_shear.py FOLDER
 
 Reads the results that measured_panels.py wrote there for 25J with output%fields='stress','ply_damage' and
-output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the impact point
+output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the struck point
 
 - the force carried by transverse shear, in kN: the stresses of all plies summed over a circle. In slow motion the
   contact force is the sum of this and of the membrane forces along the slope;
 - the radial membrane force, in N/mm;
 - root mean square and largest magnitude of s23 over all plies, in MPa.
 
-Stresses are those at the centre of each cell. Rings begin 5.5 mm from the impact point: nearer, within the contact
+Stresses are those at the centre of each cell. Rings begin 5.5 mm from the struck point: nearer, within the contact
 radius of 3 to 3.6 mm and half the thickness of the panel, the load spreads through the thickness, which plate theory
 does not describe. Needs h5py."""
 

@@ -1,4 +1,4 @@
-"""The text of a deck with keys set anew; comments and everything else stay as they are."""
+"""The text of a deck with changed keys; comments and everything else stay as they are."""
 
 import math
 import re

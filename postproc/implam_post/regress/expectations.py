@@ -103,7 +103,7 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Variant:
-    """A run of the deck with keys set anew, and all that is expected of it; those at the top come first."""
+    """A run of the deck with changed keys, and all that is expected of it; those at the top come first."""
 
     name: str
     settings: dict[KeyPath, str]

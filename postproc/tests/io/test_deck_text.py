@@ -1,4 +1,4 @@
-"""Tests of decks with keys set anew."""
+"""Tests of decks with changed keys."""
 
 import unittest
 

@@ -36,7 +36,7 @@ DECK = """&case units='SI' /
 
 
 def history(name: str, factor: float = 1.0) -> History:
-    """Return a blow of 2 ms that ends with a gap."""
+    """Return an impact of 2 ms that ends with a gap."""
     time = np.linspace(0, 3e-3, 31)
     force = factor * np.maximum(np.sin(np.pi * time / 2e-3), 0) * 2000 * (time < 2e-3)
     rest = {name: np.zeros(31) for name in (*ENERGIES, "energy_error")}
@@ -83,7 +83,7 @@ class PicturesTest(unittest.TestCase):
         self.assertEqual(np.nanmin(shown), 1e-4)
 
     def test_same_response_in_other_units(self) -> None:
-        """The same blow in mm, t and s has the same picture."""
+        """The same impact in mm, t and s has the same picture."""
         si, other = history("a"), history("a")
         other = History(other.columns | {"deflection": 1e3 * other["deflection"]}, "a")
         drawn = []

@@ -77,7 +77,7 @@ class TableTest(unittest.TestCase):
             self.assertEqual(dimension_of_swept(name), dimension, name)
 
     def test_units(self) -> None:
-        """Systems by the density of carbon/epoxy, and the same blow in each of them."""
+        """Systems by the density of carbon/epoxy, and the same impact in each of them."""
         self.assertEqual([system_of(density) for density in (1580.0, 1.58e-9, 1.58e-6, 1.0, None)],
                          ["SI", "mm-t-s", "mm-kg-ms", "", ""])
         for system, force, area, speed in (("SI", 2500.0, 3e-4, 4.0), ("mm-t-s", 2500.0, 300.0, 4000.0),
