@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Random impacts with cohesive interfaces that delaminate; each is run in several ways that must give the same results.
-Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways left out, such as two_ranks,three_ranks)
+"""Random impacts with cohesive interfaces that delaminate; each is run in several variants with equal results.
+Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (variants left out, such as two_ranks,three_ranks)
 
 Each model is run unchanged, and then on two and three ranks, in other units (mm-t-s), rotated by 90 degrees, mirrored,
 stopped and restarted, and with G_c larger by 1e-12. Differences of this perturbed run are those of round-off. A model
 passes if the run ends with exit code 0, or with 3 and a message; if the dissipated energy is G_c times the delaminated
-area to 1e-6; if it takes less than a minute of processor time; and if all ways give the same failed points of the
+area to 1e-6; if it takes less than a minute of processor time; and if all variants give the same failed points of the
 interfaces, the same failed plies of each element and the same delaminated area. Differences of the area are printed."""
 
 import csv

@@ -39,7 +39,7 @@ class Model:
         return np.broadcast_to(self.ply, len(self.angles))
 
     def contact_time(self):
-        """tau: the rise time, at which the wave-controlled response of the plate carries the contact force."""
+        """tau: the rise time, after which the wave impedance of the plate carries the contact force."""
         bending = (self.moduli[0] + self.moduli[1])/2*self.thickness**3/12
         impedance = 8*math.sqrt(bending*self.density*self.thickness)
         tau = (impedance*self.velocity/self.k)**(2/3)/self.velocity

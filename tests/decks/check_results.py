@@ -55,7 +55,7 @@ def faults_of_rows(program, topic):
             yield f"{topic}: {row['name']} has the unit {row['unit']}, which is not made of the deck's"
         # A row longer than its text is cut off.
         if not re.fullmatch(r"`\w+`", row["name"]) or not row.get("meaning", "").endswith("."):
-            yield f"{topic}: the row of {row['name']} is not whole: {row}"
+            yield f"{topic}: the row of {row['name']} is cut off: {row}"
 
 
 def groups(program):

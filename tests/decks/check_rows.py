@@ -102,7 +102,7 @@ def breaches(sources, groups, keys):
     wanted = [(group,) for group in groups] + keys
     found = [f"&{'%'.join(name)} has {len(rows.get(name, []))} rows: {', '.join(rows.get(name, []))}"
              for name in wanted if len(rows.get(name, [])) != 1]
-    found += [f"{places[0]}: `implam explain` does not know the row of &{'%'.join(name)}"
+    found += [f"{places[0]}: `implam explain` does not list the row of &{'%'.join(name)}"
               for name, places in rows.items() if name not in wanted]
     others = {(path, text): reason for path, several, reason in OTHERS for text in several.split()}
     known = set()
@@ -116,7 +116,7 @@ def breaches(sources, groups, keys):
             elif path.split("/")[0] not in owners[name]:
                 found.append(f"src/{path}:{line}: '{text}' is named here, but {name} belongs to "
                              f"{' and '.join(sorted(owners[name]))}")
-    return found + [f"src/{path}: no '{text}' stands here any more ({reason})"
+    return found + [f"src/{path}: no '{text}' is here any more ({reason})"
                     for (path, text), reason in others.items() if (path, text) not in known]
 
 

@@ -1,4 +1,4 @@
-"""Makes the source archive twice: each holds the commit and what git does not ignore, and nothing else.
+"""Makes the source archive twice: each contains the commit and the files that git does not ignore, and no others.
 Usage: archive.py CPACK BUILD SOURCE"""
 
 import subprocess

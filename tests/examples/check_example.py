@@ -117,7 +117,7 @@ def explain_keys(work, layers, patch):
 
 
 def run_tests(work, layers, tests, objects):
-    """Compiles and runs the patch's tests with the stand-in for pFUnit."""
+    """Compiles and runs the patch's tests with the replacement of pFUnit."""
     run(sys.executable, os.path.join(FRAMEWORK, "generate_asserts.py"), os.path.join(work.folder, "asserts.f90"))
     names = ["test_failures", "test_cases", "comparisons", "asserts", "test_runs", "funit", "pfunit"]
     sources = ["asserts.f90" if name == "asserts" else os.path.join(FRAMEWORK, name + ".f90") for name in names]

@@ -202,7 +202,7 @@ def check_diary(page, root):
     for line, number in prose(page):
         found = DIARY.search(line)
         if found:
-            yield f'{page}:{number}: "{found.group()}" describes what was; say what holds'
+            yield f'{page}:{number}: "{found.group()}" describes an earlier state; describe the present one'
 
 
 def title(page):

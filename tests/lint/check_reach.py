@@ -15,7 +15,7 @@ from fortran_units import read_modules
 
 # Names that only tests reach, and why they stay in the program.
 CLOSED_LIST = "tests compare every row of results with a closed list, which is next to the meaning of the cells"
-LINEAR_ALGEBRA = "a folder of procedures that stand for themselves, each with its test"
+LINEAR_ALGEBRA = "a folder of independent procedures, each with its test"
 EXCEPTIONS = {
     "numberings: numbering_t%owns": LINEAR_ALGEBRA,
     "result_tables: is_number_type": CLOSED_LIST,
@@ -276,7 +276,7 @@ def main(arguments, exceptions=EXCEPTIONS):
             print(f"{name} is not reached from the main program")
     for name in exceptions:
         if name not in names:
-            print(f"{name} stands among the exceptions but is reached, or is no more")
+            print(f"{name} is among the exceptions but is reached, or does not exist")
     if set(names) == set(exceptions) and modules:
         print(f"{len(modules)} modules: all that is public is reached but {len(names)} exceptions")
         return 0

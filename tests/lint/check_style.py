@@ -267,7 +267,7 @@ class Checker:
         self.require_doc(statement, f"{unit.group(1)} {unit.group(2)}")
         self.scopes.append(Scope(unit.group(1), statement.line, unit.group(2)))
         if unit.group(1) == "module" and unit.group(2) != self.path.stem.lower():
-            self.report(statement.line, f"module {unit.group(2)} stands in a file of another name")
+            self.report(statement.line, f"module {unit.group(2)} is in a file of another name")
 
     def close(self, scope, statement):
         """Check rules at the end of a scope."""

@@ -119,7 +119,7 @@ class PagesTest(unittest.TestCase):
 
     def test_diary(self):
         """Words of a diary are found."""
-        self.assert_breach("# Page\nThe deck as it was then.\n", '"as it was then" describes what was')
+        self.assert_breach("# Page\nThe deck as it was then.\n", '"as it was then" describes an earlier state')
 
     def test_index(self):
         """An index that lacks a page, a key or a term is found, and one without its comments."""

@@ -254,7 +254,7 @@ class ReachTest(unittest.TestCase):
         self.assertEqual(self.check(main, ["shapes: longest"])[0], 0)
         code, report = self.check(MAIN, ["shapes: longest"])
         self.assertEqual(code, 1)
-        self.assertIn("shapes: longest stands among the exceptions but is reached", report)
+        self.assertIn("shapes: longest is among the exceptions but is reached", report)
 
     def test_an_empty_folder_fails(self):
         """A check without files fails."""

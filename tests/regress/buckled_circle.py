@@ -10,7 +10,7 @@ from solver_runs import read_history, require, run_deck, write_deck
 MODULUS, POISSON, THICKNESS, TOUGHNESS = 60e9, 0.3, 0.5e-3, 300.0
 STRAIN = 5e-3
 BEFORE = 1.0e-3
-# Nodes on the outline are tied, so the delaminated area exceeds that inside the released nodes by a sixth of a cell.
+# Nodes on the outline are tied: the clamped radius exceeds that of the area of the released nodes by a sixth of a cell.
 CELL = 0.5e-3
 # Growth is compared once the process zone has formed and moved by a cell all around.
 MOVED = 0.5e-3

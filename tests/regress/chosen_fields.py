@@ -307,7 +307,7 @@ def check_table(implam, folder):
         require(found == expected, f"{choice}: there are {found} and not {expected}.")
     columns = list(read_history(history_path))
     # For the only interface, below ply 2.
-    # Columns of lines and of a filter stand in decks with these only (lines.py, restart_growth.py).
+    # Columns of lines and of a filter exist only in decks with these (lines.py, restart_growth.py).
     in_all = [row for row in table_of(implam, "history")
               if not row[0].startswith(("line_", "load_factor", "force_filtered", "far_field_stress",
                                            "shortening", "nominal_strain", "gauge_strain"))]

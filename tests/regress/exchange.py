@@ -1,5 +1,5 @@
 """Deflections by other programs: exported panels, intact, with failed plies and delaminated; and the example of the
-manual. Starters of decks as the program takes them. Usage: exchange.py calculix|mystran|manual|starters IMPLAM FOLDER
+manual; starters of decks against the program. Usage: exchange.py calculix|mystran|manual|starters IMPLAM FOLDER
 
 Ends with 77 where ccx, mystran or pyNastran is not installed."""
 

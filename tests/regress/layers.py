@@ -100,7 +100,7 @@ def check_again(implam, folder):
     print(f"{history['rejected'][-1]:.0f} steps repeated, {len(sizes(history, 2))} sizes of layers")
     require(history["rejected"][-1] > 0, "No step was repeated: the trial is void.")
     require(not any(history["border_reached"]), "Damage has reached the border of the layers.")
-    require_no_energy(history, "steps taken again")
+    require_no_energy(history, "repeated steps")
 
 
 TRIALS = {"same": check_same, "plies": check_plies, "again": check_again}

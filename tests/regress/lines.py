@@ -6,7 +6,7 @@ quarter  a strip against its quarter or half: deflection and forces to 1e-9
 plane    a force along a strip stretches it, with linear strains and with von Karman's: F L/(E A) to 1e-6
 turned   a strip on two lines under two forces, and half of it with point symmetry: to 1e-9
 time     prescribed lines are held exactly, with the force of equilibrium: fixed as in load steps, ramps and smooth
-         starts the same with half the step length, the ledger closed; also beside a pressure, with two integrators
+         starts the same with half the step length, the ledger closed; also with a pressure, with two integrators
 edges    a line that ends at supported edges: its work is half its force times its displacement, in load steps, in
          time and by central differences; supported nodes do not belong to it
 opened   lines that open an interface in the initial equilibrium: its fracture energy is work, and dissipated

@@ -6,7 +6,7 @@ kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one
          histories and damage are those of the uninterrupted run, bitwise on one rank and to 1e-9 on two; no file
          is left
 signals  TERM, INT and USR1 to the program, to one rank, to both and to mpirun, COUNT times each, once and twice in
-         turn: a checkpoint, or nothing written yet, and the code of the manual; what goes on from there ends likewise
+         turn: a checkpoint, or nothing written yet, and the code of the manual; a run continued from it ends likewise
 early    before main is entered, and while METIS has replaced the handler of TERM: the same"""
 
 import os

@@ -14,7 +14,7 @@ buckled  a layer over a delamination, toughness in N/m: strain at buckling and a
 
 The crack length is the dissipated area over the width: an elastic crack of that length has dissipated as much. Loads
 are compared once the process zone has formed, some millimetres from the starter; before, the load is below that of an
-elastic crack. Measured: double cantilever -1.7 to -1.3 % (criterion of the whole front), end-notched +0.8 %,
+elastic crack. Measured: double cantilever -1.7 to -1.3 % (criterion of the full front), end-notched +0.8 %,
 mixed-mode +1.7, -1.8 and -1.6 % with levers of 92.9, 41.3 and 27.3 mm; pure moments 1.001 and 1.000 in the mean, 1.020
 and 1.014 at most; uneven moments within 0.2 % in the mean, shares of shear within 0.003; unequal arms .3121, .3117 and
 .3116 by the energy on 60, 120 and 240 elements, .3121, .3106 and .3108 by the moment; a buckled layer -0.3 % in its

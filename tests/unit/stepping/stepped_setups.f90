@@ -31,7 +31,7 @@ contains
     type(material_t), intent(in) :: material
     !> Angles of the plies, degrees, and thickness of them all
     real(wp), intent(in) :: angles(:), thickness
-    !> Elements along each side of what is modelled
+    !> Elements along each side of the modelled part
     integer, intent(in) :: elements
     !> True: a quarter is modelled
     logical, intent(in) :: quarter
