@@ -250,7 +250,7 @@ contains
     if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
     if (key%default == 'required' .and. .not. problems%concern(key%group, key%name, setting%place)) then
       call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
-                          allowed_sentence(key)//'.', setting%place)
+                          ended(allowed_sentence(key)), setting%place)
     end if
   end subroutine take_default
 
@@ -294,8 +294,19 @@ contains
     end if
     valid = fault == ''
     if (.not. valid) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
-                                         fault//'; '//allowed_sentence(key)//limit//'.', place)
+                                         ended(fault//'; '//allowed_sentence(key)//limit), place)
   end subroutine check_values
+
+  !> A sentence with its full stop, which `.false.` has already.
+  pure function ended(sentence)
+    !> The sentence
+    character(len=*), intent(in) :: sentence
+    !> It ends with one full stop
+    character(len=:), allocatable :: ended
+
+    ended = sentence
+    if (sentence(len(sentence):) /= '.') ended = sentence//'.'
+  end function ended
 
   !> Writes choices as the table does, as they are accepted in any case. A text with several choices stays as it is.
   pure subroutine take_spelling(key, values)
