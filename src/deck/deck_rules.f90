@@ -6,7 +6,7 @@ module deck_rules
   use deck_settings, only: settings_t, setting_t, present_group_t
   use deck_values, only: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
-  use text, only: line_t, append, joined, lower_case, nearest_name, to_text, words_of
+  use text, only: line_t, append, ended, joined, lower_case, nearest_name, to_text, words_of
   implicit none
   private
   public :: resolve_settings
@@ -296,17 +296,6 @@ contains
     if (.not. valid) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
                                          ended(fault//'; '//allowed_sentence(key)//limit), place)
   end subroutine check_values
-
-  !> A sentence with its full stop, which `.false.` has already.
-  pure function ended(sentence)
-    !> The sentence
-    character(len=*), intent(in) :: sentence
-    !> It ends with one full stop
-    character(len=:), allocatable :: ended
-
-    ended = sentence
-    if (sentence(len(sentence):) /= '.') ended = sentence//'.'
-  end function ended
 
   !> Writes choices as the table does, as they are accepted in any case. A text with several choices stays as it is.
   pure subroutine take_spelling(key, values)

@@ -15,7 +15,7 @@ module contact_updates
   public :: update_contact_area
 
   !> Relaxation factor of the weights per step: the plate responds to the change, and without relaxation the update
-  !> overshoots where the plate is more compliant than the contact. doc/theory/impact.md has figures.
+  !> overshoots where the plate is more compliant than the contact. doc/studies/solution_controls.md has figures.
   real(wp), parameter :: relaxation = 0.2_wp
   !> Sum of the changes of weights, of one, that are not worth a solve: they change the force by less than its tolerance
   !> of 1e-6.
