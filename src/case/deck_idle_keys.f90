@@ -96,7 +96,8 @@ contains
       call remark_idle(deck%settings, problems, material_group, 'Sf', &
                        'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
     if (deck%ply_damage%criteria == criteria_puck) &
-      call remark_idle(deck%settings, problems, material_group, 'Sm23', 'has no effect with criteria = ''puck''.', place)
+      call remark_idle(deck%settings, problems, material_group, 'Sm23', &
+                       'has no effect with criteria = ''puck''.', place)
   end subroutine remark_strengths
 
   !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.

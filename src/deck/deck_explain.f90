@@ -1,6 +1,6 @@
 !> Explains groups and keys from the table, for the terminal and for the manual.
 module deck_explain
-  use deck_values, only: allowed_sentence
+  use allowed_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t, group_entry_t
   use errors, only: error_t, fail, exit_usage
   use text, only: line_t, append, ended, joined, lower_case, nearest_name, words_of

@@ -1,10 +1,11 @@
 !> Checks a scanned deck against the vocabulary: unknown and repeated names, types, counts and ranges.
 module deck_rules
+  use allowed_values, only: allowed_sentence
   use deck_entries, only: value_t, entry_t, shown, shown_values
   use deck_problems, only: problems_t
   use deck_scanner, only: scan_t
   use deck_settings, only: settings_t, setting_t, present_group_t
-  use deck_values, only: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value
+  use deck_values, only: fault_of_value, fault_of_count, decimal_commas, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use text, only: line_t, append, ended, joined, lower_case, nearest_name, to_text, words_of
   implicit none

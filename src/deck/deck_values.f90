@@ -1,12 +1,13 @@
-!> Checks single values of a deck: type, choice, range, and the allowed values for messages.
+!> Checks single values of a deck: type, choice and range.
 module deck_values
+  use allowed_values, only: branch_of
   use deck_entries, only: value_t, shown
   use deck_vocabulary, only: key_entry_t
   use kinds, only: wp
-  use text, only: line_t, append, words_of, lower_case, joined, nearest_name, to_text
+  use text, only: line_t, append, words_of, lower_case, nearest_name, to_text
   implicit none
   private
-  public :: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value, &
+  public :: fault_of_value, fault_of_count, decimal_commas, limit_of_size, literal_value, &
             real_value, integer_value, logical_value
 
   !> Range of numbers, so that their products remain finite and nonzero: the size of reals other than 0 is at least
@@ -48,23 +49,6 @@ contains
       if (value%quoted) fault = fault_of_text(key, value%text)
     end select
   end function fault_of_value
-
-  !> One side of a key that takes a choice or a number; in the table its choices stand before the conditions.
-  pure function branch_of(key, kind) result(branch)
-    !> The key as the table has it
-    type(key_entry_t), intent(in) :: key
-    !> `choice` or `real`
-    character(len=*), intent(in) :: kind
-    !> A key of that kind alone
-    type(key_entry_t) :: branch
-    integer :: comma
-
-    branch = key
-    branch%kind = kind
-    comma = index(key%allowed, ',')
-    branch%allowed = key%allowed(:comma - 1)
-    if (kind == 'real') branch%allowed = key%allowed(comma + 2:)
-  end function branch_of
 
   !> Error of a number, or of a word that the key accepts in its place, or an empty text.
   pure function fault_of_number(key, value) result(fault)
@@ -199,60 +183,6 @@ contains
     fraction = values(2)%text
     hint = ' (a comma separates values; for a decimal write '//whole//'.'//fraction//')'
   end function decimal_commas
-
-  !> Allowed values of a key, for the end of a message.
-  pure recursive function allowed_sentence(key) result(sentence)
-    !> The key as the table has it
-    type(key_entry_t), intent(in) :: key
-    !> Such as `allowed: 2 real values > 0`
-    character(len=:), allocatable :: sentence
-    type(line_t), allocatable :: choices(:)
-
-    if (key%kind == 'choice or real') then
-      sentence = allowed_sentence(branch_of(key, 'real'))
-      sentence = allowed_sentence(branch_of(key, 'choice'))//' or'//sentence(len('allowed:') + 1:)
-      return
-    end if
-    select case (key%kind)
-    case ('logical')
-      sentence = '.true. or .false.'
-    case ('choice')
-      choices = words_of(key%allowed, ' ')
-      sentence = key%values//' of '''//joined(choices, ''', ''')//''''
-    case ('name')
-      sentence = counted_kind(key%values, 'name')//' of up to 80 characters: '//key%allowed// &
-                 ', the first a letter or digit'
-    case ('text')
-      sentence = counted_kind(key%values, 'text')//' in quotes'
-      if (key%allowed /= 'any text') sentence = sentence//', '//key%allowed
-    case ('real')
-      sentence = counted_kind(key%values, 'real value')
-      if (key%allowed /= 'any') sentence = sentence//' '//key%allowed
-    case default
-      sentence = counted_kind(key%values, key%kind)
-      if (key%allowed /= 'any') sentence = sentence//' '//key%allowed
-    end select
-    sentence = 'allowed: '//sentence
-  end function allowed_sentence
-
-  !> A number of values with their noun, such as `1 real value or one for each ply`.
-  pure function counted_kind(number, noun) result(words)
-    !> Number of values as the table has it, and what a value is
-    character(len=*), intent(in) :: number, noun
-    !> The words
-    character(len=:), allocatable :: words
-
-    select case (number)
-    case ('1')
-      words = '1 '//noun
-    case ('plies')
-      words = 'one '//noun//' for each ply'
-    case ('1 or plies')
-      words = '1 '//noun//' or one for each ply'
-    case default
-      words = number//' '//noun//'s'
-    end select
-  end function counted_kind
 
   !> Limit by the size of numbers, if a value exceeds it; else an empty text.
   pure function limit_of_size(key, value) result(limit)
