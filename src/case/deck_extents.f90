@@ -254,7 +254,7 @@ contains
   pure function extent_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
-    !> One line an interface
+    !> One line per interface
     type(line_t), allocatable :: lines(:)
     real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)

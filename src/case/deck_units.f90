@@ -36,7 +36,7 @@ module deck_units
     real(wp) :: value = 0
     !> Group and key
     character(len=16) :: group = '', key = ''
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer :: place = 1
   end type quantity_t
 
@@ -158,7 +158,7 @@ contains
       real(wp), intent(in) :: value
       !> Group and key
       character(len=*), intent(in) :: group, key
-      !> Which of the groups of this name
+      !> Index among the groups of this name
       integer, intent(in) :: place
       type(quantity_t) :: item
 

@@ -42,7 +42,7 @@ contains
     end if
   end subroutine explain
 
-  !> One line a group.
+  !> One line per group.
   subroutine explain_groups(vocabulary, lines)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary

@@ -19,7 +19,7 @@ module deck_problems
   type :: problem_t
     !> Line of the deck; 0: the deck as a whole
     integer :: line = 0
-    !> Which of the groups of this name it belongs to; 0: any
+    !> Index of its group among those of this name; 0: any
     integer :: place = 0
     !> True: the deck can still run
     logical :: is_warning = .false.
@@ -87,7 +87,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> Text after `file:line:`
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name it belongs to; absent: any
+    !> Index of its group among those of this name; absent: any
     integer, intent(in), optional :: place
 
     call self%add(.false., line, group, key, message, place)
@@ -117,7 +117,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> Printed text
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name it belongs to; absent: any
+    !> Index of its group among those of this name; absent: any
     integer, intent(in), optional :: place
     type(problem_t) :: problem
 
@@ -147,7 +147,7 @@ contains
     character(len=*), intent(in) :: group
     !> Name of the key; absent: any
     character(len=*), intent(in), optional :: key
-    !> Which of the groups of this name; absent: any
+    !> Index among the groups of this name; absent: any
     integer, intent(in), optional :: place
     integer :: i
 

@@ -20,7 +20,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> The error and the values allowed
     character(len=*), intent(in) :: fault
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     call problems%error(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//fault, &
@@ -37,7 +37,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> One clause
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     call problems%warning(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//message)
@@ -55,7 +55,7 @@ contains
     character(len=*), intent(in) :: keys
     !> Why
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -79,7 +79,7 @@ contains
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -103,7 +103,7 @@ contains
     type(settings_t), intent(in) :: settings
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     if (key == '') then
@@ -119,7 +119,7 @@ contains
     type(settings_t), intent(in) :: settings
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> Such as `&time step = 1e-6: `
     character(len=:), allocatable :: beginning

@@ -134,7 +134,7 @@ contains
   subroutine report_unknown_key(group, place, entry, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: group
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key
     type(entry_t), intent(in) :: entry
@@ -200,7 +200,7 @@ contains
     type(scan_t), intent(in) :: scan
     !> Index of the group in it; 0: the deck does not have it
     integer, intent(in) :: block
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
@@ -258,7 +258,7 @@ contains
   subroutine check_values(key, place, entry, vocabulary, valid, problems)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry
@@ -316,7 +316,7 @@ contains
     end do
   end subroutine take_spelling
 
-  !> Which of the groups of its name a group is.
+  !> Index of the group of its name a group is.
   pure integer function place_of(scan, accepted, block) result(place)
     !> The scanned deck
     type(scan_t), intent(in) :: scan

@@ -12,7 +12,7 @@ module deck_settings
   type :: setting_t
     !> Names of the group and of the key as the manual writes it
     character(len=:), allocatable :: group, key
-    !> Which of the groups of this name, from 1
+    !> Index among the groups of this name, from 1
     integer :: place = 1
     !> Line of the key, or of its group if it is not given
     integer :: line = 0
@@ -93,7 +93,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Name of the group
     character(len=*), intent(in) :: group
-    !> Which of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i, left
 
@@ -112,7 +112,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: wanted
 
@@ -130,7 +130,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -144,7 +144,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -158,7 +158,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -175,7 +175,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> The values
     type(value_t), allocatable, intent(out) :: values(:)
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -191,7 +191,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> The text
     character(len=:), allocatable :: word
@@ -224,7 +224,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
@@ -238,7 +238,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> The numbers
     real(wp), allocatable :: numbers(:)
@@ -254,7 +254,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> The numbers
     integer, allocatable :: numbers(:)
@@ -270,7 +270,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer, allocatable :: numbers(:)
 
@@ -284,7 +284,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
@@ -302,7 +302,7 @@ contains
     character(len=*), intent(in) :: word
     !> Name of the table, for the echo
     character(len=*), intent(in) :: origin
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -323,7 +323,7 @@ contains
     character(len=*), intent(in) :: word
     !> True: it is a text
     logical, intent(in) :: quoted
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
     integer :: i

@@ -1,5 +1,5 @@
-!> Small symmetric matrices stored as their upper triangle: (11, 12, 16, 22, 26, 66) of in-plane components,
-!> (xz-xz, xz-yz, yz-yz) across it.
+!> Small symmetric matrices stored as their upper triangle: (11, 12, 16, 22, 26, 66) of in-plane components, (xz-xz,
+!> xz-yz, yz-yz) of transverse shear.
 module packed_matrices
   use kinds, only: wp
   implicit none

@@ -1,4 +1,5 @@
-!> From a stacking sequence to the stiffness and mass of a section of the plate, or of a layer of some of its plies.
+!> From a stacking sequence to the stiffness and mass of a section of the plate, theory (P4) to (P7), or of a layer of
+!> some of its plies.
 module stacking
   use kinds, only: wp
   use laminate_parameters, only: laminate_t, shear_energy
@@ -86,9 +87,9 @@ contains
   end function section_stiffness
 
   !> Stiffness of a layer of some of a laminate's plies, whose elastic constants may have been reduced. Within the
-  !> laminate its faces carry shear: with shear_energy its stiffness is that of the laminate's equilibrium. A layer in
-  !> which those stresses cancel would have none; below sqrt(epsilon) of the stiffness with free faces, which leaves
-  !> solutions half of their digits, it has the latter.
+  !> laminate the faces of a layer carry shear stress: with shear_energy its stiffness is that of the laminate's
+  !> equilibrium, theory (P6). It would vanish for a layer in which those stresses cancel; below sqrt(epsilon) of the
+  !> stiffness with free faces, with which solutions still have half of their digits, the latter is used.
   pure function layer_stiffness(plies, elasticity, first, last, shear_correction) result(stiffness)
     !> All plies of the laminate
     type(ply_t), intent(in) :: plies(:)

@@ -172,7 +172,7 @@ contains
   pure subroutine edges_and_middles(edges, coordinates)
     !> Edges, (0:cells)
     real(wp), intent(in) :: edges(0:)
-    !> Edges and middles, one a line of nodes
+    !> Edges and middles, one per line of nodes
     real(wp), intent(out) :: coordinates(0:)
 
     coordinates(0::2) = edges

@@ -130,7 +130,7 @@ contains
     class(layer_map_t), intent(in) :: self
     !> Points of the columns of the matrix
     integer, intent(in) :: points(:)
-    !> Matrix, five columns a point
+    !> Matrix, five columns per point
     real(wp), intent(in) :: matrix(:, :)
     !> Number of these points and of those above them
     integer, intent(in) :: count

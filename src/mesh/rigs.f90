@@ -121,7 +121,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
-    !> A node a clamp
+    !> One node per clamp
     integer, allocatable :: nodes(:)
     real(wp) :: point(2), distances(grid%nodes()), radii(grid%nodes())
     integer :: i, node

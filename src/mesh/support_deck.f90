@@ -133,7 +133,7 @@ contains
     type(settings_t), intent(in) :: settings
     !> The rig
     type(support_t), intent(in) :: support
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -176,7 +176,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -198,7 +198,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems

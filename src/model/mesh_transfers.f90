@@ -163,7 +163,7 @@ contains
     real(wp), intent(in) :: coordinate
     !> The cell, from 1
     integer, intent(out) :: cell
-    !> One value a node
+    !> One value per node
     real(wp), intent(out) :: shapes(3)
 
     cell = max(1, min(size(edges) - 1, count(edges <= coordinate)))

@@ -32,7 +32,7 @@ module timers
     procedure :: start
     !> Stops it and adds the run.
     procedure :: stop => stop_timer
-    !> A table for the log, one line a stopwatch.
+    !> A table for the log, one line per stopwatch.
     procedure :: lines
     procedure, private :: position
   end type timer_set_t
@@ -82,7 +82,7 @@ contains
     end associate
   end subroutine stop_timer
 
-  !> A table for the log, one line a stopwatch.
+  !> A table for the log, one line per stopwatch.
   pure function lines(self)
     class(timer_set_t), intent(in) :: self
     !> Name, runs, wall-clock seconds, seconds of the processor

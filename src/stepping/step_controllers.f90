@@ -96,7 +96,7 @@ contains
   pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Step taken
     real(wp), intent(in) :: step
@@ -130,7 +130,7 @@ contains
   pure subroutine begin(self, stepping, remaining)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Time to the first event
     real(wp), intent(in) :: remaining
@@ -155,7 +155,7 @@ contains
   pure real(wp) function shortest(self, stepping, damaged)
     !> The controller
     class(step_controller_t), intent(in) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> True once plies have failed or delaminations have grown
     logical, intent(in) :: damaged
@@ -168,7 +168,7 @@ contains
   pure subroutine adapt_to_error(self, stepping, step, error, remaining, is_over, gear, damaged)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Step taken, and its error relative to the tolerance
     real(wp), intent(in) :: step, error
@@ -241,7 +241,7 @@ contains
   pure subroutine limit_by_fronts(self, stepping, ratio, extended)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Largest ratio of energy release rate to its critical value in the step
     real(wp), intent(in) :: ratio
@@ -265,7 +265,7 @@ contains
   pure subroutine limit_by_ply_damage(self, stepping, damage_lag)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Lag of damage in the last step, relative to its limit
     real(wp), intent(in) :: damage_lag
@@ -292,7 +292,7 @@ contains
   pure logical function renewal_due(self, stepping, nonlinear, mass_ratio, deflection_change, thickness) result(due)
     !> The controller
     class(step_controller_t), intent(in) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> True: the stiffness depends on the deflection
     logical, intent(in) :: nonlinear

@@ -25,7 +25,7 @@ contains
   !> Steps between two checks. It is the same on any number of ranks and after a restart, as warnings are given at
   !> checks.
   pure integer function steps_between_checks(stepping, elements) result(steps)
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Number of elements of all layers
     integer, intent(in) :: elements
@@ -37,7 +37,7 @@ contains
 
   !> Steps between two updates of the damaged state of interfaces.
   pure integer function steps_between_stages(stepping) result(steps)
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
 
     steps = merge(between_stages, 1, is_explicit(stepping))

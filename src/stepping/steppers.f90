@@ -50,7 +50,7 @@ module steppers
     logical :: exceeds_tolerance = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t) :: stepping
     !> Steps in time or by load; unallocated: central differences
     class(step_kind_t), allocatable :: kind

@@ -38,7 +38,7 @@ contains
     !> The time stepper
     class(time_stepper_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver

@@ -158,7 +158,7 @@ contains
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
-    !> Matrix, five rows a point
+    !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
     !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
@@ -185,7 +185,7 @@ contains
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
-    !> Matrix, five rows a point
+    !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
     !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
@@ -216,7 +216,7 @@ contains
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
-    !> Matrix, five rows a point
+    !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
     !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
