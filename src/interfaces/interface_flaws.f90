@@ -1,5 +1,5 @@
-!> Matrix cracks of adjacent plies as flaws of a cohesive interface: within a distance of a crack the strengths are
-!> reduced, at the same toughness.
+!> Matrix cracks of adjacent plies as flaws of a cohesive interface (doc/theory/interfaces.md, flaws beside cracked
+!> plies): within a distance of a crack the strengths are reduced, at the same toughness.
 !>
 !> The law of a damaged point is not changed, so that its dissipated energy remains consistent.
 module interface_flaws
@@ -15,9 +15,9 @@ module interface_flaws
 
 contains
 
-  !> Reduces the strengths of the undamaged points of an interface near cracks of a ply. With mirror symmetry image
-  !> cells are farther away than the cells; with point symmetry cells beyond the cut are images of cells of the modelled
-  !> part.
+  !> Reduces the strengths of the undamaged points of an interface near cracks of a ply. With mirror symmetry the image
+  !> of a cracked cell is farther away than the cell itself and need not be considered; with point symmetry cells beyond
+  !> the cut are images of cells of the modelled part.
   pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
