@@ -70,7 +70,7 @@ contains
     call model%profile%leave()
   end subroutine grow_in_step
 
-  !> True if all delaminations grow from step to step, none at frozen time.
+  !> True if all delaminations grow in the next step, none while time is held constant.
   pure logical function grows_by_steps(model)
     type(model_t), intent(in) :: model
 
