@@ -1,8 +1,8 @@
 !> Insertion of layers: the model is built again with larger layered zones, and the state is transferred to it.
 !>
-!> The new layers take over the motion of the single plate, with its rotations and without jumps, so that displacement,
+!> The new layers receive the motion of the single plate, with its rotations and without jumps, so that displacement,
 !> velocity and acceleration of every ply, strains and energies are unchanged. The remaining difference of energy is
-!> recorded: round-off, or, with the energy-consistent shear correction, that of the sections.
+!> recorded: round-off or, with the energy-consistent shear correction, the difference of the sections.
 module layer_switches
   use contact_updates, only: update_contact_area
   use errors, only: error_t

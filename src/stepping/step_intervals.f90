@@ -11,8 +11,8 @@ module step_intervals
   !> cohesive interfaces and crack bands, gfortran 12 with -O3 on one core of an AMD EPYC; the elastic Sun-Chen plate
   !> takes .2e-6.
   real(wp), parameter, public :: seconds_per_element = 0.55e-6_wp
-  !> Seconds of one processor in which a run looks at its ledger, its limits, at signals and at elapsed time: SLURM
-  !> gives 30 from the signal to the end (KillWait).
+  !> Interval in seconds of one processor at which a run checks its ledger, its limits, signals and elapsed time: SLURM
+  !> allows 30 from the signal to the end (KillWait).
   real(wp), parameter :: seconds_between_checks = 1
   !> Largest number of steps between two checks: a check costs about one step.
   integer, parameter :: max_between_checks = 64

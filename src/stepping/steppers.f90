@@ -29,8 +29,7 @@ module steppers
     procedure :: equilibrate
   end type step_kind_t
 
-  !> Evolving state of a run, and parameters of steps. It has many components because each part of the step control
-  !> stores its own.
+  !> Evolving state of a run, and parameters of steps, with the data of each part of the step control.
   type :: stepper_t
     !> The state reached
     type(state_t), allocatable :: now
@@ -42,9 +41,9 @@ module steppers
     type(step_error_t) :: step_error
     !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp) :: error = 0, damage_lag = 0
-    !> True: the length of steps follows the error of each
+    !> True: the length of steps is controlled by the error of each step
     logical :: is_error_controlled = .false.
-    !> Smallest step worth trying
+    !> Smallest step
     real(wp) :: smallest_step = 0
     !> True: the error of the last step exceeds the tolerance at the shortest step
     logical :: exceeds_tolerance = .false.

@@ -108,7 +108,7 @@ contains
     real(wp), intent(in) :: event
     !> Step found
     real(wp), intent(out) :: step
-    !> Shortest step allowed under error control, where the length follows it
+    !> Shortest step allowed under error control
     real(wp), intent(out) :: shortest
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(inout) :: error

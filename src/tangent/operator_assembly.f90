@@ -28,7 +28,7 @@ contains
   end function is_positive_definite
 
   !> True if the tangent does not couple in-plane displacements with bending: an undeflected plate of a symmetric
-  !> laminate. Both then have factors of their own, which are half as large as one for both. Collective.
+  !> laminate. Both are then factorized separately, and the factors are half as large as one for both. Collective.
   logical function has_separate_membrane(model, stiffness, displacement) result(separate)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -210,7 +210,8 @@ contains
     end do
   end subroutine add_to
 
-  !> Adds a matrix of the unknowns of some points: in-plane displacements and bending apart if they are separate.
+  !> Adds a matrix of the unknowns of some points, in-plane displacements and bending separately if they are not
+  !> coupled.
   subroutine add_parts(numbering, points, matrix, solver, element)
     !> Equations
     type(numbering_t), intent(in) :: numbering
