@@ -17,15 +17,15 @@ module petsc_factors
   !> PETSC_ERR_LIB, for lack of memory
   integer, parameter :: bad_pivot = 81, no_memory(*) = [55, 76]
 
-  !> Room beyond MUMPS' estimate in %, ICNTL(14): its own choice and, as its users' guide advises after a failure for
-  !> lack of room, more: twice and five times the estimate
+  !> Memory beyond MUMPS' estimate in %, ICNTL(14): MUMPS' default and, as its users' guide advises after a failure for
+  !> lack of memory, twice and five times the estimate
   integer, parameter :: usual_margin = -1, larger_margins(*) = [100, 400]
 
-  !> A factor and what makes it.
+  !> A factorization of PETSc and its settings.
   type :: petsc_factor_t
     !> True between `define` and `release`
     logical :: defined = .false.
-    !> PETSc's name of the package; empty: none, by options of the user
+    !> PETSc's name of the package; empty: the package is chosen by the user's options
     character(len=:), allocatable :: package
     !> True: one rank factorizes and solves for all of them
     logical, private :: gathered = .false.

@@ -110,7 +110,7 @@ contains
     end do
   end subroutine check_rigs
 
-  !> True if clamps press only where a bilateral frame supports the plate.
+  !> True if clamps exert a force only where a bilateral frame supports the plate.
   pure logical function has_idle_clamps(clamped, supports)
     !> The rig with the clamps
     type(support_t), intent(in) :: clamped
@@ -263,7 +263,8 @@ contains
     arms = points - spread(points(:, 1), 2, size(points, 2))
     along = arms(:, maxloc(norm2(arms, 1), dim=1))
     turns_about = all(abs(along(1)*arms(2, :) - along(2)*arms(1, :)) <= rounding*sum(along**2))
-    ! The motion is odd across the line: a mirror image, or one turned by 180 degrees, must not be.
+    ! The deflection of a rotation about this line is odd across it. A plate that is its own image by reflection across
+    ! the line, or by a turn of 180 degrees, has no such motion.
     turns_about = turns_about .and. symmetry /= symmetry_point .and. &
                   all(.not. is_mirrored(symmetry) .or. abs([along(2), along(1)]) <= rounding*norm2(along))
   end function turns_about

@@ -60,7 +60,7 @@ contains
   end function fixed_on_borders
 
   !> Unknowns fixed by one edge. A simple support is a hard one: it also fixes the rotation along the edge. An elastic
-  !> edge leaves it free.
+  !> edge leaves this rotation free.
   pure function fixed_by_edge(edge, normal, plate) result(fixed)
     !> Kind of support
     integer, intent(in) :: edge

@@ -29,8 +29,8 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> True for columns that this rank computes, (columns)
     logical, intent(in) :: mine(:)
-    !> Columns of the group of each, itself among them, zeros behind them, (most, columns). Who computes one of a group
-    !> needs all of it
+    !> Columns of the group of each column, including itself, padded with zeros, (largest group, columns). A rank that
+    !> computes one column of a group needs all of them
     integer, intent(in) :: groups(:, :)
     !> The exchange
     type(column_exchange_t) :: self
@@ -59,7 +59,7 @@ contains
 
   contains
 
-    !> Those of some columns that another rank needs, ascending.
+    !> Those columns of a list that another rank needs, ascending.
     pure function needed_by(other, some) result(columns)
       !> The other rank
       integer, intent(in) :: other

@@ -151,7 +151,8 @@ contains
     expected%edge = edge
     elastic%setup = setup
     elastic%scales = scales
-    elastic%plate = plate_modes(setup, max(resolved_angle/step, min(2*resolved_angle/step, excited/scales%contact_time)))
+    elastic%plate = plate_modes(setup, max(resolved_angle/step, min(2*resolved_angle/step, &
+                                                                    excited/scales%contact_time)))
     coarse = run_of(elastic, step, end, 0.0_wp)
     if (nint(end/(step/2)) <= max_steps) then
       fine = run_of(elastic, step/2, end, 0.0_wp)

@@ -19,8 +19,8 @@ module states
   !> Name of the time in checkpoints.
   character(len=*), parameter, public :: time_item = 'time'
 
-  !> State without the large arrays of the plate's motion and plies. It contains every variable that a rejected step
-  !> must not change.
+  !> State without the large arrays of the plate's motion and plies. It has many components because a rejected step must
+  !> change none of them.
   type :: small_state_t
     !> Time, or load factor of a static analysis
     real(wp) :: time = 0

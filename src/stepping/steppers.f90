@@ -29,7 +29,8 @@ module steppers
     procedure :: equilibrate
   end type step_kind_t
 
-  !> Evolving state of a run, and parameters of steps, with the data of each part of the step control.
+  !> Evolving state of a run, and parameters of steps. It has many components because each part of the step control has
+  !> its own.
   type :: stepper_t
     !> The state reached
     type(state_t), allocatable :: now
