@@ -75,12 +75,12 @@ contains
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
-      call refuse(deck, 'the plate there is another one, '//objection, error)
+      call refuse(deck, 'that run has another plate, '//objection, error)
       return
     end if
     if (is_mapped(deck, old) .and. force > 0) then
-      call refuse(deck, 'the impactor is in contact at the end of that run, and under its load the state of a '// &
-                  'plate is not mapped to other cells; let the impact end, or give the mesh of that run', error)
+      call refuse(deck, 'the impactor is in contact at the end of that run, and a state under contact force '// &
+                  'cannot be mapped to another mesh; run the impact to its end, or give the mesh of that run', error)
       return
     end if
     do i = 1, size(deck%delaminations)
@@ -108,8 +108,8 @@ contains
     if (communicator%is_root()) &
       is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name//checkpoint_ending)
     call communicator%broadcast(is_own)
-    if (is_own) call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; '// &
-                            'allowed: another &case name or &output directory', error)
+    if (is_own) call refuse(deck, 'is the checkpoint that this run writes at its own end, from which the next run '// &
+                            'would start; allowed: another &case name or &output directory', error)
   end subroutine refuse_own_end
 
   !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
@@ -232,7 +232,7 @@ contains
       if (record%mapping%first_loss() > 0) then
         call refuse(deck, 'the interface below ply '// &
                     to_text(deck%delaminations(record%mapping%first_loss())%below_ply)// &
-                    ' has delaminated beyond the '//key_zone//' that it has here', error)
+                    ' has delaminated beyond its '//key_zone//' in this deck', error)
         return
       end if
     end if

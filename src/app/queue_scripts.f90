@@ -130,7 +130,7 @@ contains
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
     end do
     if (job%tasks > 0) close (unit)
-    if (job%tasks == 0) call fail(error, exit_files, 'No decks.txt of implam-sweep --array lies beside '// &
+    if (job%tasks == 0) call fail(error, exit_files, 'There is no decks.txt of implam-sweep --array beside '// &
                                   job%target//'.')
   end subroutine size_array
 

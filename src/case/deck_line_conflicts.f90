@@ -46,7 +46,8 @@ contains
     end do
   end subroutine check_line_conflicts
 
-  !> True: a line moves or loads an edge in a component that the edge holds. A support of a support is harmless.
+  !> True: a line moves or loads an edge in a component that the edge constrains. A line that only supports such an edge
+  !> has no effect and is accepted.
   pure logical function acts_on_held_edge(deck, line) result(acts)
     !> The deck
     type(deck_t), intent(in) :: deck

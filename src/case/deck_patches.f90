@@ -14,8 +14,8 @@ module deck_patches
   private
   public :: check_patch, check_core
 
-  !> Smallest patch, fraction of the plate's shorter side: the elements that it requires are as slender as those of the
-  !> thinnest plate.
+  !> Smallest patch as a fraction of the plate's shorter side: the elements that it requires are then as slender as
+  !> those of the thinnest plate.
   real(wp), parameter :: min_patch = 1.0e-5_wp
 
 contains

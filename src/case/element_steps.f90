@@ -1,8 +1,8 @@
 !> Stable step of central differences before there is a model: that of the smallest element with all its layers.
 !>
-!> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both;
-!> with equal sections it has the highest frequency; with scaled inertia longer ones have about the same. Before layers
-!> are inserted the step of a run is longer; contact stiffness makes it shorter.
+!> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both.
+!> With equal sections this element has the highest frequency; with scaled inertia the frequencies of longer ones are
+!> about the same. Before layers are inserted the step of a run is longer; contact stiffness reduces it.
 module element_steps
   use cell_grids, only: cell_edges
   use communicators, only: communicator_t
@@ -26,7 +26,8 @@ contains
   real(wp) function smallest_element_step(deck, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
-    !> Slope of the plate; its membrane strain is the mean of half the squared slope of half a sine; 0 if absent
+    !> Slope of the plate, the amplitude of a half sine; its membrane strain is the mean of half the squared slope; 0 if
+    !> absent
     real(wp), intent(in), optional :: slope
     type(model_t) :: model
     type(ply_failure_t) :: plies

@@ -189,7 +189,7 @@ contains
                .not. problems%concern(entry%name)) then
         ! Without any group the deck was already reported to have none.
         if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &
-          '&'//entry%name//' is missing; `implam explain '//entry%name//'` shows what it takes.')
+          '&'//entry%name//' is missing; `implam explain '//entry%name//'` lists its keys.')
       end if
     end associate
   end subroutine resolve_group

@@ -153,8 +153,8 @@ contains
     if (support%shape == window_circle .and. support%unilateral .and. support%bearing == bearing_edge .and. &
         are_clear(settings, problems, group, 'shape unilateral bearing', place)) &
       call report(settings, problems, group, 'bearing', &
-                  'the edge of a circle is no line of the mesh that the plate '// &
-                'may lift off; allowed with it and unilateral: ''face''.', place)
+                  'the plate can lift off an edge only along a line of the mesh, which '// &
+                  'a circle is not; allowed with a circle and unilateral: ''face''.', place)
     if (circle) call remark_idle(settings, problems, group, key_window//' sides', 'has no effect on a circle.', place)
     if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
                                        place)

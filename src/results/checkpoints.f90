@@ -131,7 +131,7 @@ contains
         if (.not. allocated(fault)) exit
         path = ''
       end do
-      if (path == '') call fail(error, exit_files, 'The folder '//folder//' holds no whole checkpoint (NAME'// &
+      if (path == '') call fail(error, exit_files, 'The folder '//folder//' contains no complete checkpoint (NAME'// &
                                 checkpoint_ending//').')
     end if
     call communicator%agree(error)

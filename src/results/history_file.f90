@@ -238,8 +238,8 @@ contains
       if (status /= 0) then
         call fail(error, exit_files, "Cannot read the history "//from//'.')
       else if (.not. same) then
-        call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
-                  to_text(rows_to_keep)//' differs; move it away, or take the checkpoint of that run.')
+        call fail(error, exit_files, 'The history '//from//' belongs to another run than the checkpoint: row '// &
+                  to_text(rows_to_keep)//' differs; move the history away, or use the checkpoint of its run.')
       else
         call copy%open(to, 'w')
         call copy_bytes(unit, bytes, copy, status)
