@@ -47,7 +47,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Set (files) if the checkpoint cannot be read, (deck) if it is of another plate
     type(error_t), allocatable, intent(inout) :: error
-    !> Returns true instead of an error if there is no such file, as the other run may be pending
+    !> Returns true instead of an error if there is no such file, as the other run may not have been started yet
     logical, intent(out), optional :: lacks
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: old
@@ -129,8 +129,8 @@ contains
     call append(deck%remarks, 'line '//line//': '//sentence)
   end subroutine remark_stopped
 
-  !> Saves or loads how far the other run came: a restart does not read that run's checkpoint again, and its summary
-  !> repeats the warning.
+  !> Saves or loads the time that the other run reached: a restart does not read the checkpoint of that run again, and
+  !> its summary repeats the warning.
   subroutine visit_incomplete_start(deck, archive)
     !> The deck
     type(deck_t), intent(inout) :: deck

@@ -14,7 +14,7 @@ module queue_scripts
   private
   public :: write_queue_script
 
-  !> Requested memory over the estimate: layers that follow damage take up to 14900 bytes an element in place of 9700
+  !> Ratio of requested to estimated memory: with adaptive layers an element takes up to 14900 bytes instead of 9700
   !> (`model_sizes`).
   real(wp), parameter :: spare_memory = 1.5_wp
   !> Wall-clock seconds of a job without `--time`, and largest reserve for the checkpoint.

@@ -41,7 +41,7 @@ module deck_units
   end type quantity_t
 
   !> Usual range of the end of the run over the plate's period or the contact, whichever is longer. It is wide enough
-  !> for any run, and confused units change the ratio by 1e3 or 1e6. It decides on a warning, as all below.
+  !> for any run, and confused units change the ratio by 1e3 or 1e6. It affects a warning only, as all below.
   real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
   !> Ratio of the duration of a contact to its rise time: two in a symmetric contact, and a margin for repeated
   !> contacts.

@@ -155,7 +155,7 @@ contains
     call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//default_in_words(key)//'.')
   end subroutine explain_key
 
-  !> How a group comes in a deck.
+  !> Whether a group is required and repeatable, in words.
   pure function presence_in_words(group) result(words)
     !> The group
     type(group_entry_t), intent(in) :: group

@@ -53,7 +53,7 @@ contains
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
-    !> Why
+    !> Reason
     character(len=*), intent(in) :: message
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -69,7 +69,7 @@ contains
     end do
   end subroutine remark_idle
 
-  !> True: some keys are valid or absent. A check that calls this first reports no error that follows from another.
+  !> True: some keys are valid or absent. A check that calls this first does not report errors caused by other errors.
   pure logical function are_clear(settings, problems, group, keys, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -97,7 +97,7 @@ contains
     end do
   end function are_clear
 
-  !> Line to name.
+  !> Line of the deck to be named in a message.
   pure integer function line_of(settings, group, key, place) result(line)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -11,7 +11,7 @@ module deck_rules
   private
   public :: resolve_settings
 
-  !> Most groups of one name; no laminate has so many materials.
+  !> Largest number of groups of one name; no laminate has so many materials.
   integer, parameter :: max_repetitions = 100
 
 contains
@@ -56,7 +56,7 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    !> True: its keys count
+    !> True: its keys are used
     logical, intent(out) :: accepted
     type(present_group_t) :: new
     integer :: index, earlier
@@ -104,7 +104,7 @@ contains
     end if
   end subroutine report_unknown_group
 
-  !> Whether a key belongs to its group and comes once.
+  !> Checks that a key belongs to its group and is given once.
   subroutine check_key(scan, entry, place, vocabulary, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
@@ -163,7 +163,7 @@ contains
   subroutine resolve_group(scan, accepted, vocabulary, group, settings, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> Which of its groups count
+    !> True for groups that are used
     logical, intent(in) :: accepted(:)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
@@ -297,7 +297,8 @@ contains
                                          fault//'; '//allowed_sentence(key)//limit//'.', place)
   end subroutine check_values
 
-  !> Writes choices as the table does, as they are accepted in any case. A text with several choices stays as it is.
+  !> Replaces choices by their spelling in the table, as they are accepted in any case. A text with several choices is
+  !> not changed.
   pure subroutine take_spelling(key, values)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -316,11 +317,11 @@ contains
     end do
   end subroutine take_spelling
 
-  !> Index of the group of its name a group is.
+  !> Index of a group among those of its name.
   pure integer function place_of(scan, accepted, block) result(place)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> Which of its groups count
+    !> True for groups that are used
     logical, intent(in) :: accepted(:)
     !> Index of the group in it
     integer, intent(in) :: block

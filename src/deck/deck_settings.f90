@@ -22,9 +22,9 @@ module deck_settings
     logical :: valid = .true.
     !> True: chosen for the accuracy of the deck
     logical :: chosen = .false.
-    !> Table that gave the value as the deck refers to it; unallocated: none
+    !> Table from which the value is taken, as the deck refers to it; unallocated: none
     character(len=:), allocatable :: origin
-    !> True: without effect on this deck, so the echo leaves it out
+    !> True: without effect on this deck, so that the echo omits it
     logical :: idle = .false.
     !> The values; none if the key has no default
     type(value_t), allocatable :: values(:)
@@ -107,7 +107,7 @@ contains
     end do
   end function line_of_group
 
-  !> Index of a key in the list, 0 if it is not there.
+  !> Index of a key in the list; 0: the key is not in it.
   pure integer function find(self, group, key, place) result(index)
     class(settings_t), intent(in) :: self
     !> Names of group and key
@@ -153,7 +153,7 @@ contains
     if (i > 0) is_known = self%items(i)%valid .and. size(self%items(i)%values) > 0
   end function is_known
 
-  !> Line to name when a key is at fault: its own, or its group's.
+  !> Line to be named when a key has an error: its own, or that of its group.
   pure integer function line_of(self, group, key, place) result(line)
     class(settings_t), intent(in) :: self
     !> Names of group and key
@@ -167,8 +167,8 @@ contains
     if (i > 0) line = self%items(i)%line
   end function line_of
 
-  !> Takes the values of a key; none if there are none that can be used.
-  !> No function, because gfortran 12 loses the memory of texts in a list that a function returns.
+  !> Takes the values of a key; none if no values can be used. Not a function, because gfortran 12 leaks the memory of
+  !> texts in a list that a function returns.
   pure subroutine take_values(self, group, key, values, place)
     class(settings_t), intent(in) :: self
     !> Names of group and key
@@ -293,12 +293,13 @@ contains
     if (size(values) > 0) logical_of = logical_value(values(1))
   end function logical_of
 
-  !> Gives a key that the deck does not give the value of a table that the deck refers to. It counts as given.
+  !> Sets a key that the deck does not give to the value of a table to which the deck refers. The key then counts as
+  !> given.
   pure subroutine adopt(self, group, key, word, origin, place)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The value as it would stand in a deck
+    !> The value as written in a deck
     character(len=*), intent(in) :: word
     !> Name of the table, for the echo
     character(len=*), intent(in) :: origin
@@ -319,7 +320,7 @@ contains
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The value as it would stand in a deck, without quotes
+    !> The value as written in a deck, without quotes
     character(len=*), intent(in) :: word
     !> True: it is a text
     logical, intent(in) :: quoted
@@ -360,7 +361,7 @@ contains
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The values as they would stand in a deck, without quotes
+    !> The values as written in a deck, without quotes
     type(line_t), intent(in) :: words(:)
     !> True: they are texts
     logical, intent(in), optional :: quoted
@@ -379,7 +380,7 @@ contains
     self%items(place)%chosen = .true.
   end subroutine choose
 
-  !> Leaves a group that the deck does not have out of the echo.
+  !> Omits a group that the deck does not have from the echo.
   pure subroutine set_aside(self, group)
     class(settings_t), intent(inout) :: self
     !> Name of the group

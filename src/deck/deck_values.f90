@@ -49,7 +49,8 @@ contains
     end select
   end function fault_of_value
 
-  !> One side of a key that takes a choice or a number; in the table its choices stand before the conditions.
+  !> The part of a key that accepts a choice or a number for one of the two; in the table its choices precede the
+  !> conditions.
   pure function branch_of(key, kind) result(branch)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -309,11 +310,11 @@ contains
     is_not_finite = bare == 'nan' .or. bare == 'inf' .or. bare == 'infinity' .or. index(bare, 'nan(') == 1
   end function is_not_finite
 
-  !> Whether a word is a number, and its decimal magnitude, found without a chance to overflow.
+  !> Whether a word is a number, and its decimal magnitude, determined without overflow.
   pure subroutine measure_number(word, is_number, decade)
     !> The word
     character(len=*), intent(in) :: word
-    !> True: sign, digits, point and exponent are as they should be
+    !> True: sign, digits, point and exponent are valid
     logical, intent(out) :: is_number
     !> Power of ten of its first digit that is not 0; 0 for the number 0
     integer, intent(out) :: decade

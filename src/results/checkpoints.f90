@@ -1,5 +1,5 @@
 !> NAME_restart.h5: the state, bitwise exact, for any number of ranks. It is written to another file, sealed and
-!> renamed: the file of that name is valid at any time, the one before or the new one.
+!> renamed, so that the file of that name is valid at any time.
 module checkpoints
   use archives, only: archive_t
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal

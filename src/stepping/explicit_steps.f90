@@ -27,7 +27,7 @@ contains
     !> Central differences
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
-    !> Time not to be passed
+    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> The state
     type(state_t), intent(inout) :: now

@@ -38,7 +38,7 @@ contains
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> True if layers were inserted
     logical, intent(out) :: switched
@@ -83,7 +83,7 @@ contains
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Time not to be passed
+    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> True if layers were inserted
     logical, intent(out) :: switched

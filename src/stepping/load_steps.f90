@@ -47,7 +47,7 @@ contains
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Load factor not to be passed
+    !> Load factor that must not be exceeded
     real(wp), intent(in) :: event
     !> Step tried
     real(wp), intent(out) :: step

@@ -54,7 +54,7 @@ contains
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Time not to be passed
+    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> Step tried
     real(wp), intent(out) :: step

@@ -92,7 +92,7 @@ module steppers
       !> The stepper; its trial state is that at the end of the step
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
-      !> Time, or load factor, not to be passed
+      !> Time, or load factor, that must not be exceeded
       real(wp), intent(in) :: event
       !> Step tried
       real(wp), intent(out) :: step

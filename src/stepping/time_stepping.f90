@@ -77,7 +77,7 @@ contains
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
@@ -104,7 +104,7 @@ contains
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Step found
     real(wp), intent(out) :: step
