@@ -142,7 +142,7 @@ contains
 
   !> Row of cells with a node on its centre line; 0: the node lies between two rows.
   pure integer function row_of(lines, along) result(row)
-    !> Lines of nodes that meet in the node, from 0
+    !> Lines of nodes that cross at the node, from 0
     integer, intent(in) :: lines(2)
     !> Axis of the load
     integer, intent(in) :: along

@@ -112,7 +112,8 @@ contains
                             'would start; allowed: another &case name or &output directory', error)
   end subroutine refuse_own_end
 
-  !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
+  !> Warns of a start from a run that was stopped before its end, such as by a time limit, and whose later damage is
+  !> missing.
   subroutine remark_stopped(deck, remark)
     !> The deck; the summary of its run repeats the warning
     type(deck_t), intent(inout) :: deck
@@ -211,7 +212,7 @@ contains
     type(model_t), intent(in) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
-    !> Receives the quantities before and after mapping, and what had failed
+    !> Receives the quantities before and after mapping, and the failures before this run
     type(run_record_t), intent(inout) :: record
     !> Receives a note
     type(log_t), intent(inout) :: log

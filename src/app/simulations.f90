@@ -158,7 +158,7 @@ contains
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)
     if (allocated(error)) return
-    ! A launcher gives its ranks a terminal of its own, whose output may go to a file.
+    ! A launcher gives its ranks a terminal of its own, whose output may be redirected to a file.
     if (launched()) self%log%interactive = .false.
     self%provenance = provenance_of(deck, communicator%size)
     call self%provenance%report(self%log)

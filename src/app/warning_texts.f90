@@ -14,9 +14,9 @@ module warning_texts
   private
   public :: warning_text
 
-  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
-  !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
-  !> Shells, 1959, art. 100).
+  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry 0.47
+  !> (w/h)**2 times the load that bending carries, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of
+  !> Plates and Shells, 1959, art. 100).
   real(wp), parameter, public :: max_deflection_ratio = 3
   !> Permitted ratio of kinetic energy to work in slow motion, 5 % (Getting Started with Abaqus, chapter on quasi-static
   !> analysis: 5 to 10 %).

@@ -84,7 +84,7 @@ module files
     !> C library: reads bytes and returns how many there were.
     integer(c_size_t) function c_fread(buffer, item_size, items, stream) bind(c, name='fread')
       import :: c_ptr, c_size_t
-      !> Where the bytes go
+      !> Receives the bytes
       type(c_ptr), value :: buffer
       !> Size and number of items wanted
       integer(c_size_t), value :: item_size, items
@@ -135,7 +135,7 @@ contains
     if (.not. is_directory(path)) is_readable = c_access(path//c_null_char, may_read) == 0
   end function is_readable
 
-  !> True: both paths, behind all links, lead to one file that exists.
+  !> True: both paths lead to one existing file, after all links are resolved.
   logical function is_same_file(a, b)
     !> The paths
     character(len=*), intent(in) :: a, b

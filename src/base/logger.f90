@@ -19,7 +19,7 @@ module logger
 
   !> A log file together with the terminal.
   type :: log_t
-    !> Details go to the terminal as well
+    !> True: details are printed on the terminal, too
     logical :: verbose = .false.
     !> The output is a terminal, on which a line can be overwritten
     logical :: interactive = .false.
@@ -77,7 +77,7 @@ contains
     if (.not. writes) return
     self%interactive = c_isatty(standard_output) == 1
     if (len_trim(path) == 0) return
-    ! Opening may empty the file, so the lock comes first.
+    ! Opening may empty the file, so the lock is taken before.
     call self%lock%take(path, refused)
     if (refused) then
       call fail(error, exit_files, 'Another run is writing '//trim(path)//' and the results beside it; wait '// &

@@ -133,7 +133,7 @@ contains
     digits = plain_decimal(trim(adjustl(buffer)))
   end function rounded_text
 
-  !> A number with the noun of what it counts, in the plural unless the number is 1.
+  !> A number with the noun of the counted items, in the plural unless the number is 1.
   pure function counted(digits, noun) result(words)
     !> The number as text
     character(len=*), intent(in) :: digits
@@ -191,7 +191,7 @@ contains
     logical, intent(in) :: negative
     !> Its digits, the first of them before the point
     character(len=*), intent(in) :: figures
-    !> Its exponent; outside -4 to 6 it stays
+    !> Its exponent, which is written only outside -4 to 6
     integer, intent(in) :: exponent
     !> Such as -0.25
     character(len=:), allocatable :: plain

@@ -27,7 +27,7 @@ module deck_extents
   public :: check_sizes, check_extents, extent_lines
 
   !> Length over thickness beyond which round-off dominates the result, and below which plate theory is inaccurate.
-  !> Stiffnesses of shear and bending differ by the square of the first, 1e10, which leaves six of sixteen digits. At
+  !> Stiffnesses of shear and bending differ by the square of the first, 1e10, so that six of sixteen digits remain. At
   !> four thicknesses the deflection of a cross-ply is 12 % too small (N. J. Pagano, S. J. Hatfield, AIAA J. 10 (1972)
   !> 931-933).
   real(wp), parameter :: max_slenderness = 1.0e5_wp, min_slenderness = 5

@@ -48,7 +48,8 @@ contains
     end do
   end subroutine check_interfaces
 
-  !> True if an interface lies between plies of one orthotropic material and angle, in a laminate that has others too.
+  !> True if an interface lies between plies of one orthotropic material and angle, in a laminate that also has other
+  !> interfaces.
   pure logical function lies_within_a_block(deck, ply) result(within)
     !> The deck
     type(deck_t), intent(in) :: deck

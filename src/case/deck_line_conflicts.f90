@@ -1,4 +1,5 @@
-!> Checks that a motion of a node is prescribed by one line, and lines act on motions that edges leave free.
+!> Checks that each motion of a node is prescribed by one line only, and that lines act on motions that the edges do not
+!> constrain.
 module deck_line_conflicts
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t

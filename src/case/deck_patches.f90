@@ -91,7 +91,7 @@ contains
     end associate
   end subroutine check_elements
 
-  !> Whether a rectangle about the struck point meets or crosses the border, with no room for elements on that side.
+  !> Whether a rectangle around the struck point reaches or crosses the border, so that no elements fit on that side.
   pure function meets_border(deck, extents) result(meets)
     !> The deck
     type(deck_t), intent(in) :: deck

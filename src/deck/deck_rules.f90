@@ -308,7 +308,7 @@ contains
     integer :: i, j
 
     if (key%kind /= 'choice' .and. key%kind /= 'choice or real') return
-    ! Conditions on a real value follow the choices behind a comma.
+    ! In the table, conditions on a real value follow the choices after a comma.
     choices = words_of(key%allowed(:index(key%allowed//',', ',') - 1), ' ')
     do i = 1, size(values)
       do j = 1, size(choices)

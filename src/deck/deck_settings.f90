@@ -315,7 +315,7 @@ contains
     self%items(i)%origin = origin
   end subroutine adopt
 
-  !> Sets the value of a key that the deck does not give and that follows from others.
+  !> Sets the value of a key that the deck does not give and that follows from other keys.
   pure subroutine derive(self, group, key, word, quoted, place)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
@@ -337,7 +337,7 @@ contains
     call move_alloc(values, self%items(i)%values)
   end subroutine derive
 
-  !> Sets the numbers of a key that the deck does not give and that follow from others.
+  !> Sets the numbers of a key that the deck does not give and that follow from other keys.
   pure subroutine derive_numbers(self, group, key, numbers)
     class(settings_t), intent(inout) :: self
     !> Names of group and key

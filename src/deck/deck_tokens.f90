@@ -121,7 +121,7 @@ contains
     end do
   end subroutine skip_to_group
 
-  !> True: an & with a name behind it is at this place.
+  !> True: at this position is an & followed by a name.
   pure logical function starts_group(deck, at)
     !> Text of the deck
     character(len=*), intent(in) :: deck

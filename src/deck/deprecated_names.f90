@@ -112,7 +112,7 @@ contains
     end if
   end function sentence
 
-  !> The minor version after the one that warns first.
+  !> The minor version after the first one that warns.
   pure function first_version_without(since) result(version)
     !> MAJOR.MINOR.PATCH
     character(len=*), intent(in) :: since

@@ -88,7 +88,7 @@ contains
     end do
   end subroutine find_number
 
-  !> Characters behind the first one that belong to a number.
+  !> Number of characters after the first that belong to a number.
   pure integer function span(rest)
     !> Text that begins with a digit
     character(len=*), intent(in) :: rest

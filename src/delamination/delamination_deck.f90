@@ -302,7 +302,7 @@ contains
     end if
   end subroutine check_toughness
 
-  !> Checks the strengths of a cohesive law, by default others for each interface; remarks on a front in its place.
+  !> Checks the strengths of a cohesive law, whose defaults may differ between interfaces; warns of a front by default.
   subroutine check_strengths(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

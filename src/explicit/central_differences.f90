@@ -42,7 +42,7 @@ module central_differences
   !> steps.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data besides the state.
+  !> Data of the method that are not part of the state.
   type, extends(nodal_steps_t) :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters

@@ -34,7 +34,7 @@ contains
     past_jumps = (1 - weights(0))*start - (weights(2) + weights(3))*change - weights(3)*earlier
   end function past_jumps
 
-  !> The same for openings, of which contact leaves none that is negative.
+  !> The same for openings. Negative openings are carried by contact and do not contribute.
   elemental real(wp) function past_openings(start, change, earlier)
     !> Opening at the start of the step, its change in the step before, and its change in the step before that
     real(wp), intent(in) :: start, change, earlier

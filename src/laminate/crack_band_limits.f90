@@ -1,5 +1,5 @@
-!> Limits of softening plies: the strain below which none is damaged, and the longest elements that keep the fracture
-!> energies.
+!> Limits of softening plies: the strain below which no ply is damaged, and the longest elements that dissipate no more
+!> than the fracture energies.
 module crack_band_limits
   use crack_bands, only: crack_band_t
   use kinds, only: wp

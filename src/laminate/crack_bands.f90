@@ -124,7 +124,7 @@ contains
 
   !> Damage of fibres and matrix under trial strains, both found together, and the energy that it dissipates.
   pure subroutine find_damage(band, lengths, strains, old, new)
-    !> The law, with the fraction of G12 that shear has left
+    !> The law, with G12 reduced by nonlinear shear
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)

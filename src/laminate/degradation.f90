@@ -22,7 +22,7 @@ contains
     logical, intent(in) :: failed(failure_modes)
     !> Divisor and floor
     type(ply_damage_t), intent(in) :: damage
-    !> Constants that are left
+    !> The reduced constants
     type(elasticity_t) :: elasticity
     real(wp) :: fibre, in_plane_shear, matrix
 

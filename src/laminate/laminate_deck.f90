@@ -1,4 +1,4 @@
-!> The laminate of the deck: rows of its table, filling, and the checks that decide what its plies are.
+!> The laminate of the deck: rows of its table, filling, and the checks on which its plies depend.
 module laminate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t

@@ -40,7 +40,7 @@ contains
   pure function inverse_of_two(packed) result(inverted)
     !> xz-xz, xz-yz, yz-yz
     real(wp), intent(in) :: packed(3)
-    !> Its inverse, packed alike
+    !> Its inverse, packed in the same way
     real(wp) :: inverted(3)
 
     inverted = [packed(3), -packed(2), packed(1)]/(packed(1)*packed(3) - packed(2)**2)

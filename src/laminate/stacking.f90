@@ -12,7 +12,7 @@ module stacking
 
   !> A section of the laminate, or of a layer of it, per unit of area; z from the mid-plane of the whole laminate.
   type :: section_t
-    !> A(11, 12, 16, 22, 26, 66), B and D alike, S(xz-xz, xz-yz, yz-yz)
+    !> A(11, 12, 16, 22, 26, 66), B and D likewise, S(xz-xz, xz-yz, yz-yz)
     real(wp) :: stiffness(21) = 0
     !> Integrals of density, density z and density z**2
     real(wp) :: mass(3) = 0

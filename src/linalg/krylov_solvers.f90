@@ -47,7 +47,7 @@ module krylov_solvers
     logical :: defined = .false.
     !> Iterations of the last solve
     integer :: iterations = 0
-    !> True: the last solve reached its tolerance, or met a direction of negative curvature and stopped before it
+    !> True: the last solve reached its tolerance, or ended before a direction of negative curvature
     logical :: converged = .false., indefinite = .false.
     !> PETSc's solver
     type(tKSP), private :: solver

@@ -153,8 +153,8 @@ contains
     ierr = maxval(codes)
   end subroutine gather_on_one_rank
 
-  !> Factorizes on the rank that solves for all, before the first solve: a failure within the solve would leave the
-  !> other ranks waiting.
+  !> Factorizes on the rank that solves for all, before the first solve: after a failure within the solve the other
+  !> ranks would wait forever.
   subroutine factorize_gathered(self, ierr)
     class(petsc_factor_t), intent(in) :: self
     !> PETSc's code
@@ -213,7 +213,7 @@ contains
       ! The factors are kept until the next call of this procedure, also while new values are assembled.
       call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
     else
-      ! After a failure the packages refuse to go on with the factor that they have.
+      ! After a failure the packages do not accept the existing factor again.
       call self%renew(matrix, usual_margin, error)
     end if
   end subroutine factorize
@@ -234,7 +234,7 @@ contains
     lacks_memory = .false.
     outcome = factor_succeeded
     call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
-    ! Setting the same matrix again makes the solver check whether its values have changed.
+    ! The same matrix is set again, so that the solver checks whether its values have changed.
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
     call KSPSetUp(self%solver, ierr(3))
     if (self%gathered .and. ierr(3) == 0) call self%factorize_gathered(ierr(3))

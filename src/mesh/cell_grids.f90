@@ -134,7 +134,7 @@ contains
     end associate
   end function fewest_elements
 
-  !> True: the core is in the middle, with as many elements on both sides.
+  !> True: the core is in the middle, with equal numbers of elements on both sides.
   pure logical function needs_even_elements(plate, mesh, direction) result(even)
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate

@@ -78,7 +78,7 @@ contains
     call communicator%maximum(least)
     pressure = max(0.0_wp, edge_gap*indentation - least - apart)
     parts = [self%area*total_of(communicator, self%under*pressure), total_of(communicator, self%beside*pressure)]
-    ! An indentation below the rounding of deflections leaves no pressure.
+    ! If the indentation is below the round-off of the deflections, all weights may be zero.
     if (sum(parts) > 0) weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
   end function weights
 

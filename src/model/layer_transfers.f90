@@ -40,7 +40,7 @@ module layer_transfers
   contains
     !> Switches from saving to loading.
     procedure :: turn_to
-    !> Copies what rank 0 has saved to every rank.
+    !> Copies the items that rank 0 has saved to every rank.
     procedure :: broadcast
     procedure :: real_item
     procedure :: integer_item

@@ -8,11 +8,11 @@ module column_exchanges
   private
   public :: column_exchange_t, new_column_exchange
 
-  !> Which columns this rank sends to others, and which it receives from them.
+  !> Columns that this rank sends to other ranks, and columns that it receives from them.
   type :: column_exchange_t
     !> All ranks
     type(MPI_Comm), private :: group
-    !> Columns that others need, and those of others that are needed here
+    !> Own columns that other ranks need, and columns of other ranks that this rank needs
     type(message_plan_t), private :: sent, received
     !> True: there are some
     logical, private :: needed = .false.

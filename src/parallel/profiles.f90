@@ -123,7 +123,7 @@ contains
     !> The profile so far
     type(record_t), intent(inout) :: record
     real(wp) :: seconds, megabytes
-    ! Seconds: twice what the query takes, which reads a file of the system.
+    ! Seconds: twice the duration of the query, which reads a file of the system.
     real(wp), parameter :: min_query_interval = 1.0e-4_wp
 
     seconds = wall_time()

@@ -151,7 +151,7 @@ contains
     lane_of = 1 + mod(element - 1, lanes)
   end function lane_of
 
-  !> Element in the first lane of a batch; the others follow.
+  !> Element in the first lane of a batch; those in the other lanes follow it.
   pure integer function first_element(b)
     !> Number of the batch
     integer, intent(in) :: b

@@ -253,7 +253,7 @@ contains
 
     if (allocated(self%failure)) return
     if (.not. self%communicator%any(status < 0)) return
-    ! While data are written the reserve is there: less than its size was left for them.
+    ! The reserve exists while data are written: less space than its size remained for the data.
     self%failure = obstacle_of(self, reserved_bytes)
     if (self%failure == '') self%failure = failure
   end subroutine check_status

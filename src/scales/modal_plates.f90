@@ -38,7 +38,7 @@ module modal_plates
 
 contains
 
-  !> Modes of a plate up to a frequency, and the compliance of all others.
+  !> Modes of a plate up to a frequency, and the static compliance of all higher modes.
   pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff) result(plate)
     !> Lengths of the full plate along x and y
     real(wp), intent(in) :: length(2)

@@ -1,5 +1,5 @@
-!> Intervals, in steps, of checks of a run: steps by central differences are many and cheap, so that checks are made at
-!> intervals.
+!> Intervals, in steps, of checks of a run: steps by central differences are many and short in computing time, so that
+!> checks are made at intervals.
 module step_intervals
   use kinds, only: wp
   use stepping_parameters, only: is_explicit, stepping_t

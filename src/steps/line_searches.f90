@@ -2,8 +2,8 @@
 !> magnitude (H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626). Along negative curvature the
 !> step is extended.
 !>
-!> The active set of contacts is kept fixed in a search and updated between corrections: contact is far stiffer than the
-!> plate, so a search with a changing active set would stop at each contact.
+!> The active set of contacts is constant in a search and updated between corrections: contact is far stiffer than the
+!> plate, so a search with a changing active set would end at each contact.
 module line_searches
   use kinds, only: wp
   use models, only: model_t

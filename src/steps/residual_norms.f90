@@ -114,7 +114,7 @@ contains
     squares = [sum(sums(1:3, :)), sum(sums(4:5, :))]
   end function sums_without_masters
 
-  !> Adds the squares of a row of numbers to as many sums.
+  !> Adds the square of each number of a row to the sum of its column.
   pure subroutine add_squares(number, equation, values, sums)
     !> Number of values
     integer, intent(in) :: number
