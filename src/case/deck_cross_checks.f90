@@ -96,7 +96,7 @@ contains
     else if (deck%has_pressure .or. loads(deck%lines)) then
       call report(deck%settings, problems, impactor_group, key_travel, &
                   'no other load is possible with a travel in a static analysis; leave out &pressure and lines '// &
-                  'with a load.')
+                  'that move or load the plate.')
     end if
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
                      keys_of_motion(deck%settings), 'has no effect on a static analysis.')

@@ -26,7 +26,7 @@ contains
   real(wp) function smallest_element_step(deck, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
-    !> Slope of the plate, the amplitude of a half sine; its membrane strain is the mean of half the squared slope; 0 if
+    !> Slope of the plate, the largest of a half sine, whose membrane strain is the mean of half the squared slope; 0 if
     !> absent
     real(wp), intent(in), optional :: slope
     type(model_t) :: model
@@ -53,8 +53,9 @@ contains
     if (frequency > 0) step = 2/frequency
   end function smallest_element_step
 
-  !> Motion of a plate that is sloped along one direction and stretched by a quarter of the squared slope, of which the
-  !> slope itself gives half a square.
+  !> Motion of a plate with a uniform slope along one direction and the membrane strain of a half sine with this largest
+  !> slope, a quarter of its square. The uniform slope causes a strain of half the square, the in-plane displacement one
+  !> of minus a quarter.
   pure function sloped_motion(model, slope, direction) result(motion)
     type(model_t), intent(in) :: model
     !> The slope

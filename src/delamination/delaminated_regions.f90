@@ -151,7 +151,7 @@ contains
 
     range = cells_within(edges, extent)
     taken = edges(range(2) + 1) - edges(range(1))
-    ! A model that begins at the plate's centre and is struck there is half of the line.
+    ! A model that begins at the plate's centre and is struck there contains half of the extent.
     if (edges(1) > -rounding*edges(size(edges))) taken = 2*taken
   end function extent_of_cells
 

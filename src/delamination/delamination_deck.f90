@@ -320,7 +320,7 @@ contains
       return
     end if
     call check_law(settings, delamination, place, problems)
-    ! Without a position there are no adjacent plies with strengths.
+    ! Without a position of the interface its adjacent plies, whose strengths are the defaults, are not known.
     if (delamination%below_ply < 1) return
     if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
     if (.not. delamination%strength_shear > 0) call require(key_strength_shear, 'or S12 of the materials.')

@@ -39,8 +39,8 @@ module dynamic_steps
     type(plate_integrator_t) :: integrator
     !> Predictor of the displacement, (5, points); unallocated: constant velocity
     real(wp), allocatable :: guess(:, :)
-    !> True: the predictor is the initial displacement, so that internal forces are known; false: it is a motion of
-    !> constant velocity, so that inertia forces are known
+    !> keeps_displacement: the predictor is the initial displacement, so that internal forces are known; keeps_velocity:
+    !> it has the initial velocity, so that inertia forces are known
     logical :: keeps_displacement = .false., keeps_velocity = .false.
     !> True: internal forces follow from the equation of motion, as one correction solves the step
     logical :: skips_elements = .false.
@@ -136,7 +136,7 @@ contains
         else
           call new%find_internal(model, old, at%energy)
           if (self%keeps_velocity .and. new%iterations == 0) then
-            ! Newmark's acceleration with the velocity of the start.
+            ! Newmark's acceleration if the velocity at the end is that at the start.
             new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
           else
             call model%inertia(new%motion%acceleration, new%motion%inertia)

@@ -48,7 +48,7 @@ contains
       free = trial%interfaces%contact%free
       fracture = trial%ledger%delamination
       call grow_fronts(model, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, grown)
-      ! The integrators cannot distinguish the energy dissipated by fracture from their own losses.
+      ! The integrators cannot distinguish the energy dissipated by fracture from their own dissipation.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) exit
       call ties%release(model, free, trial%interfaces%contact%free, &

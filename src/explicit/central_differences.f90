@@ -207,9 +207,9 @@ contains
   end subroutine advance
 
   !> Records the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
-  !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the energy is
-  !> then that of the initial state of the method, -h^2 F M^-1 F/8 at rest, which is not recorded as dissipation.
-  !> Collective.
+  !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the change is
+  !> then the energy of the initial state, -h^2 F M^-1 F/8 at rest, and is recorded as external work, not as
+  !> dissipation. Collective.
   subroutine change_length(self, model, v, sign)
     !> The method
     type(central_difference_t), intent(inout) :: self

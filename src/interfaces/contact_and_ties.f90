@@ -215,7 +215,7 @@ contains
     integer, allocatable :: points(:)
 
     if (.not. model%map%layered) return
-    ! Pressures are known to a point's owner only.
+    ! Pressures are known only on the rank that owns a point.
     points = self%in_contact(model)
     guess(3, points) = merge(0.0_wp, max(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
     call model%halo%update(guess)

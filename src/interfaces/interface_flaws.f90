@@ -113,7 +113,7 @@ contains
     distance = (1 + rounding)*reach
     associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
       near = x(2:) + distance >= x(columns(1)) .and. x(:size(near)) - distance <= x(columns(2) + 1)
-      ! With point symmetry only cells near the cut have an image in reach.
+      ! With point symmetry only cells near the cut have an image within the distance.
       beside_cut = mesh%halved(1) .and. .not. mesh%mirrored(1) .and. x(:size(near)) <= distance
       do row = 1, mesh%cells(2)
         first = (row - 1)*size(near)

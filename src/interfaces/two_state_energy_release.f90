@@ -70,7 +70,7 @@ contains
       do layer = 1, 2
         common(:, layer, s) = common_stiffness(segments(s), stiffness(:, layer, :, s))
         do side = 1, 2
-          ! At the border of the zone follows a single layer, with another stiffness than these two.
+          ! Beyond the border of the zone there is a single layer, with another stiffness than these two.
           known = stiffness(:, layer, merge(1, side, segments(s)%at_border), s)
           do line = 1, 3
             states(:, line, layer, side, s) = &

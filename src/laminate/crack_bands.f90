@@ -351,7 +351,7 @@ contains
       call find_strain_alone(c, strains, left, 2, size, weights)
       shear_energy = c%g12*strains%shear_square/2
       energy = c%e2*size**2/2 + shear_energy
-      ! Linear interaction of the modes (E. M. Wu, R. C. Reuter, 1965): G_I/G_mt + G_II/G_mc = 1.
+      ! Linear interaction of the modes (E. M. Wu, R. C. Reuter, 1965): G_I/G_mt + G_II/G_mc = 1, theory (M12).
       toughness = g(matrix_compression)
       if (energy > 0) &
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))

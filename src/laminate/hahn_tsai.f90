@@ -55,7 +55,7 @@ contains
     real(wp) :: trial, scale, growth
 
     trial = abs(strain - permanent)
-    ! Elastic where beta (G trial)**3 <= p, which needs no root.
+    ! Elastic if beta (G trial)**3 <= p; no root is needed.
     if (beta*(modulus*trial)**3 <= accumulated) return
     ! The stress t at which t/G + beta t**3 = trial + p.
     scale = 1/sqrt(beta*modulus)

@@ -92,7 +92,7 @@ contains
   pure real(wp) function dissipated_by(softening, part, damage_from, damage_to) result(energy)
     !> The softening law
     type(softening_t), intent(in) :: softening
-    !> Fraction of the energy of the law, from 0 to 1
+    !> Factor of the energy of the law, at most 1
     real(wp), intent(in) :: part
     !> Damage before and after
     real(wp), intent(in) :: damage_from, damage_to

@@ -103,7 +103,7 @@ contains
     real(wp), intent(out) :: energy
 
     if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
-      ! Unallocated resultants count as absent.
+      ! Unallocated resultants are passed on as an absent argument.
       call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
       self%stiffness = self%bands%stiffness
       if (allocated(self%free)) self%free = self%bands%free

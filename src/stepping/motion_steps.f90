@@ -139,7 +139,7 @@ contains
     integer :: lag_iterations
 
     associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
-      ! Excess solves count from the step that renewed the operator.
+      ! Excess solves are counted from the step that renewed the operator.
       if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
       call controller%accept(stepping, step, now%iterations, lag_iterations, change)
