@@ -4,7 +4,7 @@ module text
   use shortest_digits, only: find_shortest
   implicit none
   private
-  public :: line_t, lower_case, to_text, rounded_text, counted, listed, joined, words_of, append, &
+  public :: line_t, lower_case, to_text, rounded_text, counted, listed, joined, words_of, append, ended, &
             edit_distance, nearest_name
 
   !> One line of a list of lines.
@@ -318,4 +318,15 @@ contains
       nearest = known(i)%text
     end do
   end function nearest_name
+
+  !> A sentence with its full stop, which `.false.` has already.
+  pure function ended(sentence)
+    !> The sentence
+    character(len=*), intent(in) :: sentence
+    !> It ends with one full stop
+    character(len=:), allocatable :: ended
+
+    ended = sentence
+    if (sentence(len(sentence):) /= '.') ended = sentence//'.'
+  end function ended
 end module text

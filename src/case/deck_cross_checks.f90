@@ -146,6 +146,8 @@ contains
     end if
     if (size(deck%lines) > 0 .and. .not. problems%concern(line_group)) call check_in_plane_balance(deck, problems)
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
+    if (deck%settings%has_group(adapt_group)) &
+      call remark(deck%settings, problems, adapt_group, '', 'has no effect on a static analysis.')
     call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
     do line = 1, size(deck%lines)
       call remark_idle(deck%settings, problems, line_group, key_rise, 'has no effect on a static analysis.', line)

@@ -9,6 +9,7 @@ module deck_patches
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
   use plate_deck, only: plate_group, key_symmetry
   use roundings, only: rounding
+  use short_numbers, only: text_at_least
   use text, only: to_text
   implicit none
   private
@@ -39,7 +40,7 @@ contains
                   to_text(shorter)//'.')
       else if (patch < min_patch*shorter) then
         call report(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
-                  to_text(min_patch*shorter)//'.')
+                  text_at_least(min_patch*shorter)//'.')
       else if (.not. deck%mesh%cell > 0) then
         call check_elements(deck, problems)
       end if

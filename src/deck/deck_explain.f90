@@ -3,7 +3,7 @@ module deck_explain
   use deck_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t, group_entry_t
   use errors, only: error_t, fail, exit_usage
-  use text, only: line_t, append, joined, lower_case, nearest_name, words_of
+  use text, only: line_t, append, ended, joined, lower_case, nearest_name, words_of
   implicit none
   private
   public :: explain, explain_table
@@ -152,7 +152,7 @@ contains
     unit = ''
     if (key%unit /= '-') unit = '; unit: '//key%unit
     call append(lines, '  '//key%name//repeat(' ', max(1, 18 - len(key%name)))//key%meaning)
-    call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//default_in_words(key)//'.')
+    call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//ended(default_in_words(key)))
   end subroutine explain_key
 
   !> Whether a group is required and repeatable, in words.

@@ -6,7 +6,7 @@ module deck_rules
   use deck_settings, only: settings_t, setting_t, present_group_t
   use deck_values, only: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
-  use text, only: line_t, append, joined, lower_case, nearest_name, to_text, words_of
+  use text, only: line_t, append, ended, joined, lower_case, nearest_name, to_text, words_of
   implicit none
   private
   public :: resolve_settings
@@ -250,7 +250,7 @@ contains
     if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
     if (key%default == 'required' .and. .not. problems%concern(key%group, key%name, setting%place)) then
       call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
-                          allowed_sentence(key)//'.', setting%place)
+                          ended(allowed_sentence(key)), setting%place)
     end if
   end subroutine take_default
 
@@ -294,7 +294,7 @@ contains
     end if
     valid = fault == ''
     if (.not. valid) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
-                                         fault//'; '//allowed_sentence(key)//limit//'.', place)
+                                         ended(fault//'; '//allowed_sentence(key)//limit), place)
   end subroutine check_values
 
   !> Replaces choices by their spelling in the table, as they are accepted in any case. A text with several choices is

@@ -214,21 +214,46 @@ contains
       sentence = allowed_sentence(branch_of(key, 'choice'))//' or'//sentence(len('allowed:') + 1:)
       return
     end if
-    sentence = 'allowed: '//key%values//' '//key%kind//trim(merge('  ', 's ', key%values == '1'))
-    if (key%kind == 'real' .or. key%kind == 'text') sentence = 'allowed: '//key%values//' '//key%kind// &
-                                                               trim(merge(' value ', ' values', key%values == '1'))
-    if (key%kind == 'choice') then
+    select case (key%kind)
+    case ('logical')
+      sentence = '.true. or .false.'
+    case ('choice')
       choices = words_of(key%allowed, ' ')
-      sentence = 'allowed: '//key%values//' of '''//joined(choices, ''', ''')//''''
-    else if (key%kind == 'name') then
-      sentence = sentence//' of up to 80 characters: '//key%allowed//', the first a letter or digit'
-    else if (key%kind /= 'logical' .and. key%allowed /= 'any' .and. key%allowed /= 'any text') then
-      sentence = sentence//' '//key%allowed
-    else if (key%kind == 'logical') then
-      sentence = 'allowed: .true. or .false.'
-    end if
-    if (key%kind == 'text') sentence = sentence//' in quotes'
+      sentence = key%values//' of '''//joined(choices, ''', ''')//''''
+    case ('name')
+      sentence = counted_kind(key%values, 'name')//' of up to 80 characters: '//key%allowed// &
+                 ', the first a letter or digit'
+    case ('text')
+      sentence = counted_kind(key%values, 'text')//' in quotes'
+      if (key%allowed /= 'any text') sentence = sentence//', '//key%allowed
+    case ('real')
+      sentence = counted_kind(key%values, 'real value')
+      if (key%allowed /= 'any') sentence = sentence//' '//key%allowed
+    case default
+      sentence = counted_kind(key%values, key%kind)
+      if (key%allowed /= 'any') sentence = sentence//' '//key%allowed
+    end select
+    sentence = 'allowed: '//sentence
   end function allowed_sentence
+
+  !> A number of values with their noun, such as `1 real value or one for each ply`.
+  pure function counted_kind(number, noun) result(words)
+    !> Number of values as the table has it, and what a value is
+    character(len=*), intent(in) :: number, noun
+    !> The words
+    character(len=:), allocatable :: words
+
+    select case (number)
+    case ('1')
+      words = '1 '//noun
+    case ('plies')
+      words = 'one '//noun//' for each ply'
+    case ('1 or plies')
+      words = '1 '//noun//' or one for each ply'
+    case default
+      words = number//' '//noun//'s'
+    end select
+  end function counted_kind
 
   !> Limit by the size of numbers, if a value exceeds it; else an empty text.
   pure function limit_of_size(key, value) result(limit)

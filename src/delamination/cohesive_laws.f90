@@ -47,7 +47,7 @@ contains
     real(wp), intent(in) :: stiffness
     !> Through-thickness modulus of the adjacent plies, E3
     real(wp), intent(in) :: modulus
-    !> Thickness of the thinner layer
+    !> Thickness of the laminate on the thinner side of the interface
     real(wp), intent(in) :: thickness
     !> The law
     type(cohesive_law_t) :: law

@@ -44,7 +44,7 @@ module delamination_deck
       &Exponent of Benzeggagh and Kenane''s mixed-mode law.', &
     'delamination | zone | real | 2 | length | = adaptive, with law = cohesive | > 0 | &
       &Full extents along x and y of the rectangle with separate layers, centred on the struck point.', &
-    'delamination | starter | real | 1 | length | = 0.05 % of the plate, with law = cohesive none | > 0 | &
+    'delamination | starter | real | 1 | length | = square of 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, or diameter of the round one.', &
     'delamination | starter_shape | choice | 1 | - | ''square'' | square round | &
       &Outline of the starter, in whole cells.', &
@@ -58,8 +58,8 @@ module delamination_deck
       &Strength of the cohesive law in pure opening.', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure shear.', &
-    'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner layer | > 0 | &
-      &Stiffness of the undamaged cohesive law in opening.', &
+    'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner side | > 0 | &
+      &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the thinner side.', &
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
       &Coulomb''s coefficient of friction of damaged surfaces that are closed.', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
@@ -73,7 +73,7 @@ module delamination_deck
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
       &Connection of intact surfaces: exact elimination, or penalty springs as by Li et al.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
-      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner layer.', &
+      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the laminate on the thinner side.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &

@@ -37,7 +37,7 @@ module support_deck
     'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
       &Where a frame supports the plate: at the edge of its window, as a simple support, or over its face.', &
     'support | sides | choice | 1 | - | = as bearing | edge face | &
-      &bearing of the sides along x of a rectangular window, if it differs from that of the ends.', &
+      &Bearing of the sides parallel to x of a rectangular window, if it differs from that of the ends.', &
     'support | clamps | real | 1 or more | length | none | any | &
       &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
     'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &

@@ -7,6 +7,7 @@ module output_deck
   use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
                                field_contact_pressure, field_delamination, field_energy_release, field_ply_damage
   use kinds, only: wp
+  use short_numbers, only: text_at_least
   use text, only: joined, lower_case, to_text, words_of
   implicit none
   private
@@ -83,7 +84,7 @@ contains
       if (.not. every > 0) cycle
       if (end > max_events*every) then
         call report(settings, problems, group, trim(keys(i)), 'makes more than '//to_text(max_events)//' steps; '// &
-                  'allowed: from '//to_text(end/max_events)//'.')
+                  'allowed: from '//text_at_least(end/max_events)//'.')
       else if (every < short*step) then
         call remark(settings, problems, group, trim(keys(i)), 'every step becomes that short, '// &
                     to_text(nint(step/every))//' times as many as with steps of '//to_text(step)//'.')

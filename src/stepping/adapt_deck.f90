@@ -22,17 +22,17 @@ module adapt_deck
     'adapt | rule | choice | 1 | - | = ''local_error'', with stress_change ''stress_rate'' | stress_rate local_error | &
       &Step control by the stress rate at the struck point, or by the error of each step.', &
     'adapt | tolerance | real | 1 | - | 0.001 | > 0, <= 1 | &
-      &Required error of a step, as a fraction of the largest force and deflection (local_error).', &
+      &Permitted error of a step, as a fraction of the largest force and deflection (local_error).', &
     'adapt | refactor | choice | 1 | - | ''iterations'' | deflection iterations | &
       &When the stiffness is factorized again: as the deflection grows, or as iterations increase.', &
     'adapt | stiffness_update | real | 1 | - | 0.003 | > 0, <= 10 | &
       &Change of the deflection at the struck point after which it is factorized again, over the thickness.', &
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
-      &Change of the struck point''s stress required in a step, as a fraction of its largest so far (stress_rate).', &
+      &Change of the struck point''s stress intended in a step, as a fraction of its largest so far (stress_rate).', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
       &Additional iterations with an old factorization after which a new one is computed.', &
     'adapt | growth_step | real | 1 | - | 0.25 | > 0, <= 1 | &
-      &Smallest part of a step to which growth = ''one_per_step'' shortens it; 1: not at all.']
+      &Part of a step to which it is shortened after a front has grown, with growth = ''one_per_step''; 1: not at all.']
 
 contains
 

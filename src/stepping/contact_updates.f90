@@ -15,7 +15,7 @@ module contact_updates
   public :: update_contact_area
 
   !> Relaxation factor of the weights per step: the plate responds to the change, and without relaxation the update
-  !> overshoots where the plate is more compliant than the contact (doc/theory/impact.md, area of contact).
+  !> overshoots where the plate is more compliant than the contact (doc/studies/solution_controls.md).
   real(wp), parameter :: relaxation = 0.2_wp
   !> Sum of the magnitudes of the changes of the weights, whose sum is one, below which they are not updated: the change
   !> of the force is then below its tolerance of 1e-6.
