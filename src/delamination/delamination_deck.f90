@@ -73,7 +73,7 @@ module delamination_deck
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
       &Connection of intact surfaces: exact elimination, or penalty springs as by Li et al.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
-      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the laminate on the thinner side.', &
+      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner side.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &

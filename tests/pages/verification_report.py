@@ -17,7 +17,7 @@ HEAD = """# Verification
 
 Runs are compared with references: {cases} cases with {figures} figures, and {scripts} tests by scripts. This page is
 written from the tests by `tests/pages/verification_report.py`; `ctest -R docs_verification` fails if it is not up to
-date. A row is met when its test passes. The command of a test is `ctest --test-dir build -R '^NAME$'`, that of all
+date. A row is met when its test passes. The command of a test is `ctest --test-dir build -R NAME`, that of all
 `ctest --test-dir build -L regress`.
 
 A tolerance in % is relative; the others are in the unit of the figure.
