@@ -34,7 +34,7 @@ contains
   end subroutine set_initial_shape
 
   !> Membrane strains and curvatures at the Gauss points of a batch, relative to the stress-free shape w0 (K. Marguerre,
-  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
+  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101; theory (P10)): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
   pure subroutine strains_of_batch(batches, b, kinematics, r, strains, slopes)
     !> The elements
     type(element_batches_t), intent(in) :: batches
