@@ -1,4 +1,4 @@
-!> The manual page of Unix and the completions of shells, made from the tables of the program.
+!> The manual page of Unix and the completions of shells, generated from the tables of the program.
 module shell_pages
   use allowed_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t

@@ -112,7 +112,8 @@ contains
     end if
   end subroutine add_impact
 
-  !> Depth of the dent. In a plate that has not been damped to rest the deflection of its vibration is part of it.
+  !> Depth of the dent. In a plate that has not been damped to rest it includes the deflection of the residual
+  !> vibration.
   subroutine add_dent(lines, deck, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)

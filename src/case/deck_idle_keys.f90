@@ -118,7 +118,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> The keys, and what they are
+    !> The keys, and the quantities that they give
     character(len=*), intent(in) :: keys(:), quantities
     !> Receives the remark
     type(problems_t), intent(inout) :: problems

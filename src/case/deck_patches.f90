@@ -15,8 +15,8 @@ module deck_patches
   private
   public :: check_patch, check_core
 
-  !> Smallest patch, fraction of the plate's shorter side: the elements that it requires are as slender as those of the
-  !> thinnest plate.
+  !> Smallest patch as a fraction of the plate's shorter side: the elements that it requires are then as slender as
+  !> those of the thinnest plate.
   real(wp), parameter :: min_patch = 1.0e-5_wp
 
 contains
@@ -92,7 +92,7 @@ contains
     end associate
   end subroutine check_elements
 
-  !> Whether a rectangle about the struck point meets or crosses the border, with no room for elements on that side.
+  !> Whether a rectangle around the struck point reaches or crosses the border, so that no elements fit on that side.
   pure function meets_border(deck, extents) result(meets)
     !> The deck
     type(deck_t), intent(in) :: deck

@@ -42,7 +42,7 @@ contains
     end if
   end subroutine explain
 
-  !> One line a group.
+  !> One line per group.
   subroutine explain_groups(vocabulary, lines)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
@@ -155,7 +155,7 @@ contains
     call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//ended(default_in_words(key)))
   end subroutine explain_key
 
-  !> How a group comes in a deck.
+  !> Whether a group is required and repeatable, in words.
   pure function presence_in_words(group) result(words)
     !> The group
     type(group_entry_t), intent(in) :: group

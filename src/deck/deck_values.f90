@@ -264,11 +264,11 @@ contains
     is_not_finite = bare == 'nan' .or. bare == 'inf' .or. bare == 'infinity' .or. index(bare, 'nan(') == 1
   end function is_not_finite
 
-  !> Whether a word is a number, and its decimal magnitude, found without a chance to overflow.
+  !> Whether a word is a number, and its decimal magnitude, determined without overflow.
   pure subroutine measure_number(word, is_number, decade)
     !> The word
     character(len=*), intent(in) :: word
-    !> True: sign, digits, point and exponent are as they should be
+    !> True: sign, digits, point and exponent are valid
     logical, intent(out) :: is_number
     !> Power of ten of its first digit that is not 0; 0 for the number 0
     integer, intent(out) :: decade

@@ -42,10 +42,10 @@ module output_deck
     field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
     field_delamination//','//field_energy_release//','//field_ply_damage
 
-  !> Most events of a run, the same as its steps: default integers reach 2.1e9.
+  !> Largest number of events of a run, the same as of its steps: default integers reach 2.1e9.
   real(wp), parameter :: max_events = 1.0e8_wp
-  !> Fraction of a step below which an interval is reported: outputs then more than double the steps. It decides on a
-  !> remark.
+  !> Ratio of an interval to the step below which the interval is reported: the number of steps is then more than
+  !> doubled. It affects a warning only.
   real(wp), parameter :: short = 0.5_wp
 
 contains
