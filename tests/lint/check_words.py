@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Finds invented and everyday words where the field has a term. Usage: check_words.py ROOT
 
-Looks at names (split at underscores), comments, strings and pages of all sources, tests, decks, pages and scripts.
+Checks names (split at underscores), comments, strings and pages of all sources, tests, decks, pages and scripts.
 WORDS are refused everywhere, NAMES only as parts of names in code. Public names of decks and results stay. Prints one
 line a breach, as file:line: word: what to say instead, and ends with code 1 if there is any.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FOLDERS = ("src", "tests", "cmake", "doc", "postproc", "input", "packaging", ".ci")
-# Texts in the root.
+# Texts in the root folder.
 FILES = ("README.md", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "setup.sh")
 SUFFIXES = (".f90", ".pf", ".c", ".in", ".py", ".toml", ".nml", ".md", ".txt", ".cmake", ".j2", ".sh", ".def", ".ipynb",
             "")  # fmt: skip
@@ -20,7 +20,7 @@ CODE = (".f90", ".pf", ".py")
 # Folders without text of the project, and this checker with its test.
 SKIPPED = re.compile(r"(?:^|/)(?:build|__pycache__|\.venv|[^/]+\.egg-info)/|^tests/lint/(?:test_)?check_words\.")
 
-# Words and phrases, as regular expressions, and what to say instead.
+# Words and phrases, as regular expressions, and their replacements.
 WORDS = {
     r"answers?": "unit-load solution, response, result",
     r"crowds?|company": "many points; batch of right-hand sides",
@@ -87,7 +87,7 @@ NAMES = {
     r"look|looks|looked": "check, observe",
     r"deepest|steepest|likeliest": "max_ or most probable of what",
 }
-# Names of decks, results and libraries that stay, as they stand in the text.
+# Names of decks, results and libraries that are kept, as in the text.
 PUBLIC = (
     r"least_squares|at_(?:least|most)|most_common|(?:os|pty)\.fork|broken_strip",
     r"[\"`\[]scenes?[\"`\]]",
@@ -107,25 +107,25 @@ class Breach:
     instead: str
 
     def __str__(self):
-        """As compilers print it."""
+        """In the format of compilers."""
         return f"{self.path}:{self.line}: {self.word}: {self.instead}"
 
 
 def pattern(words):
-    """Pattern of words that stand alone or between underscores, and the advice for each."""
+    """Pattern of words alone or between underscores, and the advice for each."""
     bound = [rf"(?<![^\W_])(?:{word})(?![^\W_])" for word in words]
     return [(re.compile(word, re.IGNORECASE), advice) for word, advice in zip(bound, words.values(), strict=True)]
 
 
 EVERYWHERE, IN_NAMES = pattern(WORDS), pattern(NAMES)
-# Any of them, so that most lines are searched once.
+# Any of them, so that most lines are searched only once.
 ANY = re.compile("|".join(word.pattern for word, _ in EVERYWHERE + IN_NAMES), re.IGNORECASE)
 STAYS = re.compile("|".join(f"(?:{name})" for name in PUBLIC))
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 
 
 def code_of(line, suffix):
-    """The names of a line of code, without strings and comment."""
+    """The names in a line of code, without strings and comment."""
     mark = "#" if suffix == ".py" else "!"
     return STRING.sub(" ", line).split(mark)[0]
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the commands of the pages as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
-a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
+"""Runs the commands of the pages like a reader: those of blocks marked `sh`, in the order of a page. Each page has its
+own folder, arranged like a clone, with the program and the Python commands on the path. Each command
 ends with code 0, unless it reports a Python package that is not installed. The times printed show which commands belong
 into `sh long`: those of more than half a minute on a usual processor. These are started, and after some seconds stopped
 by the signal TERM, as a queue would: they end with code 0, with code 75, or by the signal.
@@ -25,23 +25,23 @@ PAGES = (".", "doc", "doc/manual", "doc/studies", "doc/theory")
 # Seconds after which a long command is stopped, time to read a deck and to do some steps; then for its orderly end.
 STARTED, ENDED = 5, 120
 STOPPED = (0, 75, -signal.SIGTERM)
-# Kinds of commands that are tried here.
+# Kinds of commands that are tested here.
 TRIED = ("run", "start")
-# What commands read of a clone, besides the decks, which they may add files to.
+# Files of a clone that commands read, besides the decks, to which they may add files.
 LINKED = (".venv", "doc", "postproc", "tests")
 
 
 def processor_time():
-    """Seconds of the processor that commands have taken so far."""
+    """Processor seconds used by commands so far."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 class Clone:
-    """A folder like a clone in which the program has been built."""
+    """A folder like a clone with the program built."""
 
     def __init__(self, implam, root, folder):
-        """Make it."""
+        """Create it."""
         self.folder = folder
         shutil.rmtree(folder, ignore_errors=True)
         (folder / "build").mkdir(parents=True)
@@ -63,7 +63,7 @@ class Clone:
         path.write_text(file.text, encoding="utf-8")
 
     def run(self, command):
-        """Run a command; return what is wrong and the time of the processor."""
+        """Run a command; return its fault and its processor time."""
         begun = processor_time()
         done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)  # fmt: skip
@@ -75,7 +75,7 @@ class Clone:
         return fault, taken
 
     def start(self, command):
-        """Start a long command and stop it; return what is wrong and the time of the processor."""
+        """Start a long command and stop it; return its fault and its processor time."""
         begun = processor_time()
         with subprocess.Popen(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -88,7 +88,7 @@ class Clone:
         return fault, processor_time() - begun
 
     def stop(self, process):
-        """Stop a command and what it has started; return what it has printed."""
+        """Stop a command and its child processes; return the output."""
         os.killpg(process.pid, signal.SIGTERM)
         try:
             return process.communicate(timeout=ENDED)[0]
@@ -98,7 +98,7 @@ class Clone:
 
 
 def run_page(page, clone):
-    """Run the commands of a page; return what is wrong. After a fault the rest of the page is left out."""
+    """Run the commands of a page; return faults. After a fault the rest of the page is skipped."""
     for part in parts_of(page.read_text(encoding="utf-8")):
         if isinstance(part, SavedFile):
             clone.save(part)

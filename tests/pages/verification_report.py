@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes doc/verification.md from what the tests check: the expectations of tests/regress/expect and the scripts that
+"""Writes doc/verification.md from the tests: the expectations of tests/regress/expect and the scripts that
 tests/regress/CMakeLists.txt registers, with its loops. Usage: verification_report.py [ROOT] [--check]
 
 --check writes nothing and ends with code 1 if the page is not up to date."""
@@ -76,7 +76,7 @@ def comment(text):
 
 
 def figure_of(row):
-    """What a row looks at."""
+    """The quantity of a row."""
     name = row["quantity"]
     parts = [f"`{row['column']}`"] if "column" in row else []
     parts += [f"{key} {value:g}" for key, value in row.items() if key not in KNOWN and isinstance(value, float)]
@@ -123,7 +123,7 @@ def rows_of(path):
 
 
 def unrolled(listed):
-    """The text of a CMakeLists.txt with its loops written out and its variables of one or more words replaced."""
+    """The text of a CMakeLists.txt with its loops expanded and its variables of one or more words replaced."""
 
     def written_out(loop):
         return "".join(loop[3].replace(f"${{{loop[1]}}}", word) for word in loop[2].split())
@@ -135,7 +135,7 @@ def unrolled(listed):
 
 
 def entry_of(printed, trial):
-    """What a docstring says of a trial: the line that begins with its name, and the indented ones after it."""
+    """The entry of a trial in a docstring: the line that begins with its name, and the indented ones after it."""
     found = re.search(rf"^{re.escape(trial)}:? +(.*(?:\n +.*)*)", printed, re.M) if trial else None
     return first_sentence(found[1]) if found else ""
 
@@ -146,7 +146,7 @@ def joined(*parts):
 
 
 def scripts_of(folder):
-    """Registered scripts with the first sentence of their docstrings and what these say of the trial."""
+    """Registered scripts with the first sentence of their docstrings and the entries of their trials."""
     listed = unrolled((folder / "CMakeLists.txt").read_text(encoding="utf-8"))
     for test, label, script, trial in re.findall(r"implam_add_script\((\S+) ([\w-]+) ([\w./]+\.py)\s+(\S+)", listed):
         printed = ast.get_docstring(ast.parse((folder / script).read_text(encoding="utf-8"))) or ""

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Part of the force that transverse shear carries on the 25 J panel (doc/studies/measured_panels.md).
+"""Part of the force that transverse shear carries in the 25 J panel (doc/studies/measured_panels.md).
 Usage: panel_shear.py FOLDER
 
 Reads the results that measured_panels.py wrote there for 25J with output%fields='stress','ply_damage' and
-output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the struck point
+output%fields_every=2e-4. Prints a row for each time: the force, then for rings about the impact point
 
 - the force carried by transverse shear, in kN: the stresses of all plies summed over a circle. In slow motion the
   contact force is the sum of this and of the membrane forces along the slope;
 - the radial membrane force, in N/mm;
 - root mean square and largest magnitude of s23 over all plies, in MPa.
 
-Stresses are those at the centre of each cell. Rings begin 5.5 mm from the struck point: nearer, within the contact
+Stresses are those at the centre of each cell. Rings begin 5.5 mm from the impact point: nearer, within the contact
 radius of 3 to 3.6 mm and half the thickness of the panel, the load spreads through the thickness, which plate theory
 does not describe. Needs h5py."""
 
@@ -29,7 +29,7 @@ THICKNESS = float(re.search(r"thicknesses=([-+\d.e]+)", DECK)[1])
 
 
 def ply_forces(stresses, angle, away):
-    """Shear force and membrane force of a ply along in-plane directions, per length."""
+    """Shear force and membrane force of a ply in given in-plane directions, per length."""
     along = away[:, 0] * np.cos(np.radians(angle)) + away[:, 1] * np.sin(np.radians(angle))
     across = away[:, 1] * np.cos(np.radians(angle)) - away[:, 0] * np.sin(np.radians(angle))
     shear = along * stresses["tau13"] + across * stresses["tau23"]
