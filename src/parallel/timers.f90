@@ -13,11 +13,11 @@ module timers
   type :: timer_t
     !> Name of the timed part
     character(len=name_length) :: name = ''
-    !> Wall-clock and processor seconds, summed over all finished runs
+    !> Seconds of wall-clock and of processor time, summed over all finished intervals
     real(wp) :: wall = 0, processor = 0
-    !> Times when the present run began
+    !> Times at the start of the present interval
     real(wp) :: wall_start = 0, processor_start = 0
-    !> Number of finished runs
+    !> Number of finished intervals
     integer :: runs = 0
   end type timer_t
 
@@ -30,7 +30,7 @@ module timers
   contains
     !> Starts a timer.
     procedure :: start
-    !> Stops it and adds the run.
+    !> Stops the timer and adds the interval.
     procedure :: stop => stop_timer
     !> A table for the log, one line per timer.
     procedure :: lines
@@ -63,7 +63,7 @@ contains
     call cpu_time(self%list(i)%processor_start)
   end subroutine start
 
-  !> Stops a timer that was started and adds the run.
+  !> Stops a timer that was started and adds the interval.
   subroutine stop_timer(self, name)
     class(timer_set_t), intent(inout) :: self
     !> Name of the timed part

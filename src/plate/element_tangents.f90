@@ -22,7 +22,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
-    !> Section stiffness left in the batch (lanes, 21)
+    !> Section stiffness of the damaged plies in the batch (lanes, 21)
     real(wp), intent(in) :: stiffness(:, :)
     !> One of the kinematics_* choices
     integer, intent(in) :: kinematics

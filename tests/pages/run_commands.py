@@ -21,9 +21,9 @@ from page_commands import Command, SavedFile, parts_of
 
 SKIPPED = 77
 # Folders of the pages.
-PAGES = ("doc", "doc/manual", "doc/studies", "doc/theory")
-# Seconds after which a long command is stopped, enough to read a deck and do some steps; then for its orderly end.
-STARTED, ENDED = 10, 120
+PAGES = (".", "doc", "doc/manual", "doc/studies", "doc/theory")
+# Seconds after which a long command is stopped, time to read a deck and to do some steps; then for its orderly end.
+STARTED, ENDED = 5, 120
 STOPPED = (0, 75, -signal.SIGTERM)
 # Kinds of commands that are tested here.
 TRIED = ("run", "start")
@@ -50,8 +50,11 @@ class Clone:
             if (root / name).exists():
                 (folder / name).symlink_to(root / name)
         shutil.copytree(root / "input", folder / "input")
+        (folder / "temporary").mkdir()
         path = f"{folder / 'build'}:{folder / '.venv' / 'bin'}:{os.environ['PATH']}"
-        self.environment = os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg"}
+        # Scripts that are stopped leave their temporary folders.
+        self.environment = os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg",
+                                         "TMPDIR": str(folder / "temporary")}  # fmt: skip
 
     def save(self, file):
         """Save a file of the page."""

@@ -283,7 +283,7 @@ def check_refused(implam, folder, _):
     ]
     (folder / "link.h5").symlink_to(CHECKPOINT)
     for path in (CHECKPOINT, f"./{CHECKPOINT}", f".//{CHECKPOINT}", folder.resolve() / CHECKPOINT, "link.h5"):
-        cases.append(([f"case%name='{IMPACT}'", f"initial_state%from='{path}'"], ["writes its own end"], EXIT_DECK))
+        cases.append(([f"case%name='{IMPACT}'", f"initial_state%from='{path}'"], ["writes at its own end"], EXIT_DECK))
     before = (folder / CHECKPOINT).read_bytes()
     for settings, words, code in cases:
         said = run([implam, deck_of(folder, COMPRESSION, settings)], code, folder)

@@ -102,7 +102,11 @@ def printed(table):
 
 def main():
     """Print the table."""
-    print("\n".join(printed(compared(runs_of([Path(folder) for folder in sys.argv[1:]])))))
+    folders = [Path(folder) for folder in sys.argv[1:]]
+    variants = runs_of(folders)
+    if not variants:
+        raise SystemExit(f"No run is complete in {', '.join(map(str, folders))}.")
+    print("\n".join(printed(compared(variants))))
 
 
 if __name__ == "__main__":
