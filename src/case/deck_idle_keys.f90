@@ -7,8 +7,8 @@ module deck_idle_keys
   use deck_remarks, only: remark, remark_idle
   use interface_places, only: interfaces_between
   use impactor_deck, only: impactor_group, key_rise, key_travel
-  use material_deck, only: material_group, key_expansion, key_shear_strain, of_interfaces, &
-                           strength_keys, toughness_keys
+  use material_deck, only: material_group, key_expansion, key_fibre_shear, key_shear_23, key_shear_strain, &
+                           of_interfaces, strength_keys, toughness_keys
   use output_deck, only: output_group, key_force_filter
   use plate_deck, only: key_imperfection, plate_group
   use plate_options, only: kinematics_linear
@@ -93,10 +93,10 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (deck%ply_damage%criteria /= criteria_hou .or. any(deck%materials(place)%toughness > 0)) &
-      call remark_idle(deck%settings, problems, material_group, 'Sf', &
+      call remark_idle(deck%settings, problems, material_group, key_fibre_shear, &
                        'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
     if (deck%ply_damage%criteria == criteria_puck) &
-      call remark_idle(deck%settings, problems, material_group, 'Sm23', &
+      call remark_idle(deck%settings, problems, material_group, key_shear_23, &
                        'has no effect with criteria = ''puck''.', place)
   end subroutine remark_strengths
 

@@ -28,7 +28,7 @@ contains
       choices = words_of(key%allowed, ' ')
       sentence = key%values//' of '''//joined(choices, ''', ''')//''''
     case ('name')
-      sentence = counted_kind(key%values, 'name')//' of up to 80 characters: '//key%allowed// &
+      sentence = counted_kind(key%values, key%kind)//' of up to 80 characters: '//key%allowed// &
                  ', the first a letter or digit'
     case ('text')
       sentence = counted_kind(key%values, 'text')//' in quotes'

@@ -17,6 +17,7 @@ module material_deck
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
                                          key_density = 'density', &
                                          key_shear_strain = 'shear_failure_strain', &
+                                         key_fibre_shear = 'Sf', key_shear_23 = 'Sm23', &
                                          key_expansion = 'alpha1 alpha2', key_library = 'library'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &

@@ -32,6 +32,7 @@ OTHERS = (
     ("case/deck_library.f90", "e", "the exponent of a number"),
     ("case/deck_library.f90", "pressure", "a physical dimension"),
     ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
+    ("deck/allowed_values.f90", "name", "a kind of value"),
     ("deck/deck_values.f90", "name", "a kind of value"),
     ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),

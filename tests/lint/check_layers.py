@@ -47,7 +47,7 @@ def breaches(compiler, modules, searched, tiers):
 def listed(root):
     """Tiers of the folders by the pages that list them: page, and folder to number."""
     text = Path(root, "README.md").read_text(encoding="utf-8")
-    row = re.search(r"Tiers: (.*?) \(", text)
+    row = re.search(r"Tiers, from the lowest: (.*?) \(", text)
     yield "README.md", {name: number for number, tier in enumerate(row[1].split("; "), 1) for name in tier.split(", ")}
     text = Path(root, "doc", "architecture.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\d+) \| (\w+) \|", text, re.M)
