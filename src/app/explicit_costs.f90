@@ -15,8 +15,8 @@ module explicit_costs
   public :: explicit_sentence, duration_text, untaken_step
 
   !> Processor seconds for an element of one layer in a step, the additional time of cohesive interfaces, and that of
-  !> softening plies in the mean over an impact with much ply failure. Measured on one core of an AMD EPYC: Sun and
-  !> Chen's plate .2 us, input/verify/cohesive_threshold.nml with 1e4 to 1e6 unknowns .30 to .46 us
+  !> softening plies in the mean over an impact with much ply failure, on the machine of doc/performance.md: Sun
+  !> and Chen's plate .2 us, input/verify/cohesive_threshold.nml with 1e4 to 1e6 unknowns .30 to .46 us
   !> (tests/bench/explicit_table.py costs), input/experiments/t700_m21_25J.nml 1.2 us (panels --run).
   real(wp), parameter :: of_elements = 0.2e-6_wp, of_interfaces = 0.2e-6_wp, of_crack_bands = 0.75e-6_wp
 

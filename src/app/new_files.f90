@@ -20,7 +20,7 @@ contains
     integer :: unit, status, i
 
     if (file_exists(path)) then
-      call fail(error, exit_files, path//' is there already and stays as it is; give another name or remove it.')
+      call fail(error, exit_files, path//' exists and is not overwritten; give another name or remove it.')
       return
     end if
     open (newunit=unit, file=path, status='new', action='write', iostat=status)

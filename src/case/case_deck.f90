@@ -23,7 +23,7 @@ module case_deck
     'case | title | text | 1 | - | '''' | any text | &
       &Free text kept with the results.', &
     'case | accuracy | choice or real | 1 | % | none | draft standard reference, >= 0.01, <= 20 | &
-      &Permitted error of the peak force, by name 5, 1 or 0.2; it chooses mesh and steps that are not given.', &
+      &Permitted error of the peak force (draft 5, standard 1, reference 0.2); it chooses mesh and steps not given.', &
     'case | units | choice | 1 | - | none | SI mm-t-s mm-kg-ms mm-mN-kg-s | &
       &System of units of the deck; the check compares values with usual ones, and results name it.', &
     'case | strict | logical | 1 | - | .false. | .true. .false. | &

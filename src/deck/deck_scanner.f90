@@ -164,7 +164,7 @@ contains
 
     call finish_entry(scan, problems)
     if (lower_case(token%text) == 'end') then
-      call problems%error(token%line, '', '', '&end is no longer Fortran; end the group with /')
+      call problems%error(token%line, '', '', '&end is an obsolete form; end the group with /')
       scan%open = .false.
       return
     end if
@@ -260,8 +260,8 @@ contains
     if (.not. scan%collecting) then
       call report_stray_value(scan, token, problems)
     else if (token%kind == token_cut) then
-      call mark_faulty(scan, token%line, 'has a text whose closing quote is not in its line; close it', problems, &
-                       any_key)
+      call mark_faulty(scan, token%line, 'contains a text without its closing quote on the same line; close it', &
+                       problems, any_key)
     else
       value%quoted = token%kind == token_quoted
       call split_repeats(token%text, value%quoted, token%repeats, repeats, value%text)

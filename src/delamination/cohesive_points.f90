@@ -10,7 +10,7 @@ module cohesive_points
   implicit none
   private
   public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, point_class, opened, &
-            undamaged_energy, stored_energy, mode_mixity, dissipated_fraction, fraction_growth, damage_at_fraction
+            undamaged_energy, stored_energy, mode_mixture, dissipated_fraction, fraction_growth, damage_at_fraction
 
   !> Classes of points: undamaged, damaged without growth, with growing damage in this state, failed.
   integer, parameter, public :: point_intact = 0, point_damaged = 1, point_growing = 2, point_failed = 3
@@ -165,7 +165,7 @@ contains
   end function stored_energy
 
   !> Fraction of shear in the energy of the jumps, B; 0 without jumps.
-  pure real(wp) function mode_mixity(law, jumps) result(share)
+  pure real(wp) function mode_mixture(law, jumps) result(share)
     !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
@@ -174,7 +174,7 @@ contains
 
     separation = separation_of(law, jumps)
     share = separation%shear_share
-  end function mode_mixity
+  end function mode_mixture
 
   !> Dissipated fraction of the toughness at a damage: phi(d) = d/(N (1 - d) + d), from 0 to 1, theory (D3).
   pure real(wp) function dissipated_fraction(law, damage) result(share)

@@ -80,7 +80,7 @@ module delamination_deck
       &Exponent q of the continuous penalty (Li et al., Eq. 12).', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
       &During rebound: contact, or relative displacements of separated surfaces held constant (Li et al., Eq. 13b).', &
-    'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the laminate | > 0 | &
+    'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the thickness | > 0 | &
       &Distance along a front over which tie forces and openings are averaged for the energy release rate.']
 
 contains
@@ -315,7 +315,7 @@ contains
 
     if (delamination%law /= law_cohesive) then
       if (.not. (settings%is_given(group, key_law, place) .or. needs_front(settings, place))) &
-        call remark(settings, problems, group, '', 'a front with a default starter joins the surfaces, as a '// &
+        call remark(settings, problems, group, '', 'law = ''front'' with a default starter is used, as a '// &
                     'cohesive law needs strength_opening and strength_shear, or YT and S12 of the materials.', place)
       return
     end if

@@ -9,7 +9,7 @@ module cohesive_interfaces
   use delamination_parameters, only: law_cohesive, contact_none
   use cohesive_laws, only: cohesive_law_t, stiffness_of, weakened
   use cohesive_surfaces, only: cohesive_surfaces_t
-  use cohesive_points, only: cohesive_point_t, dissipated_fraction, mode_mixity
+  use cohesive_points, only: cohesive_point_t, dissipated_fraction, mode_mixture
   use cohesive_tangents, only: dissipation_slopes
   use exact_sums, only: exact_sum_t
   use models, only: model_t
@@ -282,7 +282,7 @@ contains
     shear_share = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) shear_share(i) = mode_mixity(model%cohesive_laws(model%zone(i)), displacement(1:3, i))
+      if (self%cohesive(i)) shear_share(i) = mode_mixture(model%cohesive_laws(model%zone(i)), displacement(1:3, i))
     end do
   end function shear_share
 

@@ -147,7 +147,7 @@ contains
     else if (support%shape == window_none .and. .not. allocated(support%clamps) .and. &
              are_clear(settings, problems, group, key_window//' '//key_window_radius//' clamps', place)) then
       call report(settings, problems, group, '', &
-                  'holds nothing; give a window, a radius with shape = ''circle'', or '// &
+                  'supports nothing; give a window, a radius with shape = ''circle'', or '// &
                 'clamps.', place)
     end if
     if (support%shape == window_circle .and. support%unilateral .and. support%bearing == bearing_edge .and. &

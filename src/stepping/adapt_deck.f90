@@ -26,7 +26,7 @@ module adapt_deck
     'adapt | refactor | choice | 1 | - | ''iterations'' | deflection iterations | &
       &When the stiffness is factorized again: as the deflection grows, or as iterations increase.', &
     'adapt | stiffness_update | real | 1 | - | 0.003 | > 0, <= 10 | &
-      &Change of the deflection at the struck point after which it is factorized again, over the thickness.', &
+      &Change of the deflection over the thickness, after which the stiffness is factorized again (deflection).', &
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
       &Change of the struck point''s stress intended in a step, as a fraction of its largest so far (stress_rate).', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &

@@ -8,7 +8,7 @@ module step_intervals
   public :: steps_between_checks, steps_between_stages
 
   !> Processor time of central differences, in seconds per element of one layer and step. Measured on panels with
-  !> cohesive interfaces and crack bands, gfortran 12 with -O3 on one core of an AMD EPYC; the elastic Sun-Chen plate
+  !> cohesive interfaces and crack bands, gfortran 12, on the machine of doc/performance.md; the elastic Sun-Chen plate
   !> takes .2e-6.
   real(wp), parameter, public :: seconds_per_element = 0.55e-6_wp
   !> Interval in seconds of one processor at which a run checks its ledger, its limits, signals and elapsed time: SLURM

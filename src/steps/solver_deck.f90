@@ -74,7 +74,7 @@ contains
     do i = 1, size(words)
       if (is_allowed(words(i)%text)) cycle
       call report(settings, problems, solver_group, 'petsc_options', words(i)%text// &
-                  ' might write files or more; allowed: -log_view, words without : and /, and options that begin '// &
+                  ' might write files; allowed: -log_view, words without : and /, and options that begin '// &
                   'with one of '//joined(words_of(allowed_prefixes, ' '), ', ')//'; give others on the command line.')
       return
     end do

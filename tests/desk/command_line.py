@@ -189,7 +189,7 @@ def check_new(implam, folder):
     printed = output_of(implam, "check", "impact.nml", cwd=folder)
     require("no errors" in printed and "warning:" not in printed, f"The starter has faults: {printed}")
     before = (folder / "impact.nml").read_bytes()
-    require("stays as it is" in output_of(implam, "new", cwd=folder, code=EXIT_FILES), "An existing file passes.")
+    require("is not overwritten" in output_of(implam, "new", cwd=folder, code=EXIT_FILES), "An existing file passes.")
     require((folder / "impact.nml").read_bytes() == before, "`implam new` overwrites.")
     output_of(implam, "new", "mine.nml", cwd=folder)
     require((folder / "mine.nml").read_bytes() == before, "With a name the deck differs.")
