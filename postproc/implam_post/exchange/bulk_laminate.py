@@ -11,7 +11,7 @@ from implam_post.exchange.remarks import Remarks
 from implam_post.laminate.sections import Material, Ply
 
 _MAT8_STRENGTHS = {12: "XT", 13: "XC", 14: "YT", 15: "YC", 16: "S12"}
-_UNTAKEN = {
+_IGNORED = {
     "MAT1": {8: "GE", 9: "ST", 10: "SC", 11: "SS", 12: "MCSID"},
     "MAT8": {17: "GE", 18: "F12"},
     "PCOMP": {4: "SB", 5: "FT", 7: "GE"},
@@ -81,7 +81,7 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
         plies += plies[::-1]
     if min(ply.thickness for ply in plies) <= 0:
         raise bulk.error(card, "every ply needs a thickness greater than zero.")
-    remarks.untaken(card, _UNTAKEN[card.name])
+    remarks.ignored(card, _IGNORED[card.name])
     thickness = sum(ply.thickness for ply in plies)
     plies = _with_nonstructural_mass(bulk, card, plies, thickness, remarks)
     if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
@@ -158,7 +158,7 @@ def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
         raise bulk.error(card, f"G = {g:g} contradicts E and NU, which give {shear:.5g}.")
     if g is not None and card.given(2) and card.given(4) and abs(g - shear) > 1e-6 * shear:
         remarks.add(card, f"G is ignored: E and NU give {shear:.5g}")
-    remarks.untaken(card, _UNTAKEN["MAT1"])
+    remarks.ignored(card, _IGNORED["MAT1"])
     expansion = bulk.real(card, 6) or 0.0
     return Material(_density(bulk, card, found.rho, remarks), e, e, shear, shear, shear, nu, _name(card),
                     isotropic=True, expansion=(expansion, expansion))
@@ -189,7 +189,7 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
         raise bulk.error(card, "NU12 squared must be smaller than E1/E2.")
     if card.fields.field(4) is None:
         remarks.add(card, "NU12 is blank: 0 is used")
-    remarks.untaken(card, _UNTAKEN["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
+    remarks.ignored(card, _IGNORED["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
     strengths = () if card.given(19) else tuple(
         (key, abs(bulk.real(card, number))) for number, key in _MAT8_STRENGTHS.items() if card.given(number))
     return Material(_density(bulk, card, found.rho, remarks), found.e11, found.e22, found.g12, g13, g23, found.nu12,

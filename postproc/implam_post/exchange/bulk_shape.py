@@ -14,7 +14,7 @@ from implam_post.exchange.remarks import Remarks
 from implam_post.io.errors import DeckError
 
 _NEAR = 1e-6
-_UNTAKEN = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
+_IGNORED = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
             "CQUAD8": {16: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"}}
 
 # Shell and solid elements that may model a part of a panel.
@@ -225,7 +225,7 @@ def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: R
         normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
         if not np.linalg.norm(normal) > 0:
             raise bulk.error(card, "its area is zero.")
-        remarks.untaken(card, _UNTAKEN[card.name])
+        remarks.ignored(card, _IGNORED[card.name])
         quads.append(_Quadrilateral(card, read, corners, normal / np.linalg.norm(normal)))
     if not quads:
         raise bulk.missing(f"there is no CQUAD4 and no CQUAD8.{_other_elements(bulk)}")

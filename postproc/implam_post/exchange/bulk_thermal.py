@@ -28,7 +28,7 @@ def read_thermal(bulk: BulkData, properties: Collection[int], plies: Iterable[Pl
     cards = _cards_with_reference(bulk, properties, {ply.material.name for ply in plies})
     if not any(any(ply.material.expansion) for ply in plies):
         for card in cards:
-            remarks.untaken(card, {_TREF[card.name]: "TREF"})
+            remarks.ignored(card, {_TREF[card.name]: "TREF"})
         for card in defaults:
             remarks.add(card, "ignored: no material has thermal expansion")
         return None

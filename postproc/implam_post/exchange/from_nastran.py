@@ -26,7 +26,7 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
             shear_23: float | None = None) -> tuple[str, Remarks]:
     """Return the deck of a panel and remarks on its cards."""
     for card in bulk.named("INCLUDE"):
-        raise bulk.error(card, "INCLUDE is not supported: put all bulk data into one file.")
+        raise bulk.error(card, "it is not supported: put all bulk data into one file.")
     remarks = Remarks()
     systems, grids = read_systems(bulk), read_grids(bulk)
     shape = read_shape(bulk, systems, grids, struck_last, remarks)
@@ -59,7 +59,7 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
     lines = [card.line for card in bulk.cards]
     if bulk.first_line > 1:
         yield f"lines 1-{bulk.first_line - 1}: executive and case control; SPC, TEMP and WTMASS are read"
-    yield "taken:"
+    yield "read:"
     for name in TAKEN:
         if there := [card.line for card in bulk.named(name)]:
             yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"

@@ -22,7 +22,7 @@ class Remarks:
         """Add a remark on an edge."""
         self._edges.append(f"edge {edge}: {sentence}")
 
-    def untaken(self, card: BulkCard, names: Mapping[int, str]) -> None:
+    def ignored(self, card: BulkCard, names: Mapping[int, str]) -> None:
         """Add a remark on each of these fields that the card has, as they are ignored."""
         for number, name in names.items():
             if card.given(number):

@@ -72,17 +72,17 @@ def threshold(history: History, corner: float) -> Threshold | None:
         return None
     even, force = low_pass(time, history["force"], corner)
     delay = _DELAY / (2 * math.pi * corner)
-    taken = np.interp(even - delay, time, sum(history[name] for name in _DISSIPATED))
-    displaced = np.interp(even - delay, time, w)
+    dissipated = np.interp(even - delay, time, sum(history[name] for name in _DISSIPATED))
+    displacement = np.interp(even - delay, time, w)
     last = int(np.searchsorted(even, time[np.argmax(w)] + delay))
     place = 0
     while place < last:
         ahead = np.flatnonzero(force[place + 1:last + 1] >= force[place])
         after = place + 1 + int(ahead[0]) if len(ahead) else last
         lowest = place + int(np.argmin(force[place:after + 1]))
-        fall = force[place] - force[lowest]
-        if fall >= _MIN_FORCE_DROP * force[place] > 0 and (
-                taken[lowest] - taken[place] >= _MIN_ENERGY_RATIO * fall * displaced[place] / 2):
+        drop = force[place] - force[lowest]
+        if drop >= _MIN_FORCE_DROP * force[place] > 0 and (
+                dissipated[lowest] - dissipated[place] >= _MIN_ENERGY_RATIO * drop * displacement[place] / 2):
             at = float(even[place])
             return Threshold(float(force[place]), at, energy_transferred(history, at - delay), corner)
         place = after

@@ -14,7 +14,8 @@ from PIL import Image
 from implam_post.io.compression import STRESS
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
 from implam_post.io.fields import Fields, read_fields
-from implam_post.io.history import History, read_history
+from implam_post.io.history import History
+from implam_post.io.run import open_run
 from implam_post.plot.compression import is_compressed
 from implam_post.plot.plan_frame import fill, frame, reach_of, state_of
 from implam_post.plot.style import PictureStyle, add_options, style_of
@@ -65,9 +66,8 @@ def _command(options: argparse.Namespace) -> int:
     fields = read_fields(options.fields)
     if not fields.snapshots[-1].mesh.interfaces:
         raise FileError(f"{options.fields} has no interface that may delaminate.")
-    history = options.fields.with_name(f"{options.fields.stem}_history.csv")
     with matplotlib.rc_context({"font.size": style.letters}):
-        pictures = frames(fields, read_history(history) if history.exists() else None, style)
+        pictures = frames(fields, open_run(options.fields).columns, style)
     path = options.save or options.fields.with_suffix(".gif")
     try:
         pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)

@@ -11,7 +11,8 @@ import numpy as np
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.fields import MODES, Fields, Snapshot, deck_in, read_fields
 from implam_post.io.files import write_text
-from implam_post.io.history import History, read_history
+from implam_post.io.history import History
+from implam_post.io.run import open_run
 from implam_post.laminate.decks import plies_of
 
 _ROUND, _RINGS = 48, 24
@@ -178,9 +179,7 @@ Render(view)
 def _command(options: argparse.Namespace) -> int:
     """Write the files and print their paths."""
     fields = read_fields(options.fields)
-    path = options.fields.with_name(f"{options.fields.stem}_history.csv")
-    history = read_history(path) if path.exists() else None
-    print(*write_files(fields, history, options.fields.with_suffix("")), sep="\n")
+    print(*write_files(fields, open_run(options.fields).columns, options.fields.with_suffix("")), sep="\n")
     return EXIT_DONE
 
 

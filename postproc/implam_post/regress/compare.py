@@ -35,7 +35,8 @@ class Comparison:
                 (" pass" if self.passed else " FAIL"))
 
 
-def compare(history: History, expectations: Sequence[Expectation], folder: Path | str = ".") -> list[Comparison]:
+def check_expectations(history: History, expectations: Sequence[Expectation], folder: Path | str = "."
+                       ) -> list[Comparison]:
     """Compare a history with each expectation; files of `against` are in `folder`, or else in that of the history."""
     @cache
     def reference(name: str) -> History:
@@ -72,7 +73,7 @@ def _command(options: argparse.Namespace) -> int:
     expectations, history = read_expectations(options.expect), read_history(options.history)
     if options.plot and not expectations.curves:
         raise FileError(f"--plot needs a [[curve]] in {options.expect}.")
-    comparisons = compare(history, expectations.variant(options.variant).expectations, options.expect.parent)
+    comparisons = check_expectations(history, expectations.variant(options.variant).expectations, options.expect.parent)
     print(table(comparisons))
     if options.plot:
         # Importing matplotlib is slow.

@@ -14,7 +14,7 @@ from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in
 from implam_post.io.progress import Progress
 from implam_post.io.start import RunError, run_deck
-from implam_post.regress.compare import Comparison, compare, heading
+from implam_post.regress.compare import Comparison, check_expectations, heading
 from implam_post.regress.expectations import AS_IT_IS, Expectations, Variant
 
 
@@ -57,8 +57,8 @@ def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None)
         outcome.fault = _run(outcome, program, timeout)
         if not outcome.fault:
             outcome.history = _finite_history(outcome.folder)
-            outcome.comparisons = compare(outcome.history, outcome.variant.expectations,
-                                          outcome.expectations.path.parent)
+            outcome.comparisons = check_expectations(outcome.history, outcome.variant.expectations,
+                                                     outcome.expectations.path.parent)
     except ImplamError as error:
         outcome.fault = str(error)
     outcome.seconds = time.monotonic() - start

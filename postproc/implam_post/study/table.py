@@ -202,8 +202,7 @@ def text_table(rows: list[Row], study: Study) -> str:
     errors = [name for name in ERRORS if any(math.isfinite(row.errors.get(name, math.nan)) for row in rows)]
     several = len(study.problems) > 1
     head = [*(["problem"] if several else []), *study.shown, *(_HEADS[name] for name in errors), *study.figures,
-            "processor time, s", *(["median"] if study.repeats > 1 else []), "steps", "solves", "factorizations",
-            "front"]
+            "processor, s", *(["median"] if study.repeats > 1 else []), "steps", "solves", "factorizations", "front"]
     lines = []
     for row in rows:
         words = [*([row.trial.problem.name] if several else []), *(_shown(row.trial.method[name])
@@ -222,7 +221,7 @@ def text_table(rows: list[Row], study: Study) -> str:
 def text_means(found: list[Mean], study: Study) -> str:
     """Return the table of methods over all problems."""
     errors = [name for name in ERRORS if any(math.isfinite(mean.errors[name]) for mean in found)]
-    head = [*study.shown, *(f"{_HEADS[name][:-3]}: mean, largest, %" for name in errors), "processor time, s", "fronts",
+    head = [*study.shown, *(f"{_HEADS[name][:-3]}: mean, worst, %" for name in errors), "processor, s", "fronts",
             "front"]
     lines = [[*(_shown(mean.method[name]) for name in study.shown),
               *(f"{_small(mean.errors[name])}, {_small(mean.worst[name])}".strip(", ") for name in errors),

@@ -20,8 +20,8 @@ def draw(name: str, distribution: object, number: int, seed: int, method: str) -
     quantity does not change the samples of this one.
     """
     quantile = _quantile(name, distribution)
-    # Of this generator only random() is guaranteed to give the same numbers in every version of Python. scipy.stats.qmc
-    # has one generator for all dimensions, and numpy's generators may change between versions.
+    # Of this generator only random() is guaranteed to give the same numbers in every version of Python. numpy's
+    # Generator and scipy.stats.qmc have no such guarantee, but a sweep continues only with the same decks.
     stream = random.Random(f"{seed} {name}")
     shares = [stream.random() for _ in range(number)]
     if method == "latin_hypercube":

@@ -22,7 +22,7 @@ from implam_post.io.history import History, read_history
 from implam_post.io.quantities import AGAINST_QUANTITIES
 from implam_post.io.run import Run, open_run
 from implam_post.io.run_figures import Measured
-from implam_post.regress.compare import compare
+from implam_post.regress.compare import check_expectations
 from implam_post.regress.expectations import Expectation, read_expectations
 from implam_post.sweep.case_run import read_record
 from implam_post.sweep.plan import VARIANT, Case, Plan
@@ -154,7 +154,7 @@ def against_measured(group: Group, measured: Path) -> list[ComparedMean]:
     else:
         wanted = [Expectation("l2_force", 0.0, absolute=1.0, against=measured.name)]
     of_runs = [item for item in wanted if item.quantity not in AGAINST_QUANTITIES]
-    rows = [[row.found for row in compare(history, of_runs, measured.parent)] for history in histories]
+    rows = [[row.found for row in check_expectations(history, of_runs, measured.parent)] for history in histories]
     compared = [ComparedMean(item, spread_of(values))
                 for item, values in zip(of_runs, zip(*rows, strict=True), strict=True)]
     # Force histories are compared with the mean history.
@@ -163,7 +163,7 @@ def against_measured(group: Group, measured: Path) -> list[ComparedMean]:
     if band is not None and curves:
         mean = History({"time": band["time"], "force": band["mean"]}, "the mean of the runs")
         compared += [ComparedMean(row.expected, Spread(len(histories), row.found, *3 * (math.nan,)))
-                 for row in compare(mean, curves, measured.parent)]
+                 for row in check_expectations(mean, curves, measured.parent)]
     return compared
 
 
