@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from implam_post.io.counts import counted
 from implam_post.io.errors import DeckError
 from implam_post.io.namelist import Token, Value, is_key, read_namelist, read_tokens
 
@@ -87,7 +88,7 @@ def set_keys(text: str, settings: Mapping[KeyPath, str], name: str = "deck") -> 
                             f"or {path.group}[*].{path.key} for all.")
         number = 1 if path.number is None else path.number
         if number > len(places) + 1:
-            raise DeckError(f"{name}: {path}: there are only {len(places)} groups &{path.group}.")
+            raise DeckError(f"{name}: {path}: the deck has only {counted(len(places), 'group')} &{path.group}.")
         if number == len(places) + 1 or not places:
             text = text if not value else f"{text.rstrip()}\n&{path.group} {path.key}={value} /\n"
             continue

@@ -218,7 +218,7 @@ class FieldsTest(unittest.TestCase):
             file["meshes/00000001/cells/first_ply"][()] = 1
             file["meshes/00000001/cells/last_ply"][()] = 3
         code, text = self.plot(self.path)
-        self.assertEqual((code, text.count("neither")), (0, 1), text)
+        self.assertEqual((code, text.count("no interfaces and no ply failures")), (0, 1), text)
         self.assertEqual(self.plot(self.path, "--history", self.write_history(), "--save", self.folder / "a.png")[0], 4)
 
     def test_what_is_no_file_of_fields(self) -> None:

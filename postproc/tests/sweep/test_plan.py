@@ -92,11 +92,11 @@ class PlanTest(unittest.TestCase):
                   "needs a list": '[grid]\n"mesh.patch" = 3', "at least": '[grid]\n"mesh.patch" = []',
                   "no formula": grid, "is not swept": grid + '[derived]\n"mesh.patch" = "energie"',
                   "equal length": '[list]\n"mesh.patch" = [1]\n"impactor.mass" = [1, 2]',
-                  "both": f"[grid]\n{patch}[list]\n{patch}", "not a key": '[grid]\n"mesh[0].patch" = [1]',
+                  "is given in": f"[grid]\n{patch}[list]\n{patch}", "not a key": '[grid]\n"mesh[0].patch" = [1]',
                   "is the name of another": '[grid]\ncase = [1]', "a number from 1": "[samples]\nseed = 1",
                   "a distribution": '[samples]\nnumber = 1\n"mesh.patch" = 1',
                   "not a valid value": "[grid]\nmesh.patch=[nan]",
-                  "as text": grid + '[derived]\n"mesh.patch" = 1', "only\\.": "[grid]\n'mesh[3].patch' = [1]",
+                  "as text": grid + '[derived]\n"mesh.patch" = 1', "only 1 group": "[grid]\n'mesh[3].patch' = [1]",
                   "at most": f"[grid]\na={list(range(400))}\nb={list(range(400))}",
                   "single number": grid + '[derived]\nmesh.patch = "energy*mesh.elements"', "units": "units = 'feet'",
                   "must be a table": "grid = 3",
@@ -106,5 +106,5 @@ class PlanTest(unittest.TestCase):
         for expected, text in faults.items():
             with self.subTest(expected), self.assertRaisesRegex(DeckError, f"^{self.folder}/sweep.toml: .*{expected}"):
                 self.plan(text)
-        with self.assertRaisesRegex(DeckError, "deck, the deck"):
+        with self.assertRaisesRegex(DeckError, "deck, the base deck"):
             self.plan(patch.join(["[grid]\n", ""]), deck="")

@@ -208,7 +208,7 @@ class ScatterPlanTest(unittest.TestCase):
                            ("[scatter]\nnumber = 2\nstrength = 0.1\n", "'strength' is not one of"),
                            ("[scatter]\nnumber = 2\nstrengths = 1\n", "at least 0 and less than 1"),
                            ("[scatter]\nnumber = 2\nmethod = 'x'\n", "method"),
-                           ("[scatter]\nnumber = 2\n'material.YC' = 0.1\n", "no such key"),
+                           ("[scatter]\nnumber = 2\n'material.YC' = 0.1\n", "does not have this key"),
                            ("[scatter]\nnumber = 2\n'material.density' = 0.1\n", "is not one of"),
                            ("[variants]\na = 1\n", "table of tables"),
                            ("[variants.a]\nfriction = 1\n", "not a key of the deck"),
