@@ -19,7 +19,7 @@ class Deck:
     def __init__(self, text: str, path: Path, adopted: str | None = None) -> None:
         """Read the groups from `text`; `path` names the deck in messages.
 
-        `adopted` lists the values of library materials that a run used, one per line: &material 1 E1 = 130e9 [source];
+        `adopted` lists the values of published materials in a run, one per line: &material 1 E1 = 130e9 [source];
         None: the deck does not come from a run.
         """
         self.path, self.has_adopted = path, adopted is not None
@@ -109,7 +109,7 @@ def as_number(value: Value, where: str) -> float:
 
 
 def recorded_deck(provenance: Mapping[str, Any], path: Path) -> Deck:
-    """Return the deck of a run from the provenance in its results, with the values of library materials."""
+    """Return the deck of a run from the provenance in its results, with the values of published materials."""
     deck, adopted = (text if isinstance(text, str) else text[()].decode("utf-8")
                      for text in (provenance["deck"], provenance.get("library", "")))
     return Deck(deck, path, adopted)

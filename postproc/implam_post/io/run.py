@@ -93,7 +93,7 @@ class Run:
 
     @cached_property
     def deck(self) -> Deck:
-        """The deck of the run, with the values of its library materials."""
+        """The deck of the run, with the values of its published materials."""
         if self._file(SUMMARY).exists():
             return recorded_deck(self.summary["provenance"], self._file(".nml"))
         with opened(self._file(FIELDS)) as file:

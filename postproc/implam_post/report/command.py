@@ -240,7 +240,7 @@ def write_report(path: Path, output: Path | None, undamaged: float | None = None
     run_shown = open_run(path)
     written = (output or path.parent) / f"{run_shown.name}_report.html"
     if missing := missing_member(run_shown.summary):
-        raise FileError(f"the summary {path} does not have {missing!r}: another version of implam wrote it.")
+        raise FileError(f"the summary {path} lacks {missing!r}: another version of implam wrote it.")
     write_text(written, report(run_shown, undamaged))
     return written
 

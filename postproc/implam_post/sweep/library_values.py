@@ -1,4 +1,4 @@
-"""Write the values of library materials into a deck, so that they can scatter like values of the deck."""
+"""Write the values of published materials into a deck, so that they can scatter like values of the deck."""
 
 import re
 import subprocess
@@ -21,15 +21,15 @@ _WAITING = 60.0
 
 
 def asking(program: Sequence[str] | None) -> Callable[[], Library]:
-    """Return a function that requests the table of library materials from the program."""
+    """Return a function that requests the table of published materials from the program."""
     def request() -> Library:
         if program is None:
-            raise FileError("the deck has a library material, whose values only the program has: give --program.")
+            raise FileError("the deck has a published material, whose values only the program has: give --program.")
         try:
             ended = subprocess.run([program[-1], "explain", "materials"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, timeout=_WAITING, check=False, env=environment())
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise FileError(f"the program {program[-1]} does not list library materials ({reason(error)}).") from None
+            raise FileError(f"the program {program[-1]} does not list published materials ({reason(error)}).") from None
         return read_library(ended.stdout)
     return request
 
@@ -52,7 +52,7 @@ def read_library(text: str) -> Library:
 
 
 def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
-    """Return a deck with the values of its library materials; values given in the deck are kept."""
+    """Return a deck with the values of its published materials; values given in the deck are kept."""
     deck = Deck(text, Path(name))
     materials = deck.groups.get("material", [])
     named = {place: str(group["library"][0]) for place, group in enumerate(materials, start=1) if group.get("library")}
@@ -60,7 +60,7 @@ def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
         return text
     library, system = request(), system_of_deck(deck)
     if system not in SYSTEMS:
-        raise DeckError(f"{name}: a library material needs the units of the deck (&case units).")
+        raise DeckError(f"{name}: a published material needs the units of the deck (&case units).")
     settings: dict[KeyPath, str] = {}
 
     def take(group: str, place: int, key: str, values: dict[str, tuple[float, str]]) -> None:
@@ -72,7 +72,7 @@ def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
 
     for place, published in named.items():
         if published.lower() not in library:
-            raise DeckError(f"{name}: '{published}' is not one of the library materials {', '.join(library)}.")
+            raise DeckError(f"{name}: '{published}' is not one of the published materials {', '.join(library)}.")
         for key in library[published.lower()]:
             if key not in _TOUGHNESSES:
                 take("material", place, key, library[published.lower()])

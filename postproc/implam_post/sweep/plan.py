@@ -127,7 +127,7 @@ class Plan:
 
 
 def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | None = None) -> Plan:
-    """Read the file of a sweep and create the decks of its cases; the program lists library materials."""
+    """Read the file of a sweep and create the decks of its cases; the program lists published materials."""
     text = read_text(path, "the sweep")
     try:
         content = tomllib.loads(text)
@@ -274,7 +274,7 @@ class CaseMaker:
 
     def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None,
                  request: Callable[[], Library] = dict) -> None:
-        """Decks are in `folder`; `base` is the deck if `deck` is not swept; `request` returns library materials."""
+        """Decks are in `folder`; `base` is the deck if `deck` is not swept; `request` returns published materials."""
         self._folder, self._base, self._derived, self.scatter, self._request = folder, base, derived, scatter, request
         self._texts: dict[str, str] = {}
         self._used: set[str] = set()

@@ -204,7 +204,7 @@ class PanelTest(ExportTest):
         self.assertEqual(self.run_command(to_nastran, self.folder / "damaged.nml", "--time", "1")[0], 1)
         self.assertEqual(self.run_command(to_nastran, self.results, "--time", "7")[0], 1)
         for change, key in ((("'clamped','clamped'", "'clamped','glued'"), "edges"),
-                            (("'clamped','clamped'", "'elastic','clamped'"), "cannot be written"),
+                            (("'clamped','clamped'", "'elastic','clamped'"), "cannot be exported"),
                             (("elements=3, 3", "elements=3"),
                             "elements"), (("below_ply=2", "below_ply=3"), "below_ply"), (("d=100", "d=0.5"), "d must")):
             self.keep_deck(DECK.replace(*change))

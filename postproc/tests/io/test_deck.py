@@ -35,7 +35,7 @@ class DeckTest(unittest.TestCase):
         np.testing.assert_array_equal(one.d, section.d)
 
     def test_values_of_published_materials(self) -> None:
-        """Values of library materials are read from the results of a run; values in the deck have precedence."""
+        """Values of published materials are read from the results of a run; values in the deck have precedence."""
         text = "&material name='a' library='b' E1=2 /"
         adopted = "&material 1 E1 = 130e9 [library b, source a]\n&material 1 nu12 = .30e0 [library b, source a]"
         found = recorded_deck({"deck": text, "library": adopted}, Path("a.nml"))

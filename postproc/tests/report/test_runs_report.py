@@ -172,7 +172,7 @@ class ReportTest(unittest.TestCase):
         older = json.loads((self.folder / "damage_summary.json").read_text(encoding="utf-8"))
         del older["plate_size"]
         (self.folder / "older_summary.json").write_text(json.dumps(older), encoding="utf-8")
-        for path, sentence in ((self.folder / "older_summary.json", "does not have 'plate_size'"),
+        for path, sentence in ((self.folder / "older_summary.json", "lacks 'plate_size'"),
                                (self.folder / "no_summary.json", "is not a summary"),
                                (self.folder / "damage.h5", "is not NAME_summary.json"),
                                (self.folder / "missing_summary.json", "cannot be read"), (output, "has no summary")):

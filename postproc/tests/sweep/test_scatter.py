@@ -167,7 +167,7 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertEqual([case.values["impactor.mass"] for case in plan.cases], [3, 1])
 
     def test_published_materials(self) -> None:
-        """Values of library materials are written into the deck in its units; given values are kept."""
+        """Values of published materials are written into the deck in its units; given values are kept."""
         library = read_library(TABLE)
         self.assertEqual(library["as4_3501_6"]["YT"], (48e6, "Pa"))
         self.assertNotIn("G_IIc", library["as4_3501_6"])
@@ -181,11 +181,11 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertNotIn("eta", given)
         plain = "&material name='a' YT=50 /\n"
         self.assertEqual(adopt(plain, "deck.nml", dict), plain)
-        with self.assertRaisesRegex(DeckError, "'im7_8552' is not one of the library materials"):
+        with self.assertRaisesRegex(DeckError, "'im7_8552' is not one of the published materials"):
             adopt(deck, "deck.nml", lambda: read_library(TABLE.replace("im7_8552", "other   ")))
 
     def test_toughness_of_the_only_material(self) -> None:
-        """Interfaces have the toughness of the library material if it is the same for all plies, under any names."""
+        """Interfaces have the toughness of the published material if it is the same for all plies, under any names."""
         library = read_library(TABLE)
         deck = ("&case units='SI' /\n&material name='a' library='im7_8552' /\n"
                 "&material name='b' library='IM7_8552' /\n"
