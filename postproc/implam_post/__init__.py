@@ -1,12 +1,12 @@
-"""Python interface of Implam and its commands: open runs, run decks with changed keys, compare.
+"""Python interface of Implam and its commands: open runs, run decks with changed keys, compare runs.
 
     import implam_post as implam
 
     run = implam.run_deck("impact.nml", {"impactor%velocity": 2.5}, output="fast").wait()
     run.history.plot(x="time", y="force")
 
-It shares no code with the solver, so that agreement with its own solutions means something. Names are imported when
-they are first used, since commands that need few of them start often.
+It shares no code with the solver, so that its reference solutions are independent. Names are imported when they are
+first used, so that commands start quickly.
 """
 
 from importlib import import_module

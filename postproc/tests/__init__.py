@@ -1,1 +1,1 @@
-"""Tests of the package (`python -m unittest` in this folder's parent)."""
+"""Tests of the package (run `python -m unittest` in postproc/)."""

@@ -35,7 +35,7 @@ def _fixed(fields: Fields, width: int, count: int, mark: str, continued: str) ->
 
 
 def _text(value: object, width: int) -> str:
-    """Return a field; exponents without their letter, as Nastran allows."""
+    """Return a field; exponents without the letter E, as Nastran allows."""
     if not isinstance(value, float):
         return "" if value is None else str(value)
     text = f"{value:.{10 if width > 8 else 4}g}"
@@ -45,7 +45,7 @@ def _text(value: object, width: int) -> str:
 
 @dataclass
 class Bulk:
-    """A panel of `cells`; `place` puts a point of the panel, from its corner, into space."""
+    """A panel of `cells`; `place` maps a point of the panel, measured from its corner, to coordinates in space."""
 
     cells: tuple[int, int] = (4, 3)
     lengths: tuple[float, float] = (0.2, 0.15)
@@ -70,7 +70,7 @@ class Bulk:
         return 1 + i + (2 * self.cells[0] + 1) * j
 
     def _there(self) -> list[tuple[int, int]]:
-        """Return the places of the grids: corners of cells, and middles of their sides for CQUAD8."""
+        """Return the positions of the grids: corners of cells, and mid-sides for CQUAD8."""
         every = [(i, j) for j in range(2 * self.cells[1] + 1) for i in range(2 * self.cells[0] + 1)]
         return [(i, j) for i, j in every if (not (i % 2 and j % 2) if self.eight else not (i % 2 or j % 2))]
 
@@ -81,7 +81,7 @@ class Bulk:
                 for i, j in self._there()]
 
     def _elements(self) -> list[Fields]:
-        """Return the elements; turned ones begin at the second corner and go the other way round."""
+        """Return the elements; turned elements begin at the second corner and are numbered in the opposite sense."""
         corners = [(0, 0), (2, 0), (2, 2), (0, 2)]
         sides = [(1, 0), (2, 1), (1, 2), (0, 1)]
         if self.turned:
@@ -105,5 +105,5 @@ class Bulk:
         return [self.number(*place) for place in self._there() if place[axis] == limit]
 
     def _supports(self) -> list[Fields]:
-        """Return a card an edge."""
+        """Return one card per edge."""
         return [("SPC1", 1, held, *self.on_edge(edge)) for edge, held in enumerate(self.edges) if held]

@@ -29,7 +29,7 @@ SUN_CHEN = """
 
 
 def deck(text: str, *changes: tuple[str, str]) -> Deck:
-    """Return a deck with some of its text changed; every change must find its text."""
+    """Return a deck with some of its text replaced; every old text must be found."""
     for old, new in changes:
         if old not in text:
             raise ValueError(f"{old!r} is not in the deck")

@@ -1,4 +1,4 @@
-"""The program and decks for tests that run it: IMPLAM in the environment names it, else build/implam is taken."""
+"""Program and decks for tests that run it: the environment variable IMPLAM, by default build/implam."""
 
 import contextlib
 import io
@@ -13,26 +13,26 @@ SMALL = ROOT / "input" / "small"
 
 
 def implam() -> Path:
-    """Return the path of the program; without it a test cannot pass."""
+    """Return the path of the program; raise an error if it does not exist."""
     path = Path(os.environ.get("IMPLAM") or ROOT / "build" / "implam").absolute()
     if not path.is_file():
-        raise FileNotFoundError(f"{path} is not there: build implam, or name it by IMPLAM in the environment")
+        raise FileNotFoundError(f"{path} does not exist: build implam, or set the environment variable IMPLAM")
     return path
 
 
 def surroundings() -> dict[str, str]:
-    """Return an environment in which this package and the program are found."""
+    """Return an environment with this package and the program."""
     return {**os.environ, "IMPLAM": str(implam()), "PYTHONPATH": str(ROOT / "postproc"), "PYTHONDONTWRITEBYTECODE": "1"}
 
 
 def start(module: str, *arguments: object) -> subprocess.Popen:
-    """Start a command of the package as a process of its own."""
+    """Start a command of the package in another process."""
     return subprocess.Popen([sys.executable, "-m", f"implam_post.{module}", *map(str, arguments)], env=surroundings(),
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
 def run(module: str, *arguments: object) -> tuple[int, str]:
-    """Run a command of the package as a process of its own; return exit code and text."""
+    """Run a command of the package in another process; return exit code and text."""
     with start(module, *arguments) as process:
         text, _ = process.communicate(timeout=240)
     return process.returncode, text

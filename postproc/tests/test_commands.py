@@ -1,4 +1,4 @@
-"""Tests of the commands: what they print and write, and how they end."""
+"""Tests of the commands: output, files and exit codes."""
 
 import contextlib
 import io
@@ -25,7 +25,7 @@ from tests.decks import SUN_CHEN, deck
 
 
 class CommandTest(unittest.TestCase):
-    """Each test has a folder with a deck and a history that follows the semi-analytic solution."""
+    """Each test has a folder with a deck and a history that is the semi-analytic solution."""
 
     def setUp(self) -> None:
         """Make the folder."""
@@ -36,7 +36,7 @@ class CommandTest(unittest.TestCase):
         self.write_history(1.0)
 
     def write_history(self, factor: float, last: float | None = None) -> None:
-        """Write every tenth row of the analytical solution, forces multiplied by `factor`, the last force replaced."""
+        """Write every tenth row of the semi-analytic solution, forces times `factor`, the last force replaced."""
         solution = semi_analytic(deck(SUN_CHEN))
         columns = {name: values[::10].copy() for name, values in solution.columns.items()}
         columns["force"] *= factor
@@ -60,28 +60,28 @@ class CommandTest(unittest.TestCase):
         return code, text.getvalue()
 
     def test_check_finds_history_and_plots(self) -> None:
-        """A history like the semi-analytical solution passes a narrow tolerance; the plot lies beside it."""
+        """A history that is the semi-analytic solution passes a narrow tolerance; the plot is in its folder."""
         code, text = self.run_quietly(check_impact.main, self.deck, "--tolerance", "0.005")
         self.assertEqual(code, 0, text)
         self.assertIn("second peak force", text)
         self.assertGreater((self.folder / "sun_chen_check.png").stat().st_size, 10000)
 
     def test_other_kinds_of_files(self) -> None:
-        """What is neither fields nor a history is reported by what would be, whatever its bytes are."""
+        """Files of another kind are refused with the kind required, whatever their bytes."""
         picture = self.folder / "case.png"
         picture.write_bytes(b"\x89PNG\r\n\x1a\n\xff\xfe")
-        for command, path, sentence in ((plot.main, picture, "neither the fields NAME.h5 nor the history"),
-                                        (plot.main, self.deck, "neither the fields NAME.h5 nor the history"),
-                                        (plot.main, self.folder / "case_restart.h5", "neither the fields"),
+        for command, path, sentence in ((plot.main, picture, "not the fields NAME.h5 or the history"),
+                                        (plot.main, self.deck, "not the fields NAME.h5 or the history"),
+                                        (plot.main, self.folder / "case_restart.h5", "not the fields"),
                                         (report.main, picture, "is not NAME_summary.json"),
                                         (report.main, self.folder / "case.h5", "is not NAME_summary.json"),
-                                        (check_impact.main, picture, "it is no text")):
+                                        (check_impact.main, picture, "it is not a text file")):
             code, text = self.run_quietly(command, path)
             self.assertEqual((code, len(text.splitlines())), (4, 1), text)
             self.assertIn(sentence, text)
 
     def test_results_of_one_name(self) -> None:
-        """Pictures and pages of one do not replace those of the other; without a common folder they cannot."""
+        """Results of equal names are refused with a common output folder, and allowed without."""
         for ending, command in (("_history.csv", plot.main), ("_summary.json", report.main)):
             paths = [self.folder / str(number) / f"case{ending}" for number in (1, 2)]
             for path in paths:
@@ -93,21 +93,21 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.run_quietly(plot.main, *(self.folder / word / "case_history.csv" for word in "12"))[0], 0)
 
     def test_faulty_expectations(self) -> None:
-        """An entry without or with other keys is reported by their names, not by those of the program's insides."""
+        """Missing or unknown keys of an entry are reported by name, not by internals of the program."""
         path = self.folder / "case.toml"
         for content, sentence in (('[[expect]]\nvalue = 1.0\nabsolute = 0.1\n', "lacks quantity"),
                                   ('[[expect]]\nquantity = "peak_force"\nvlaue = 1.0\n', "has no vlaue"),
-                                  ('[[expect]]\nquantity = 1\nvalue = 1.0\nabsolute = 0.1\n', "are texts"),
+                                  ('[[expect]]\nquantity = 1\nvalue = 1.0\nabsolute = 0.1\n', "must be texts"),
                                   ('[[expect]]\nquantity = "at"\ncolumn = "force"\ntime = "x"\nvalue = 0\n',
-                                   "at: time is a finite number"),
-                                  ('variant = [1]\n', "list of tables"), ('[[variant]]\nname = 1\n', "has a name")):
+                                   "at: time must be a finite number"),
+                                  ('variant = [1]\n', "list of tables"), ('[[variant]]\nname = 1\n', "must be a text")):
             path.write_text(content)
             with self.subTest(content), self.assertRaisesRegex(FileError, sentence) as caught:
                 read_expectations(path)
             self.assertNotIn("__init__", str(caught.exception))
 
     def test_files_that_are_not_there(self) -> None:
-        """The sentence names the file once, and not by the numbers of the system's errors."""
+        """The message has the name of the file once, without error numbers of the system."""
         none, expected = self.folder / "none.csv", self.folder / "case.toml"
         expected.write_text('[[expect]]\nquantity = "rms_force"\nagainst = "none.csv"\nvalue = 0\nabsolute = 1\n')
         for command, *words in ((plot.main, none), (plot.main, self.history, "--measured", none),
@@ -121,14 +121,14 @@ class CommandTest(unittest.TestCase):
                 self.assertEqual(text.count("none.csv"), 0 if self.folder in words else 1, text)
 
     def test_damaged_record(self) -> None:
-        """What is no record of a run is reported with what to do, whatever it is."""
+        """An invalid record of a run is reported with what to do."""
         for content in ("", "[]", '{"exit_code": 0, "other": 1}', '{"exit_code": 0, "cpu_time": "x"}', "[" * 100000):
             (self.folder / "run.json").write_text(content)
             with self.subTest(content[:40]), self.assertRaisesRegex(FileError, "is damaged: delete it"):
                 read_record(self.folder)
 
     def test_check_fails_beyond_the_tolerance_only(self) -> None:
-        """Two percent too much force is reported, and fails if a tolerance is given."""
+        """A force 2 % too large is reported, and fails if a tolerance is given."""
         self.write_history(1.02)
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot")[0], 0)
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "0.03")[0], 0)
@@ -142,7 +142,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--no-plot", "--tolerance", "9")[0], 1)
 
     def test_check_without_a_history(self) -> None:
-        """The semi-analytical solution alone is printed."""
+        """Without a history the semi-analytic solution is printed."""
         self.history.unlink()
         code, text = self.run_quietly(check_impact.main, self.deck, "--no-plot")
         self.assertEqual(code, 0)
@@ -159,7 +159,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.run_quietly(check_impact.main, self.deck, "--modes", "0")[0], 1)
 
     def test_numbers_out_of_range(self) -> None:
-        """A number that makes no sense is wrong usage, before any file is read."""
+        """An invalid number is wrong usage, reported before files are read."""
         for command, *words in ((movie.main, "--rate", "0"), (movie.main, "--rate", "1e-300"),
                                 (plot.main, "--dpi", "0"), (plot.main, "--history", "none.csv", "--times", "nan"),
                                 (to_abaqus, "--pressure", "inf"), (to_nastran, "--time", "nan"),
@@ -190,7 +190,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual((code, text.count(" pass")), (0, 8), text)
 
     def test_compare_fails(self) -> None:
-        """One miss among hits, and a NaN, end with 1; a time outside the history is a NaN."""
+        """One value out of tolerance, or NaN, ends with exit code 1; NaN for a time outside the history."""
         hit = '[[expect]]\nquantity="peak_force"\nvalue=298.87\nrelative=1e-3\n'
         self.assertEqual(self.expect(hit)[0], 0)
         miss = '[[expect]]\nquantity="peak_force"\nvalue=305\nrelative=1e-2\n'
@@ -202,7 +202,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.expect(hit)[0], 1)
 
     def test_compare_refuses_entries_without_meaning(self) -> None:
-        """Entries that could not fail or not be measured are errors of the file."""
+        """Entries that cannot fail or cannot be evaluated are errors of the file."""
         for entry in ('quantity="peak"\nvalue=1\nabsolute=1', 'quantity="peak_force"\nvalue=1',
                       'quantity="peak_force"\nvalue=0\nrelative=1', 'quantity="peak_force"\nvalue=nan\nabsolute=1',
                       'quantity="peak_force"\nvalue=1\nabsolute=inf', 'quantity="max"\nvalue=1\nabsolute=1',
@@ -213,7 +213,7 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(self.expect("")[0], 4)
 
     def test_compare_draws_measured_curves(self) -> None:
-        """A picture of each curve; without one, or with columns that no axis is known of, a sentence."""
+        """A picture of each curve; without a curve, or with unknown columns, an error."""
         hit = '[[expect]]\nquantity="l2_force"\nagainst="measured.csv"\nvalue=0\nabsolute=0.01\n'
         curve = '[[curve]]\nfile="measured.csv"\n'
         picture, table, measured = (self.folder / name for name in ("over.png", "expect.toml", "measured.csv"))
@@ -232,7 +232,7 @@ class CommandTest(unittest.TestCase):
             self.assertEqual(self.run_quietly(compare.main, self.history, table, "--plot", picture)[0], 4, columns)
 
     def test_invalid_histories(self) -> None:
-        """A cut row, a word and times that run backwards are errors of the file."""
+        """A truncated row, a word and decreasing times are errors of the file."""
         expectation = '[[expect]]\nquantity="peak_force"\nvalue=1\nabsolute=1'
         for text in ("time,force\n0,0\n1", "time,force\n0,x\n", "time,force\n1,0\n0,0\n", "time,force\n", "force\n1\n"):
             self.history.write_text(text)
@@ -240,7 +240,7 @@ class CommandTest(unittest.TestCase):
                 self.assertEqual(self.expect(expectation)[0], 4)
 
     def test_plots(self) -> None:
-        """One picture of the responses together, one of the energies of each history."""
+        """One picture of the responses of all histories, one of the energies of each history."""
         code, text = self.run_quietly(plot.main, self.history, self.history, "--output", self.folder / "plots")
         self.assertEqual(code, 0, text)
         self.assertEqual({path.name for path in (self.folder / "plots").iterdir()},

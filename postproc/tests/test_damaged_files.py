@@ -1,6 +1,6 @@
-"""Every command that reads NAME.h5 on files with spoilt bytes: it draws, or ends with a sentence and no traceback.
+"""Commands that read damaged NAME.h5: they draw, or end with one sentence, without a traceback.
 
-IMPLAM_SPOILT in the environment is the number of files (default 40); 400 take five minutes."""
+The environment variable IMPLAM_SPOILT is the number of files (default 40); 400 take five minutes."""
 
 import os
 import random
@@ -22,14 +22,14 @@ from tests.io.test_fields import write_fields
 from tests.plot.test_pictures import DECK
 from tests.program import run_quietly
 
-# Words of libraries about their own internals, of which a user knows nothing.
+# Words on the internals of libraries, which messages must not contain.
 INTERNALS = re.compile(
     r"numpy|h5py|ufunc|dtype|array|attribute|subscript|synchronously|Unable to|Errno|NoneType|\bindex")
 FILES = int(os.environ.get("IMPLAM_SPOILT", "40"))
 
 
 def spoil(data: bytes, stream: random.Random) -> bytes:
-    """Return a file cut off, or with some bytes, or a piece of it, replaced."""
+    """Return a truncated file, or one with some bytes or a section replaced."""
     kind = stream.randrange(4)
     if kind == 0:
         return data[:stream.randrange(len(data))]
@@ -43,10 +43,10 @@ def spoil(data: bytes, stream: random.Random) -> bytes:
 
 
 class DamagedFilesTest(unittest.TestCase):
-    """Files spoilt at random, the same ones each time."""
+    """Files with random damage, the same in each test run."""
 
     def test_spoilt_bytes(self) -> None:
-        """Each command, or a sentence."""
+        """Each command succeeds or ends with one sentence."""
         stream = random.Random(1)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case.h5"
@@ -74,7 +74,7 @@ class DamagedFilesTest(unittest.TestCase):
                         self.assertEqual(len(str(error).splitlines()), 1, error)
 
     def test_arrays_of_other_sizes_and_kinds(self) -> None:
-        """What is no number, has another length, points outside, or is no plate is reported, whatever it is."""
+        """Values that are not numbers, of wrong length or out of range, or that do not form a plate, are reported."""
         faults = {"meshes/00000001/connectivity": -1, "meshes/00000001/cells/first_ply": 0,
                   "meshes/00000001/coordinates": np.nan, "times/00000002/cells/delaminated_above": np.inf,
                   "times/00000002/time": np.nan, "times/00000001/mesh": 7}
@@ -95,7 +95,7 @@ class DamagedFilesTest(unittest.TestCase):
                     read_fields(path)
 
     def test_members_of_other_kinds(self) -> None:
-        """Text, a group, an empty list or nothing in the place of each member: fields, or a sentence in plain words."""
+        """With a text, a group, an empty list or nothing instead of each member: fields, or a plain message."""
         with tempfile.TemporaryDirectory() as folder:
             path, names = Path(folder) / "case.h5", []
             write_fields(path)
@@ -120,7 +120,7 @@ class DamagedFilesTest(unittest.TestCase):
                                 self.assertIn("(it has no time)", str(error))
 
     def test_cells_that_are_no_plate(self) -> None:
-        """A point that has moved leaves cells without plies, and a ply too few a hole: panels report it."""
+        """A moved point (cells without plies) and a missing ply are reported by the export of panels."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case.h5"
             for name, place, value in (("coordinates", (0, 0), 0.5), ("cells/last_ply", 0, 1)):
@@ -128,17 +128,17 @@ class DamagedFilesTest(unittest.TestCase):
                 with self.subTest(name), h5py.File(path, "a") as file:
                     file["provenance/deck"] = np.bytes_(DECK)
                     file[f"meshes/00000001/{name}"][place] = value
-                with self.assertRaisesRegex(FileError, "do not make a plate of 3 plies"):
+                with self.assertRaisesRegex(FileError, "do not form a plate of 3 plies"):
                     results.read_panel(path)
 
     def test_histories(self) -> None:
-        """A row that is cut or spoilt is reported by its line, in words of a user's."""
+        """A truncated or damaged row is reported with its line, in plain words."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case_history.csv"
-            for rows, expected in (("0,1\n1,\n", "a cell in line 4 that is no number"),
+            for rows, expected in (("0,1\n1,\n", "a cell in line 4 that is not a number"),
                                ("0,1\n1,2\n\n2\n", "1 cells under 2 names in line 6"),
-                               ("0,1\n1,2.5e-", "cut off in line 4"),
-                               ("0,1\n1,2", "is cut off in line 4, which has no end"),
+                               ("0,1\n1,2.5e-", "is truncated in line 4"),
+                               ("0,1\n1,2", "is truncated in line 4, which has no end of line"),
                                ("", "has no rows")):
                 path.write_text(f"# a comment\ntime, force\n{rows}", encoding="utf-8")
                 with self.subTest(rows), self.assertRaisesRegex(FileError, expected):

@@ -1,11 +1,11 @@
-"""Tests of the packages: which of them may import which, and that the top imports nothing heavy."""
+"""Tests of the imports between packages, and that the top package imports no large library."""
 
 import ast
 import unittest
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1] / "implam_post"
-# What each package may import; `run` is the interface at the top, which commands use too.
+# Allowed imports of each package.
 ALLOWED = {
     "io": set(),
     "laminate": {"io"},
@@ -20,7 +20,7 @@ ALLOWED = {
 
 
 def imported(path: Path) -> set[str]:
-    """Return the packages of ours that a module imports, anywhere in it."""
+    """Return the packages of implam_post that a module imports, anywhere in it."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         names = [node.module] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names] if (
@@ -33,14 +33,14 @@ class Packages(unittest.TestCase):
     """Imports between packages."""
 
     def test_imports_are_allowed(self) -> None:
-        """Each package imports those below it and no other, and needs all that it is allowed."""
+        """Each package imports exactly the allowed packages."""
         for name, allowed in ALLOWED.items():
             with self.subTest(package=name):
                 found = set().union(*map(imported, (PACKAGE / name).glob("*.py"))) - {name}
                 self.assertEqual(found, allowed)
 
     def test_allowed_imports_have_no_cycle(self) -> None:
-        """Packages can be put in an order in which each uses earlier ones only."""
+        """Imports have no cycle."""
         left = {name: set(allowed) for name, allowed in ALLOWED.items()}
         while left:
             free = {name for name, allowed in left.items() if not allowed}
@@ -48,7 +48,7 @@ class Packages(unittest.TestCase):
             left = {name: allowed - free for name, allowed in left.items() if name not in free}
 
     def test_every_package_is_listed(self) -> None:
-        """No folder is left out of the table, and each says what it is for."""
+        """All folders are in the table, and each package has a docstring."""
         folders = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
         self.assertEqual(folders, ALLOWED.keys())
         for name in folders:

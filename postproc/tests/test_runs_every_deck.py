@@ -1,6 +1,6 @@
-"""Every command that draws runs on every deck in input/, after a run of few steps on coarse cells.
+"""Run all commands that draw on decks in input/small, after a run of few steps on coarse cells.
 
-With IMPLAM_EVERY_DECK=1 in the environment on all of them, in minutes; without on those in input/small."""
+With the environment variable IMPLAM_EVERY_DECK=1 on all decks in input/, in minutes."""
 
 import os
 import re
@@ -22,7 +22,7 @@ from solver_runs import run as run_program
 
 ALL = bool(os.environ.get("IMPLAM_EVERY_DECK"))
 DECKS = sorted((ROOT / "input" / ("" if ALL else "small")).rglob("*.nml"), key=lambda deck: deck.stat().st_size)
-# Coarse cells and an early end of the large decks, by the beginning of their names, the first that fits.
+# Coarse cells and an early end of large decks, by the first matching beginning of their names.
 COARSE = {"t700_m21_cai": ["mesh%elements=20,30", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=2e-3"],
           "t700_m21_25J": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3", "time%end=1e-3"],
           "t700_m21": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3"],
@@ -33,7 +33,7 @@ STEPS = 3
 
 
 def short(deck: Path) -> str:
-    """Return a deck with coarse cells that ends after few steps and writes each of them."""
+    """Return a deck with coarse cells that ends after few steps and writes fields in each step."""
     text = deck.read_text(encoding="utf-8")
     settings = next((coarse for name, coarse in COARSE.items() if deck.name.startswith(name)), [])
     step = re.search(r"^&time\b[^/]*?\bstep\s*=\s*([0-9.e+-]+)", text, re.MULTILINE)
@@ -44,13 +44,13 @@ def short(deck: Path) -> str:
 
 
 class EveryDeckTest(unittest.TestCase):
-    """A deck at a time."""
+    """Each deck."""
 
     def test_every_deck(self) -> None:
-        """Pictures, one picture of all, movie, page and ParaView state; a command that has nothing to draw says so."""
+        """Pictures, overview, movie, page and ParaView state; a command without data to draw reports it."""
         self.assertGreater(len(DECKS), 40 if ALL else 5)
         for source in DECKS:
-            # What begins from another run's end is run by compression.py.
+            # Decks that begin with the final state of another run are tested by compression.py.
             if "&initial_state" in source.read_text("utf-8"):
                 continue
             with self.subTest(source.name), tempfile.TemporaryDirectory() as folder:

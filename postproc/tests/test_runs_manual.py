@@ -1,4 +1,4 @@
-"""The worked examples of the manual are run, and give what the manual says."""
+"""Run the worked examples of the manual and compare with the figures in it."""
 
 import csv
 import re
@@ -13,19 +13,19 @@ from implam_post.sweep import command as sweep
 from implam_post.sweep.plan import COLUMNS
 from tests.program import ROOT, SMALL, implam, run_quietly
 
-# Figures of the manual are rounded.
+# Rounding of figures in the manual.
 TOLERANCE = 2e-3
 
 
 class ManualTest(unittest.TestCase):
-    """Each test has a folder, and runs the first TOML of a page."""
+    """Each test has a folder and runs the first TOML of a page."""
 
     def setUp(self) -> None:
         """Make the folder."""
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def write_example(self, page: str, deck: str, name: str, decks: Path = SMALL) -> str:
-        """Put a page's example beside its deck; return the text of the page."""
+        """Write the example of a page to the folder of its deck; return the text of the page."""
         text = (ROOT / "doc" / "manual" / page).read_text(encoding="utf-8")
         shutil.copy(decks / deck, self.folder)
         (self.folder / name).write_text(re.search(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE)[1])

@@ -1,4 +1,4 @@
-"""Tests of the Python interface with real runs: decks with changed keys, results in units, faults; the notebook."""
+"""Tests of the Python interface with runs: decks with changed keys, results with units, errors; the notebook."""
 
 import contextlib
 import importlib.util
@@ -27,7 +27,7 @@ class PythonInterfaceTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        """Run the deck as it is, and with another speed and mesh."""
+        """Run the deck unchanged, and with another velocity and mesh."""
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         started = [implam.run_deck(SMALL / "damage.nml", changes, cls.folder / str(number), str(program()))
                    for number, changes in enumerate(({"case%units": "SI"}, {
@@ -36,7 +36,7 @@ class PythonInterfaceTest(unittest.TestCase):
         cls.slow, cls.fast = (run.wait(timeout=200) for run in started)
 
     def test_changes_reach_the_run(self) -> None:
-        """Keys are set, lists too, and None takes one out; the given deck stays as it is."""
+        """Keys and lists are set, None removes a key; the given deck is not changed."""
         deck = self.fast.deck
         self.assertEqual((deck.number("impactor", "velocity"), deck.numbers("mesh", "elements")), (3, [7, 7]))
         self.assertEqual(deck.groups["delamination"][0]["g_c"], [350])
@@ -62,7 +62,7 @@ class PythonInterfaceTest(unittest.TestCase):
                          ("done", [warning["text"] for warning in expected["warnings"]]))
 
     def test_units_are_those_of_the_program(self) -> None:
-        """Each column has the dimension that the program's own table of columns gives it."""
+        """Each column has the dimension in the table of columns of the program."""
         text = subprocess.run([program(), "explain", "history"], capture_output=True, text=True, check=True).stdout
         rows = re.findall(r"^  (\w+) +(?:real|integer|logical) +(\S+) ", text, re.MULTILINE)
         self.assertGreater(len(rows), 60)
@@ -72,7 +72,7 @@ class PythonInterfaceTest(unittest.TestCase):
         self.assertLessEqual(AXES.keys(), {name for name, _ in rows})
 
     def test_fields_have_coordinates(self) -> None:
-        """Values and places belong together: clamped edges do not move, the struck point moves most."""
+        """Values agree with places: no displacement at clamped edges, the largest one at the struck point."""
         field = self.slow.field("displacement")
         self.assertEqual((field.values.shape, field.coordinates.shape, field.unit), (*2 * [(229, 3)], "m"))
         edge = np.isclose(field.coordinates[:, 0], 0.02)
@@ -88,7 +88,7 @@ class PythonInterfaceTest(unittest.TestCase):
             self.slow.field("strain")
 
     def test_compare(self) -> None:
-        """Figures stand side by side with their units; a run does not differ from itself."""
+        """Figures of two runs with their units; a run does not differ from itself."""
         table = implam.compare(self.slow, self.fast)
         row = table.loc["peak_force"]
         self.assertEqual(row["first"], self.slow.summary["peak_force"])
@@ -99,14 +99,14 @@ class PythonInterfaceTest(unittest.TestCase):
         self.assertEqual(float(np.nanmax(np.abs(same["difference"]))), 0)
 
     def test_faults(self) -> None:
-        """A faulty deck, an unknown key, the deck's own folder and missing results are each reported in a sentence."""
+        """A faulty deck, an unknown key, the folder of the deck and missing results are reported in one sentence."""
         with self.assertRaisesRegex(implam.RunError, "the run ended with 2: .*velocty") as caught:
             implam.run_deck(SMALL / "damage.nml", {"impactor%velocty": 3}, self.folder / "x", str(program())).wait(60)
         self.assertEqual(caught.exception.exit_code, 2)
         # The last line that the program prints is a warning.
         with self.assertRaisesRegex(implam.RunError, "the run ended with 2: .*is missing"):
             implam.run_deck(SMALL / "damage.nml", {"delamination[2]%G_c": 3}, self.folder / "x", str(program())).wait()
-        with self.assertRaisesRegex(implam.DeckError, "'velocity' is no key"):
+        with self.assertRaisesRegex(implam.DeckError, "'velocity' is not a key"):
             implam.run_deck(SMALL / "damage.nml", {"velocity": 3}, self.folder / "x", str(program()))
         with self.assertRaisesRegex(implam.FileError, "the folder of the deck itself"):
             implam.run_deck(SMALL / "damage.nml", {}, SMALL, str(program()))
@@ -124,7 +124,7 @@ class PythonInterfaceTest(unittest.TestCase):
         self.assertEqual((run.name, run.summary["accepted_steps"]), ("short", 2))
 
     def test_runs_can_be_stopped(self) -> None:
-        """After a time limit the run goes on; asked to stop it ends with exit code 75."""
+        """After a time limit the run continues; after `stop` it ends with exit code 75."""
         run = implam.run_deck(SMALL / "damage.nml", {"time%step": 1e-8}, self.folder / "long", str(program()))
         with self.assertRaises(TimeoutError):
             run.wait(timeout=1)
@@ -136,7 +136,7 @@ class PythonInterfaceTest(unittest.TestCase):
         self.assertEqual(implam.open_run(self.folder / "long").ending, "stopped")
 
     def test_notebook(self) -> None:
-        """Every cell of the example runs, in Jupyter's kernel where that is installed."""
+        """Every cell of the example runs, in the kernel of Jupyter if it is installed."""
         folder = self.folder / "notebook"
         folder.mkdir()
         surroundings = {"IMPLAM": str(program()), "MPLBACKEND": "agg", "PYTHONPATH": str(ROOT / "postproc")}

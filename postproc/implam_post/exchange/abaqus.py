@@ -1,4 +1,4 @@
-"""A panel as Abaqus' input, in the words that CalculiX understands too."""
+"""A panel as an Abaqus input file, with keywords that CalculiX reads too."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -36,7 +36,7 @@ def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
 
 
 def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Iterator[str]:
-    """Return the elements, a set for each section."""
+    """Return the elements, with an element set for each section."""
     members: dict[Section, list[int]] = {section: [] for section in sections}
     yield "*ELEMENT, TYPE=S8R, ELSET=ALL_SHELLS"
     for number, element in enumerate(mesh.elements, 1):
@@ -48,12 +48,12 @@ def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Ite
 
 
 def _material_name(number: int, state: MaterialState) -> str:
-    """Return a name that distinguishes materials by their number, since Abaqus' names are short and case-blind."""
+    """Return a name that is unique by its number, since names in Abaqus are short and not case-sensitive."""
     return f"M{number}_" + re.sub("[^A-Z0-9]", "_", state.name.upper())[:60]
 
 
 def _material(name: str, state: MaterialState, material: Material) -> Iterator[str]:
-    """Return the elastic constants; those through the thickness, which plane stress does without, couple nothing."""
+    """Return the elastic constants; nu13 and nu23, which plane stress does not use, are zero."""
     yield from (f"** {state.name} {state.failed}".rstrip(), f"*MATERIAL, NAME={name}",
                 "*ELASTIC, TYPE=ENGINEERING CONSTANTS")
     constants = [material.e1, material.e2, material.e2, material.nu12, 0.0, 0.0, material.g12, material.g13]
@@ -64,12 +64,12 @@ def _material(name: str, state: MaterialState, material: Material) -> Iterator[s
 
 
 def _orientation_name(angle: float) -> str:
-    """Return the name of the axes at an angle."""
+    """Return the name of the orientation at an angle."""
     return "AT_" + f"{angle + 0.0:g}".replace("-", "MINUS_").replace(".", "_")
 
 
 def _orientation(angle: float) -> Iterator[str]:
-    """Return the axes of plies at an angle from x; the last line names the axis along the normal."""
+    """Return the orientation of plies at an angle from x; the last line gives the axis along the normal."""
     c, s = direction(angle)
     yield f"*ORIENTATION, NAME={_orientation_name(angle)}"
     yield ", ".join(f"{value + 0.0:.12g}" for value in (c, s, 0.0, -s, c, 0.0))
@@ -77,7 +77,7 @@ def _orientation(angle: float) -> Iterator[str]:
 
 
 def _section(number: int, section: Section, names: dict[MaterialState, str]) -> Iterator[str]:
-    """Return a composite section; the offset is that of the grids from its middle, in its thicknesses."""
+    """Return a composite section; OFFSET is the distance of the nodes from its mid-plane over its thickness."""
     offset = f", OFFSET={-section.middle / section.thickness:.12g}" if section.middle else ""
     yield f"** {section.title}"
     yield f"*SHELL SECTION, ELSET=SECTION_{number}, COMPOSITE{offset}"
@@ -94,6 +94,6 @@ def _step(pressure: float, mesh: ShellMesh) -> Iterator[str]:
 
 
 def _rows(numbers: Sequence[int]) -> Iterator[str]:
-    """Return numbers, sixteen a line."""
+    """Return numbers, sixteen per line."""
     for start in range(0, len(numbers), 16):
         yield ", ".join(map(str, numbers[start:start + 16]))

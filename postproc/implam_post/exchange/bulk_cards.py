@@ -1,4 +1,4 @@
-"""Lines of Nastran's bulk data put together to cards, each with its line; pyNastran reads the fields."""
+"""Cards of Nastran bulk data with their line numbers, joined from their lines; pyNastran reads the fields."""
 
 import contextlib
 import math
@@ -9,9 +9,9 @@ from typing import Any
 
 from implam_post.io.errors import DeckError
 
-# What pyNastran raises about fields that it cannot read.
+# Exceptions of pyNastran on fields that it cannot read.
 READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)
-# Cards that a deck is made from. A line that begins with blanks and one of these names is a card and no continuation.
+# Cards that are converted. A line of blanks followed by one of these names is a card, not a continuation.
 KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "PSHELL", "MAT1", "MAT8", "SPC1", "SPC",
          "SPCADD", "TEMPD")
 # Columns of a small field.
@@ -19,13 +19,13 @@ _FIELD = 8
 # Columns of the field that names the continuation, and the number of that field in lines with commas.
 _MARK = slice(72, 80)
 _MARK_FIELD = {False: 9, True: 5}
-# Words of pyNastran's messages, and what is printed instead.
+# Phrases in messages of pyNastran, and what is printed instead.
 _WORDS = (("(field #", "(field "), (" on card must be", " must be"), ("a float", "a real number with a decimal point"),
           (" (not an integer)", ""))
 
 
 class BulkCard:
-    """A card: its name in capitals, the line it begins on, its text, and the name of its file."""
+    """A card: name in capitals, number of its first line, text, name of the file."""
 
     def __init__(self, name: str, line: int, text: str, file: str) -> None:
         """Begin with the first line of the text."""
@@ -33,7 +33,7 @@ class BulkCard:
 
     @cached_property
     def fields(self) -> Any:
-        """Fields as pyNastran has them, the name being number 0."""
+        """Fields in the numbering of pyNastran; field 0 is the name."""
         from pyNastran.bdf.bdf_interface.bdf_card import BDFCard
         from pyNastran.bdf.bdf_interface.utils import to_fields
         try:
@@ -50,7 +50,7 @@ class BulkCard:
         return DeckError(f"{self.file}:{self.line}: {self.name}: {sentence}")
 
     def unread(self, error: Exception) -> DeckError:
-        """Return an error with the first line of one of pyNastran's, after that which repeats the card's name."""
+        """Return an error with the first line of pyNastran's message, without the name of the card."""
         lines = [line.strip() for line in str(error).splitlines() if line.strip() and "card_name=" not in line]
         sentence = (lines or [type(error).__name__])[0].rstrip(".")
         if match := re.match(r"invalid literal for int\(\) with base 10: ('.*')$", sentence):
@@ -58,13 +58,13 @@ class BulkCard:
         if match := re.match(r"field=('.*') is not (\d+) characters long", sentence):
             sentence = f"{match[1]} has more than {match[2]} characters"
         if isinstance(error, (LookupError, AttributeError, TypeError)):
-            sentence = "its fields are not those of such a card"  # words of Python on pyNastran's inside
+            sentence = "its fields are not valid for this card"  # internal error of pyNastran
         for word, plain in _WORDS:
             sentence = sentence.replace(word, plain)
         return self.error(f"{sentence}.")
 
     def given(self, number: int) -> bool:
-        """Return whether a field is there and is not zero."""
+        """Return whether a field is given and is not zero."""
         text = self.fields.field(number)
         return text is not None and re.fullmatch(r"[-+]?0*\.?0*([-+DdEe]+\d+)?", text.strip()) is None
 
@@ -73,7 +73,7 @@ class _Splitter:
     """Cards found so far, and those whose last line names a continuation."""
 
     def __init__(self, file: str, named: Set[str]) -> None:
-        """Begin with none; `named` are the continuations that any line names."""
+        """Begin without cards; `named` are the continuation marks in all lines of the file."""
         self.file, self.named = file, named
         self.cards: list[BulkCard] = []
         self.early: list[tuple[str, str, int]] = []
@@ -87,16 +87,16 @@ class _Splitter:
     def begin(self, name: str, number: int, line: str) -> None:
         """Begin a card."""
         if name.startswith("="):
-            raise self.error(number, f"{name}: replicated cards are not read: write each card out, as ECHO = SORT "
+            raise self.error(number, f"{name}: replicated cards are not supported: give each card, as ECHO = SORT "
                                      "prints them.")
         if not name[0].isalpha():
-            raise self.error(number, f"{name}: no card begins like this; a continuation has blanks, + or * in columns "
+            raise self.error(number, f"{name}: not the name of a card; a continuation has blanks, + or * in columns "
                                      f"1 to {_FIELD}.")
         self.cards.append(BulkCard(name, number, line, self.file))
         self._note(self.cards[-1], line)
 
     def carry_on(self, number: int, line: str) -> None:
-        """Add a continuation to the card that names it, wherever that is, or else to the card before."""
+        """Add a continuation to the card that names its mark, anywhere in the file, or else to the preceding card."""
         mark = _first_field(line).lstrip("+*").strip().upper()
         if mark in self._continued:
             self._add(self._continued.pop(mark), line)
@@ -105,12 +105,12 @@ class _Splitter:
         elif mark and self._left_open:
             raise self._unnamed(mark, number)
         elif not self.cards:
-            raise self.error(number, "a continuation without a card.")
+            raise self.error(number, "the continuation belongs to no card.")
         else:
             self._add(self.cards[-1], line)
 
     def carry_on_early(self) -> None:
-        """Add continuations that stood before the line which names them."""
+        """Add continuations that precede the line which names their mark."""
         while self.early:
             there = [entry for entry in self.early if entry[0] in self._continued]
             if not there:
@@ -120,8 +120,8 @@ class _Splitter:
                 self._add(self._continued.pop(entry[0]), entry[1])
 
     def _unnamed(self, mark: str, number: int) -> DeckError:
-        """Return an error about a continuation that is left."""
-        return self.error(number, f"+{mark}: no card names this continuation in its tenth field.")
+        """Return an error about a continuation that belongs to no card."""
+        return self.error(number, f"+{mark}: no card has this continuation mark in its tenth field.")
 
     def _add(self, card: BulkCard, line: str) -> None:
         """Add a line to a card."""
@@ -129,10 +129,10 @@ class _Splitter:
         self._note(card, line)
 
     def _note(self, card: BulkCard, line: str) -> None:
-        """Note which continuation the line names; a value behind its last field is an error if the card is read."""
+        """Store the continuation mark of the line; in converted cards a value after the last field is an error."""
         if card.name in KNOWN and (lost := _beyond_last_field(line)):
-            raise card.error(f"{lost} stands behind the last field of a line with commas and would be lost: go on in a "
-                             "line of its own.")
+            raise card.error(f"{lost} follows the last field of a line with commas and would be lost: continue on a "
+                             "new line.")
         self._left_open = _named_continuation(line)
         if self._left_open:
             self._continued[self._left_open] = card
@@ -158,7 +158,7 @@ def read_cards(lines: Sequence[str], first: int, file: str) -> list[BulkCard]:
 
 
 def _named_continuation(line: str) -> str:
-    """Return the continuation that a line names in its last field; empty if it names none."""
+    """Return the continuation mark in the last field of a line; empty if there is none."""
     if "," in line:
         fields = line.split(",")
         place = _MARK_FIELD["*" in fields[0]]
@@ -170,9 +170,9 @@ def _named_continuation(line: str) -> str:
 
 
 def _beyond_last_field(line: str) -> str:
-    """Return a value behind the fields of a line with commas; empty if there is none.
+    """Return a value after the last field of a line with commas; empty if there is none.
 
-    The field behind the last one names a continuation, which is no real number.
+    The next field is a continuation mark, which is not a real number.
     """
     fields = [text.strip() for text in line.split(",")]
     place = _MARK_FIELD["*" in fields[0]]
@@ -186,7 +186,7 @@ def _first_field(line: str) -> str:
 
 
 def _name_first(line: str, number: int, file: str) -> str:
-    """Return a line whose first field begins with its name, as Nastran reads a name anywhere in that field."""
+    """Return a line with its name moved to column 1; Nastran accepts a name anywhere in the first field."""
     if not line[0].isspace():
         return line
     word = re.split(r"[,*\s]", line.strip(), maxsplit=1)[0].upper()
@@ -195,19 +195,19 @@ def _name_first(line: str, number: int, file: str) -> str:
     line = line.expandtabs()
     indent = len(line) - len(line.lstrip())
     if word in KNOWN and indent + len(word) > _FIELD:
-        raise DeckError(f"{file}:{number}: {word}: it begins in column {indent + 1}; the name of a card stands in "
+        raise DeckError(f"{file}:{number}: {word}: it begins in column {indent + 1}; the name of a card belongs in "
                         f"columns 1 to {_FIELD}.")
     first = line[:_FIELD].strip()
     return first.ljust(_FIELD) + line[_FIELD:] if first else line
 
 
 def _is_infinite(text: str) -> bool:
-    """Return whether a field is no number by name, or one too large."""
+    """Return whether a field is NaN, infinite or too large."""
     with contextlib.suppress(ValueError):
         return not math.isfinite(float(with_exponent(text)))
     return False
 
 
 def with_exponent(text: str) -> str:
-    """Return a number of bulk data with the letter of its exponent."""
+    """Return a number of bulk data with an E before its exponent."""
     return re.sub(r"(?<=[\d.])[DE]?([-+]\d+)$", r"E\1", text.upper())

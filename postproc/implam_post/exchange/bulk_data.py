@@ -1,4 +1,4 @@
-"""Nastran's bulk data and the sets of its case control; pyNastran reads the fields."""
+"""Nastran bulk data and the sets that the case control selects; pyNastran reads the fields."""
 
 import codecs
 import contextlib
@@ -17,14 +17,14 @@ _LINE_END = re.compile(r"\r\n|\r|\n")
 
 
 class BulkData:
-    """The cards of a file and the supports chosen by its case control."""
+    """The cards of a file and the supports selected by its case control."""
 
     def __init__(self, path: Path, text: str) -> None:
         """Split the text into cards."""
         try:
             import pyNastran.bdf.bdf  # noqa: F401
         except ImportError as error:
-            raise ImplamError(f"Nastran's files are read by pyNastran, and {error.name} is not installed: "
+            raise ImplamError(f"reading Nastran files needs pyNastran, and {error.name} is not installed: "
                               "pip install 'implam-post[nastran]' and pip install --no-deps pyNastran.") from None
         self.path = path
         self.cards: list[BulkCard] = []
@@ -63,11 +63,11 @@ class BulkData:
             raise card.unread(error) from None
 
     def mass_cards(self) -> list[BulkCard]:
-        """Return the cards PARAM,WTMASS, which turn weights into masses."""
+        """Return the cards PARAM,WTMASS, which convert weights to masses."""
         return [card for card in self.named("PARAM") if str(card.fields.field(1) or "").upper() == "WTMASS"]
 
     def _read_mass_factor(self) -> None:
-        """Note the factor of all masses, from the bulk data or else the case control."""
+        """Store WTMASS, the factor of all masses, from the bulk data or else the case control."""
         factors = {}
         for card in self.mass_cards():
             factor = self.real(card, 2)
@@ -75,11 +75,11 @@ class BulkData:
                 raise card.error("WTMASS needs a number greater than zero.")
             factors.setdefault(factor, card)
         if len(factors) > 1:
-            raise list(factors.values())[1].error("WTMASS is another one than before.")
+            raise list(factors.values())[1].error("WTMASS differs from that of the preceding card.")
         self.mass_factor = next(iter(factors), self.mass_factor)
 
     def missing(self, sentence: str) -> DeckError:
-        """Return an error on a missing card."""
+        """Return an error about a missing card."""
         return DeckError(f"{self.path.name}: {sentence}")
 
     def error(self, card: BulkCard, sentence: str) -> DeckError:
@@ -88,7 +88,7 @@ class BulkData:
 
     def _split(self, text: str) -> None:
         """Find the cards between BEGIN BULK, if there is one, and ENDDATA."""
-        # Not splitlines: read as latin-1, letters of UTF-8 have bytes at which it splits.
+        # Not splitlines: it would split at bytes of UTF-8 letters, which are read as latin-1.
         lines = _LINE_END.split(text)
         begin = next((number for number, line in enumerate(lines) if _BEGIN.match(line)), -1)
         if begin < 0 and (end := next((number for number, line in enumerate(lines, 1) if _CEND.match(line)), 0)):
@@ -98,23 +98,23 @@ class BulkData:
         self.cards = read_cards(lines[begin + 1:], begin + 2, self.path.name)
 
     def _read_case_control(self, lines: Sequence[str]) -> None:
-        """Note which sets of supports and temperatures the case control takes; several subcases may not differ."""
+        """Store the sets of supports and temperatures that the case control selects; subcases may not differ."""
         chosen = _chosen(r"SPC", lines)
         temperatures = _chosen(r"TEMP(?:ERATURE)?\s*(?:\(\s*(?:LOAD|BOTH)\s*\))?", lines)
         if len(temperatures) > 1:
-            raise self.missing(f"the case control takes the temperatures {sorted(temperatures)}: leave one.")
+            raise self.missing(f"the case control selects the temperature sets {sorted(temperatures)}: select one.")
         self.temperature_set = next(iter(temperatures), None)
         for line in lines:
             if re.match(r"\s*INCLUDE\b", line, re.I):
-                raise self.missing("INCLUDE in the case control is not followed: put all into one file.")
+                raise self.missing("INCLUDE in the case control is not supported: put all into one file.")
             if match := re.match(r"\s*PARAM\s*,\s*WTMASS\s*,\s*([^\s,$]+)", line, re.I):
                 self.mass_factor = self._plain_number(match[1])
         if len(chosen) > 1:
-            raise self.missing(f"the case control takes the supports {sorted(chosen)}: choose one by --spc.")
+            raise self.missing(f"the case control selects the support sets {sorted(chosen)}: choose one with --spc.")
         self.support_set = next(iter(chosen), None)
 
     def _plain_number(self, text: str) -> float:
-        """Return a number of the case control, which is written as in bulk data."""
+        """Return a number of the case control, in the notation of bulk data."""
         with contextlib.suppress(ValueError):
             value = float(with_exponent(text))
             if math.isfinite(value) and value > 0:
@@ -129,18 +129,18 @@ def read_bulk_data(path: Path) -> BulkData:
     except OSError as error:
         raise FileError(f"{path} cannot be read ({reason(error)}).") from None
     if "\0" in text:
-        raise FileError(f"{path} is no text: bulk data are wanted, as a file .bdf or .dat.")
+        raise FileError(f"{path} is not a text file: give bulk data, a file .bdf or .dat.")
     return BulkData(path, text)
 
 
 def _chosen(command: str, lines: Iterable[str]) -> set[int]:
-    """Return the numbers of the sets that a command of the case control takes."""
+    """Return the numbers of the sets that a command of the case control selects."""
     pattern = re.compile(rf"\s*{command}\s*=\s*(\d+)\s*(\$|$)", re.I)
     return {int(match[1]) for line in lines if (match := pattern.match(line))}
 
 
 def ranges(lines: Iterable[int], everything: Sequence[int]) -> str:
-    """Return lines in words, those next to each other among `everything` as a range."""
+    """Return line numbers as text; lines that are adjacent among `everything` become a range."""
     place = {line: number for number, line in enumerate(everything)}
     runs: list[list[int]] = []
     for line in sorted(lines):

@@ -1,4 +1,4 @@
-"""Materials and lay-up out of bulk data: MAT1, MAT8, PCOMP and PCOMPG."""
+"""Materials and lay-up from bulk data: MAT1, MAT8, PCOMP and PCOMPG."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -11,7 +11,7 @@ from implam_post.exchange.remarks import Remarks
 from implam_post.laminate.sections import Material, Ply
 
 _MAT8_STRENGTHS = {12: "XT", 13: "XC", 14: "YT", 15: "YC", 16: "S12"}
-_UNTAKEN = {
+_IGNORED = {
     "MAT1": {8: "GE", 9: "ST", 10: "SC", 11: "SS", 12: "MCSID"},
     "MAT8": {17: "GE", 18: "F12"},
     "PCOMP": {4: "SB", 5: "FT", 7: "GE"},
@@ -24,9 +24,9 @@ _FIRST_PLY = 9
 
 def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, shear_23: float | None = None
                   ) -> list[Ply]:
-    """Return the plies of the property that all elements have; several are accepted if they are equal.
+    """Return the plies of the property of all elements; several properties are accepted if they are equal.
 
-    `shear_23` stands in for G2Z where that is blank.
+    `shear_23` is used where G2Z is blank.
     """
     cards = _unique(bulk, "PCOMP", "PCOMPG", "PSHELL")
     found: list[tuple[BulkCard, list[Ply]]] = []
@@ -39,18 +39,18 @@ def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, s
         if any(ply != other or _rest(ply.material) != _rest(other.material)
                for ply, other in zip_longest(plies, found[0][1], fillvalue=None)):
             first = found[0][0]
-            raise bulk.error(card, f"it is not the lay-up of {first.name} {first.fields.field(1)} in line "
+            raise bulk.error(card, f"its lay-up differs from that of {first.name} {first.fields.field(1)} in line "
                                    f"{first.line}: a panel has one laminate.")
     return found[0][1]
 
 
 def _unique(bulk: BulkData, *names: str) -> dict[int, BulkCard]:
-    """Return the cards of these names by their number, which none may share."""
+    """Return the cards of these names by their number, which must be unique."""
     cards: dict[int, BulkCard] = {}
     for card in bulk.named(*names):
         number = bulk.integer(card, 1)
         if number in cards:
-            raise bulk.error(card, f"number {number} is taken by the {cards[number].name} in line "
+            raise bulk.error(card, f"number {number} is used by the {cards[number].name} in line "
                                    f"{cards[number].line}.")
         cards[number] = card
     return cards
@@ -62,17 +62,17 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
         return [_only_ply(bulk, card, remarks, shear_23)]
     from pyNastran.bdf.cards.properties.shell import PCOMP, PCOMPG
     if len(card.fields) < _FIRST_PLY + 1:
-        raise bulk.error(card, "it has no plies: they follow in continuations, from the second field on.")
+        raise bulk.error(card, "it has no plies: give them on continuations, from the second field on.")
     material = _FIRST_PLY if card.name == "PCOMP" else _FIRST_PLY + 1
     for number, key in ((material, "MID1"), (material + 1, "T1")):
         if card.fields.field(number) is None:
-            raise bulk.error(card, f"{key} is blank: only plies behind the first one have that of the ply before.")
+            raise bulk.error(card, f"{key} is blank: only plies after the first one inherit that of the preceding ply.")
     laminate = bulk.read(card, PCOMP if card.name == "PCOMP" else PCOMPG)
     if card.name == "PCOMPG":
         _refuse_repeated(bulk, card, [*laminate.global_ply_ids])
     symmetric = (laminate.lam or "") == "SYM" and card.name == "PCOMP"
     if laminate.lam and not symmetric:
-        raise bulk.error(card, f"LAM = {laminate.lam} is not taken: a laminate's plies are written out, or half of "
+        raise bulk.error(card, f"LAM = {laminate.lam} is not supported: give all plies of the laminate, or half of "
                                "them with SYM on a PCOMP.")
     materials = _materials(bulk, {*laminate.mids}, card, remarks, shear_23)
     plies = [Ply(materials[mid], float(angle), float(thickness))
@@ -81,52 +81,52 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
         plies += plies[::-1]
     if min(ply.thickness for ply in plies) <= 0:
         raise bulk.error(card, "every ply needs a thickness greater than zero.")
-    remarks.untaken(card, _UNTAKEN[card.name])
+    remarks.ignored(card, _IGNORED[card.name])
     thickness = sum(ply.thickness for ply in plies)
     plies = _with_nonstructural_mass(bulk, card, plies, thickness, remarks)
     if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
-        remarks.add(card, "Z0 is not taken: the panel lies about its grids with its middle, where it is supported")
+        remarks.add(card, "Z0 is ignored: the grids and the supports are at the mid-plane of the panel")
     return plies
 
 
 def _refuse_repeated(bulk: BulkData, card: BulkCard, global_plies: list[int]) -> None:
-    """Refuse a PCOMPG that has a global ply twice, which Nastran does not take."""
+    """Refuse a PCOMPG that has a global ply twice, which Nastran does not accept."""
     for number in global_plies:
         if global_plies.count(number) > 1:
-            raise bulk.error(card, f"global ply {number} occurs twice: each GPLYIDi of a PCOMPG is given once.")
+            raise bulk.error(card, f"global ply {number} is given twice: each GPLYIDi of a PCOMPG is unique.")
 
 
 def _only_ply(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> Ply:
-    """Return the ply that a PSHELL of one material stands for."""
+    """Return the ply that is equivalent to a PSHELL of one material."""
     from pyNastran.bdf.cards.properties.shell import PSHELL
     shell = bulk.read(card, PSHELL)
     first = shell.mid1
     if first is None or shell.mid2 != first or shell.mid3 not in (None, first) or shell.mid4 is not None:
-        raise bulk.error(card, ("MID2 is blank: Nastran takes a membrane without bending; give MID2 = MID1."
+        raise bulk.error(card, ("MID2 is blank, a membrane without bending stiffness: give MID2 = MID1."
                                 if first is not None and shell.mid2 is None else
-                                "MID1, MID2 and MID3 need to be one material and MID4 blank: give other sections as a "
+                                "MID1, MID2 and MID3 must be one material and MID4 blank: give other sections as a "
                                 "PCOMP."))
     if abs(shell.twelveIt3 - 1) > 1e-6:
-        raise bulk.error(card, "12I/T**3 is not 1: give the plies that make the section up as a PCOMP.")
+        raise bulk.error(card, "12I/T**3 is not 1: give the plies of the section as a PCOMP.")
     if shell.t is None or shell.t <= 0:
-        raise bulk.error(card, "T needs to be greater than zero.")
+        raise bulk.error(card, "T must be greater than zero.")
     if shell.mid3 is None:
-        remarks.add(card, "MID3 is blank: Implam takes transverse shear of the material")
+        remarks.add(card, "MID3 is blank: Implam uses the transverse shear stiffness of the material")
     elif abs(shell.tst - 5 / 6) > _NEAR:
-        remarks.add(card, "TS/T is not taken: Implam has 5/6")
+        remarks.add(card, "TS/T is ignored: Implam uses 5/6")
     ply = Ply(_materials(bulk, {first}, card, remarks, shear_23)[first], 0.0, float(shell.t))
     return _with_nonstructural_mass(bulk, card, [ply], ply.thickness, remarks, 8)[0]
 
 
 def _with_nonstructural_mass(bulk: BulkData, card: BulkCard, plies: list[Ply], thickness: float, remarks: Remarks,
                              field: int = 3) -> list[Ply]:
-    """Return plies whose densities have NSM, the non-structural mass per area, distributed over the thickness."""
+    """Return plies whose densities include NSM, the non-structural mass per area, distributed over the thickness."""
     extra = (bulk.real(card, field) or 0.0) * bulk.mass_factor / thickness
     if extra == 0:
         return plies
     if extra < 0:
-        raise bulk.error(card, "NSM must not be below zero.")
-    remarks.add(card, f"NSM is spread over the plies: {extra:.5g} is added to their densities")
+        raise bulk.error(card, "NSM must not be negative.")
+    remarks.add(card, f"NSM is distributed over the plies: {extra:.5g} is added to their densities")
     return [replace(ply, material=replace(ply.material, density=ply.material.density + extra)) for ply in plies]
 
 
@@ -136,16 +136,16 @@ def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: 
     cards = _unique(bulk, "MAT1", "MAT8", "MAT2", "MAT3", "MAT9", "MAT11", "MATORT")
     for number in numbers:
         if number not in cards:
-            raise bulk.error(user, f"material {number} is not there as a MAT1 or MAT8.")
+            raise bulk.error(user, f"there is no MAT1 or MAT8 with number {number}.")
         if cards[number].name not in ("MAT1", "MAT8"):
-            raise bulk.error(cards[number], f"a ply cannot be made of it, as the {user.name} in line {user.line} "
+            raise bulk.error(cards[number], f"it is not a material of plies, which the {user.name} in line {user.line} "
                                             "needs: give E1, E2, NU12, G12, G1Z and G2Z as a MAT8.")
     return {number: _isotropic(bulk, cards[number], remarks) if cards[number].name == "MAT1"
             else _orthotropic(bulk, cards[number], remarks, shear_23) for number in numbers}
 
 
 def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
-    """Return the material of a MAT1; of E, G and NU one may be missing."""
+    """Return the material of a MAT1; one of E, G and NU may be blank."""
     from pyNastran.bdf.cards.materials import MAT1
     found = bulk.read(card, MAT1)
     e, g, nu = (bulk.real(card, number) for number in (2, 3, 4))
@@ -157,15 +157,15 @@ def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
     if g is not None and abs(g - shear) > _NEAR * shear:
         raise bulk.error(card, f"G = {g:g} contradicts E and NU, which give {shear:.5g}.")
     if g is not None and card.given(2) and card.given(4) and abs(g - shear) > 1e-6 * shear:
-        remarks.add(card, f"G is not taken: E and NU give {shear:.5g}")
-    remarks.untaken(card, _UNTAKEN["MAT1"])
+        remarks.add(card, f"G is ignored: E and NU give {shear:.5g}")
+    remarks.ignored(card, _IGNORED["MAT1"])
     expansion = bulk.real(card, 6) or 0.0
     return Material(_density(bulk, card, found.rho, remarks), e, e, shear, shear, shear, nu, _name(card),
                     isotropic=True, expansion=(expansion, expansion))
 
 
 def _absent(bulk: BulkData, card: BulkCard, number: int) -> str:
-    """Return how a field without a value is written."""
+    """Return 'blank' or '0' for a field without a value."""
     return "blank" if bulk.real(card, number) is None else "0"
 
 
@@ -175,21 +175,21 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
     found = bulk.read(card, MAT8)
     g13, g23 = (bulk.real(card, number) for number in (6, 7))
     if not g23 and shear_23 is None:
-        raise bulk.error(card, "G2Z is needed, on the card or by --g2z; without it Nastran takes the ply as rigid in "
+        raise bulk.error(card, "G2Z is required, on the card or with --g2z; without it the ply is rigid in "
                                "transverse shear.")
     if not g23:
-        remarks.add(card, f"G2Z is {_absent(bulk, card, 7)}: {shear_23:g} is taken for it, as --g2z says")
+        remarks.add(card, f"G2Z is {_absent(bulk, card, 7)}: {shear_23:g} of --g2z is used")
         g23 = shear_23
     if not g13:
-        remarks.add(card, f"G1Z is {_absent(bulk, card, 6)}: G12 is taken for it")
+        remarks.add(card, f"G1Z is {_absent(bulk, card, 6)}: G12 is used")
         g13 = found.g12
     if min(found.e11, found.e22, found.g12, g13, g23) <= 0:
-        raise bulk.error(card, "E1, E2, G12, G1Z and G2Z need to be greater than zero.")
+        raise bulk.error(card, "E1, E2, G12, G1Z and G2Z must be greater than zero.")
     if found.nu12**2 * found.e22 >= found.e11:
         raise bulk.error(card, "NU12 squared must be smaller than E1/E2.")
     if card.fields.field(4) is None:
-        remarks.add(card, "NU12 is blank: 0 is taken for it")
-    remarks.untaken(card, _UNTAKEN["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
+        remarks.add(card, "NU12 is blank: 0 is used")
+    remarks.ignored(card, _IGNORED["MAT8"] | (_MAT8_STRENGTHS if card.given(19) else {}))
     strengths = () if card.given(19) else tuple(
         (key, abs(bulk.real(card, number))) for number, key in _MAT8_STRENGTHS.items() if card.given(number))
     return Material(_density(bulk, card, found.rho, remarks), found.e11, found.e22, found.g12, g13, g23, found.nu12,
@@ -197,19 +197,19 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
 
 
 def _rest(material: Material) -> tuple[object, ...]:
-    """Return the constants in which materials may differ and count as equal."""
+    """Return the fields in which equal materials may differ."""
     return material.strengths, material.expansion
 
 
 def _density(bulk: BulkData, card: BulkCard, density: Any, remarks: Remarks) -> float:
-    """Return the density; 0 if there is none."""
+    """Return the density; 0 if RHO is blank."""
     if density < 0:
-        raise bulk.error(card, "RHO must not be below zero.")
+        raise bulk.error(card, "RHO must not be negative.")
     if density == 0:
-        remarks.add(card, "no RHO: an impact needs the density")
+        remarks.add(card, "RHO is blank: an impact needs the density")
     return float(density) * bulk.mass_factor
 
 
 def _name(card: BulkCard) -> str:
-    """Return the name that the deck gives the material."""
+    """Return the name of the material in the deck."""
     return f"{card.name}_{card.fields.field(1)}"

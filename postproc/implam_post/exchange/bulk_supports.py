@@ -13,16 +13,16 @@ from implam_post.exchange.remarks import Remarks
 
 EDGES = ("x-min", "x-max", "y-min", "y-max")
 _RIGID_MOTIONS = 3
-# Rotations at edges along y and along x: that along the edge, which a simple support holds, and the other one.
+# Rotations at edges along y and along x: first the one that a simple support constrains, then the other.
 _ROTATIONS = ((4, 5), (5, 4))
 Held = dict[int, dict[int, BulkCard]]
 
 
 @dataclass(frozen=True)
 class Supports:
-    """Kinds of the four edges, and whether the supported ones hold the panel in its plane.
+    """Kinds of the four edges, and whether the supported edges constrain in-plane displacements.
 
-    Where some hold it otherwise than others, or one way only, `in_plane_lines` has edge and component of each hold.
+    If they differ in that, or constrain one component only, `in_plane_lines` has edge and component of each constraint.
     """
 
     edges: tuple[str, ...]
@@ -32,7 +32,7 @@ class Supports:
 
 def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
                   remarks: Remarks) -> Supports:
-    """Return the supports; `chosen` is the number of the set, if not that of the case control or the only one."""
+    """Return the supports; `chosen` is the number of the set; None: that of the case control, or the only one."""
     held = _held(bulk, grids, shape, chosen, remarks)
     on_edges = {number: _edges_of(shape, place) for number, place in shape.places.items()}
     common = [_common(bulk, held, [grid for grid, edges in on_edges.items() if edges == [number]], number)
@@ -44,22 +44,22 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
     pins = _pins(bulk, held, on_edges, common, kinds, remarks)
     if pins and (fixed or len(pins) > _RIGID_MOTIONS):
         card, grid = pins[0]
-        raise bulk.error(card, f"it holds grid {grid} in the panel's plane, "
+        raise bulk.error(card, f"it constrains grid {grid} in-plane, "
                                    "which is not the support of an entire edge.")
     for card, _ in pins:
-        remarks.add(card, "part of it suppresses in-plane rigid-body motion; Implam does so by itself")
+        remarks.add(card, "part of it suppresses in-plane rigid-body motion, which Implam does by itself")
     for number in sorted({edge for edge, _ in lines}):
-        remarks.edge(EDGES[number], "held in-plane by &line, as the edges are not held alike or both ways")
+        remarks.edge(EDGES[number], "in-plane constraints are written as &line, since edges or components differ")
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
 
 
 def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
           remarks: Remarks) -> Held:
-    """Return the cards that hold each component, in the panel's axes, of each of its grids."""
+    """Return for each grid of the panel the cards that constrain each component, in the axes of the panel."""
     held: Held = {}
     for card, numbers, components in _constraints(bulk, _sets(bulk, chosen)):
         if any(number not in shape.places for number in numbers):
-            remarks.add(card, "some of its grids are not the panel's")
+            remarks.add(card, "some of its grids do not belong to the panel")
         _hold(bulk, held, card, numbers, components, grids, shape)
     for number in shape.places:
         card, grid = grids[number]
@@ -68,7 +68,7 @@ def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shap
 
 
 def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
-    """Return the numbers of the sets of supports that count."""
+    """Return the numbers of the support sets that apply."""
     there = {bulk.integer(card, 1) for card in bulk.named("SPC1", "SPC")}
     added: dict[int, set[int]] = {}
     for card in bulk.named("SPCADD"):
@@ -77,13 +77,13 @@ def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
     wanted = bulk.support_set if chosen is None else chosen
     if wanted is None:
         if len(there) > 1 or added:
-            raise bulk.missing(f"there are the sets of supports {', '.join(map(str, sorted(there | set(added))))}: "
-                               "choose one by --spc.")
+            raise bulk.missing(f"there are the support sets {', '.join(map(str, sorted(there | set(added))))}: "
+                               "choose one with --spc.")
         return there
     sets = added.get(wanted, {wanted})
     if absent := sets - there:
-        origin = "of the case control" if chosen is None else "by --spc"
-        raise bulk.missing(f"SPC = {wanted} {origin} needs an SPC1 or SPC of set {min(absent)}, which is not there.")
+        origin = "in the case control" if chosen is None else "of --spc"
+        raise bulk.missing(f"SPC = {wanted} {origin} needs an SPC1 or SPC of set {min(absent)}, which does not exist.")
     return sets
 
 
@@ -100,31 +100,31 @@ def _constraints(bulk: BulkData, sets: set[int]) -> Iterable[tuple[BulkCard, lis
             continue
         read = bulk.read(card, SPC)
         if any(read.enforced):
-            raise bulk.error(card, "it moves a grid; the supports of a panel stand still.")
+            raise bulk.error(card, "prescribed displacements are not supported.")
         for number, components in zip(read.nodes, read.components, strict=True):
             yield card, [number], components
 
 
 def _check_ranges(bulk: BulkData, card: BulkCard) -> None:
-    """Refuse a range of grids without its last one, or that runs backwards, of which no grid would be held."""
+    """Refuse a range of grids without its last number or in descending order, which would constrain no grid."""
     for number in range(4, len(card.fields)):
         if str(card.fields.field(number) or "").upper() == "THRU":
             first, last = (card.fields.field(place) for place in (number - 1, number + 1))
             if last is None:
                 raise bulk.error(card, f"no grid follows THRU after {first}.")
             if bulk.integer(card, number - 1) >= bulk.integer(card, number + 1):
-                raise bulk.error(card, f"{first} THRU {last}: the second number needs to be the greater one.")
+                raise bulk.error(card, f"{first} THRU {last}: the second number must be greater than the first.")
 
 
 def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], components: str,
           grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape) -> None:
-    """Note the components that a card constrains, in the panel's axes, without the rotation about the normal."""
+    """Store the components that a card constrains, in the axes of the panel, without the rotation about the normal."""
     for number in numbers:
         if number not in shape.places:
             continue
         if components.strip("06 ") and grids[number][1].cd and not set("12345") <= set(components):
             raise bulk.error(grids[number][0], f"its CD is {grids[number][1].cd}: components of the {card.name} in "
-                                               f"line {card.line} count in the basic system only; leave CD blank.")
+                                               f"line {card.line} must be in the basic system; leave CD blank.")
         for component in components:
             turns, axis = divmod(int(component) - 1, 3) if component in "123456" else (0, None)
             if axis is not None:
@@ -134,7 +134,7 @@ def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], co
 
 
 def _edges_of(shape: Shape, place: np.ndarray) -> list[int]:
-    """Return the edges that a place lies on."""
+    """Return the edges on which a position lies."""
     return [2 * axis + far for axis in (0, 1) for far, sign in enumerate((-1, 1))
             if abs(sign * place[axis] - shape.lengths[axis] / 2) < 1e-6 * max(shape.lengths)]
 
@@ -142,40 +142,40 @@ def _edges_of(shape: Shape, place: np.ndarray) -> list[int]:
 def _common(bulk: BulkData, held: Held, along: list[int], number: int) -> set[int]:
     """Return the components constrained all along an edge between its corners."""
     if not along:
-        raise bulk.missing(f"the edge {EDGES[number]} has no grid between its corners that shows its support.")
+        raise bulk.missing(f"the edge {EDGES[number]} has no grid between its corners, which would define its support.")
     each = [set(held.get(grid, {})) for grid in along]
     common, somewhere = set.intersection(*each), set.union(*each)
     for component in sorted((somewhere - common) & {3, 4, 5}):
         grid, card = next((grid, held[grid][component]) for grid in along if component in held.get(grid, {}))
         bare = next(grid for grid in along if component not in held.get(grid, {}))
-        raise bulk.error(card, f"it holds grid {grid} on the edge {EDGES[number]}, but grid {bare} there is not held "
-                               "alike: only entire edges can be supported.")
+        raise bulk.error(card, f"it constrains grid {grid} on the edge {EDGES[number]}, but not grid {bare} of that "
+                               "edge: only entire edges can be supported.")
     return common
 
 
 def _card_on(held: Held, on_edges: Mapping[int, list[int]], number: int) -> BulkCard | None:
-    """Return a card that holds an edge, if there is one."""
+    """Return a card that constrains an edge, if there is one."""
     return next((next(iter(held[grid].values())) for grid, edges in on_edges.items() if edges == [number]
                  and held.get(grid)), None)
 
 
 def _kind(components: set[int], number: int, card: BulkCard | None, remarks: Remarks) -> str:
-    """Return the kind of an edge; a simple support holds the rotation along the edge, a clamp the other one too."""
+    """Return the kind of an edge; a simple support constrains the rotation along the edge, a clamp both."""
     along, about_normal = _ROTATIONS[number // 2]
     turns = components & {4, 5}
     if 3 not in components:
         if components and card:
-            raise card.error(f"the edge {EDGES[number]} is held, but not against deflection, component 3: it is "
-                             "neither clamped nor simple nor free. Of a line of symmetry mesh the panel on both sides.")
+            raise card.error(f"the edge {EDGES[number]} is constrained, but not its deflection, component 3: it is "
+                             "neither clamped nor simple nor free. Mesh both sides of a line of symmetry.")
         return "free"
     kind = "clamped" if about_normal in turns else "simple"
     if along not in turns:
-        remarks.edge(EDGES[number], f"{kind}; in the file the rotation along the edge is free, Implam holds it")
+        remarks.edge(EDGES[number], f"{kind}; in the file the rotation along the edge is free, Implam constrains it")
     return kind
 
 
 def _in_plane(kinds: tuple[str, ...], in_plane: list[set[int]]) -> tuple[bool, tuple[tuple[int, int], ...]]:
-    """Return whether the supported edges all hold the panel both ways in its plane, and else edge and component."""
+    """Return whether all supported edges constrain both in-plane components; if not, edge and component of each."""
     supported = [number for number, kind in enumerate(kinds) if kind != "free"]
     if supported and all(in_plane[number] == {1, 2} for number in supported):
         return True, ()
@@ -184,7 +184,7 @@ def _in_plane(kinds: tuple[str, ...], in_plane: list[set[int]]) -> tuple[bool, t
 
 def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common: list[set[int]],
           kinds: Sequence[str], remarks: Remarks) -> list[tuple[BulkCard, int]]:
-    """Return card and grid of in-plane constraints beyond the edges; corners must have those of their edges."""
+    """Return card and grid of in-plane constraints off the edges; corners must have those of their edges."""
     pins = []
     for grid, edges in on_edges.items():
         expected = set().union(*(common[number] for number in edges))
@@ -192,19 +192,19 @@ def _pins(bulk: BulkData, held: Held, on_edges: Mapping[int, list[int]], common:
         missing = expected - set(there)
         if missing & {1, 2, 3}:
             card = _card_on(held, on_edges, edges[0]) or _card_on(held, on_edges, edges[-1])
-            sentence = (f"the corner grid {grid} does not hold component {min(missing)} (in the panel's axes) as its "
-                        "edges do: only entire edges can be supported.")
+            sentence = (f"the corner grid {grid} is not constrained in component {min(missing)} (in the panel's axes) "
+                        "as its edges are: only entire edges can be supported.")
             raise card.error(sentence) if card else bulk.missing(sentence)
         if missing:
             remarks.edge(" and ".join(EDGES[number] for number in edges),
-                         f"the corner grid {grid} turns freely in the file, Implam holds it as its edges")
-        # Implam's supports hold the rotation along the edge, whether or not the file does.
+                         f"rotations of the corner grid {grid} are free in the file, Implam constrains them")
+        # Supports of Implam constrain the rotation along the edge, whether or not the file does.
         expected |= {_ROTATIONS[number // 2][0] for number in edges if kinds[number] != "free"}
         for component, card in there.items():
             if component in expected:
                 continue
             if component > 2:
-                raise bulk.error(card, f"it holds grid {grid}, which is not on an edge supported like that: only "
+                raise bulk.error(card, f"it constrains grid {grid}, which is not on an edge with that constraint: only "
                                        "entire edges can be supported.")
             pins.append((card, grid))
     return pins

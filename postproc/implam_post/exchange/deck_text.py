@@ -1,4 +1,4 @@
-"""A deck of a panel that came from elsewhere."""
+"""Write the deck of an imported panel."""
 
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -10,12 +10,12 @@ from implam_post.exchange.bulk_thermal import Thermal
 from implam_post.laminate.decks import STRENGTHS
 from implam_post.laminate.sections import Material, Ply, natural_shear_correction
 
-# Fewest elements each way of a patch and the plate around it (src/case/deck_extents.f90).
+# Minimum of elements along x and y of a patch and of the plate around it (src/case/deck_extents.f90).
 _BESIDE_PATCH = 3
 
 
 class Impact(NamedTuple):
-    """The impact of the panel and the end of the run; None is left to fill in."""
+    """Impactor, end of the run and time step; None is left for the user to fill in."""
 
     mass: float | None = None
     velocity: float | None = None
@@ -32,7 +32,7 @@ def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: S
 
 
 def number(value: float) -> str:
-    """Return a number with all its digits, in the shortest way."""
+    """Return the shortest text of a number that keeps all its digits."""
     exact = repr(float(value))
     digits = len(exact.replace("-", "").replace(".", "").partition("e")[0].strip("0"))
     mantissa, _, exponent = f"{value:.{max(digits - 1, 0)}e}".partition("e")
@@ -42,11 +42,11 @@ def number(value: float) -> str:
 
 
 def _header(source: str, shape: Shape) -> Iterator[str]:
-    """Return the comments on where the panel comes from."""
+    """Return the comments on the source of the panel and its axes."""
     axes = [("-" if row.sum() < 0 else "") + "xyz"[abs(row).argmax()] for row in shape.axes]
     origin = ", ".join(f"{place:.10g}" for place in shape.origin)
-    yield f"! Panel of {source}. Its origin is the file's point ({origin});"
-    yield f"! x, y and z (from the struck face to the back) run along the file's {', '.join(axes)}."
+    yield f"! Panel of {source}. Its origin is at ({origin}) of the file;"
+    yield f"! x, y and z (from the struck face to the back) are {', '.join(axes)} of the file."
 
 
 def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Iterator[str]:
@@ -62,7 +62,7 @@ def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Itera
 
 
 def _lines(shape: Shape, supports: Supports) -> Iterator[str]:
-    """Return the lines that hold in-plane motion of edges, one way each."""
+    """Return the groups &line that constrain in-plane displacements of edges, one component each."""
     for edge, component in supports.in_plane_lines:
         axis, far = divmod(edge, 2)
         at = number((1 if far else -1) * shape.lengths[axis] / 2)
@@ -102,33 +102,33 @@ def _constants(material: Material) -> Iterator[str]:
 
 def _wrapped(head: str, text: str) -> list[str]:
     """Return a group within the width of a line."""
-    # A blank that does not break keeps the closing slash with the last key.
+    # A non-breaking space keeps the closing slash on the line of the last key.
     lines = textwrap.wrap(f"{head}{text}\u00a0/", 110, subsequent_indent=len(head) * " ", break_long_words=False,
                           break_on_hyphens=False)
     return [line.replace("\u00a0", " ") for line in lines]
 
 
 def _thermal(thermal: Thermal | None) -> Iterator[str]:
-    """Return the group of the temperature, or how to fill it in."""
+    """Return the group of the temperature, or a comment on how to fill it in."""
     if thermal is None:
         return
     if thermal.change is not None:
         yield f"&thermal   delta_T={number(thermal.change)} /"
     elif thermal.reference is not None:
-        yield f"! Free of stress at TREF = {number(thermal.reference)}: &thermal  delta_T=  (temperature less TREF) /"
+        yield f"! Stress-free at TREF = {number(thermal.reference)}: &thermal  delta_T=  (temperature minus TREF) /"
     else:
-        yield "! alpha1 and alpha2 count with &thermal  delta_T= /"
+        yield "! alpha1 and alpha2 are used with &thermal  delta_T= /"
 
 
 def _impact(impact: Impact) -> Iterator[str]:
     """Return the groups of the impact."""
     if impact.radius is None:
-        yield from ("! To strike it, fill in and take away the marks; &mesh then needs patch=, the side of the loaded "
-                    "square,", "! about half the radius.", "! &impactor    mass=  velocity=  radius= /")
+        yield from ("! For an impact, fill in the values and uncomment; &mesh then needs patch=, the side of the",
+                    "! loaded square, about half the radius.", "! &impactor    mass=  velocity=  radius= /")
     else:
         yield (f"&impactor  mass={number(impact.mass)}  velocity={number(impact.velocity)}  "
                f"radius={number(impact.radius)} /")
-    yield "! Left out, the contact is elastic: &indentation  alpha_cr= /"
+    yield "! Without it the contact is elastic: &indentation  alpha_cr= /"
     if impact.end is None or impact.step is None:
         yield "! &time        end=  step= /"
     else:

@@ -1,4 +1,4 @@
-"""Elastic constants that failures leave to a ply, as &ply_damage has it (Table 2 of Li et al. 2002)."""
+"""Degraded elastic constants of a ply after failure, as by &ply_damage (Table 2 of Li et al. 2002)."""
 
 import math
 from dataclasses import dataclass, replace
@@ -12,19 +12,19 @@ MODES = {FIBRE: "fibres", CRACKING: "cracked", CRUSHING: "crushed"}
 
 @dataclass(frozen=True)
 class Degradation:
-    """Divisor of a constant at each mode that affects it, and its floor as a fraction of the undamaged one."""
+    """Divisor of a constant for each mode that affects it, and its lower limit as a fraction of the undamaged value."""
 
     divisor: float = 100.0
     floor: float = 1e-3
 
     def left(self, failures: int, touching: int) -> float:
-        """Return the fraction that is left of a constant; both arguments are sums of modes."""
+        """Return the remaining fraction of a constant; both arguments are sums of modes."""
         return max(self.divisor ** -(failures & touching).bit_count(), self.floor)
 
     def degraded(self, material: Material, failures: int) -> Material:
-        """Return the material once the modes in `failures` have occurred, in whatever order.
+        """Return the material after the modes in `failures`, whose order does not matter.
 
-        Fibre failure takes all constants, cracking E2, nu12 and G12, crushing E2 and nu12.
+        Fibre failure affects all constants, cracking E2, nu12 and G12, crushing E2 and nu12.
         """
         if not failures:
             return material
@@ -37,13 +37,13 @@ class Degradation:
 
 
 def degradation_of(deck: Deck) -> Degradation:
-    """Return the values of &ply_damage; its defaults without the group."""
+    """Return the values of &ply_damage; the defaults if the deck does not have the group."""
     rule = Degradation(deck.number("ply_damage", "d", 100.0), deck.number("ply_damage", "e", 1e-3))
     if not (rule.divisor >= 1 and 0 < rule.floor <= 1 and math.isfinite(rule.divisor)):
-        raise deck.error("ply_damage", "d must be at least 1, e above 0 and at most 1.")
+        raise deck.error("ply_damage", "d must be at least 1, e greater than 0 and at most 1.")
     return rule
 
 
 def failed_modes(failures: int) -> str:
-    """Return the modes in words."""
+    """Return the names of the modes."""
     return " and ".join(word for mode, word in MODES.items() if failures & mode)

@@ -1,4 +1,4 @@
-"""Write a panel with the damage of a run for Nastran (`implam-to-nastran`) or Abaqus (`implam-to-abaqus`)."""
+"""Write a panel with the damage of a run as Nastran (`implam-to-nastran`) or Abaqus input (`implam-to-abaqus`)."""
 
 import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,7 +14,7 @@ from implam_post.io.files import printable
 
 
 def summary(panel: Panel) -> Iterator[str]:
-    """Return the contents of the panel in words."""
+    """Return a summary of the panel as text."""
     cells = len(panel.stacks)
     delaminated = sum(len(stacks) > 1 for stacks in panel.stacks.values())
     failed = sum(any(any(stack.failures) for stack in stacks) for stacks in panel.stacks.values())
@@ -26,7 +26,7 @@ def summary(panel: Panel) -> Iterator[str]:
     if panel.imperfection:
         yield f"initial deflection in the coordinates of the nodes, amplitude {panel.imperfection:g}"
     for group in panel.unwritten:
-        yield f"note: &{group} is not written: add what it holds or loads."
+        yield f"note: &{group} is not written: add its supports or loads."
 
 
 def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]]
@@ -45,11 +45,11 @@ def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, a
 
 def _parser(name: str, what: str) -> CommandParser:
     """Return the parser that both commands share."""
-    parser = CommandParser(name, description=f"Write a panel as {what}: with the failures of its plies and its "
-                           "delaminations from NAME.h5, or as a deck gives it.")
+    parser = CommandParser(name, description=f"Write a panel as {what}: with the ply failures and "
+                           "delaminations of NAME.h5, or with the starters of a deck.")
     parser.add_argument("source", type=Path, metavar="RESULT.h5|DECK.nml", help="results of a run, or a deck")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE",
-                        help="the file written (default: beside the source)")
+                        help="output file (default: in the folder of the source)")
     parser.add_argument("--time", type=finite, metavar="TIME", help="time of the results (default: the last)")
     parser.add_argument("--pressure", type=finite, metavar="VALUE", help="uniform pressure on the struck face, "
                         "positive towards the back (default: that of the deck)")
@@ -58,9 +58,9 @@ def _parser(name: str, what: str) -> CommandParser:
 
 def to_nastran(arguments: Sequence[str] | None = None) -> int:
     """Run implam-to-nastran."""
-    parser = _parser("implam-to-nastran", "Nastran's bulk data")
-    parser.add_argument("--z0", action="store_true", help="place stacks of delaminated cells by Z0 of their PCOMP, for "
-                        "programs that refuse ZOFFS beside a PCOMP")
+    parser = _parser("implam-to-nastran", "Nastran bulk data")
+    parser.add_argument("--z0", action="store_true", help="offset stacks of delaminated cells by Z0 of their PCOMP, "
+                        "for programs that do not accept ZOFFS with a PCOMP")
     return run(lambda options: _command(options, ".bdf", lambda panel, chosen: nastran_deck(
         panel, printable(chosen.source.name), chosen.z0)), parser, arguments)
 
@@ -69,4 +69,4 @@ def to_abaqus(arguments: Sequence[str] | None = None) -> int:
     """Run implam-to-abaqus."""
     return run(lambda options: _command(options, ".inp", lambda panel, chosen: abaqus_input(
         panel, printable(chosen.source.name))),
-               _parser("implam-to-abaqus", "Abaqus' input, which CalculiX reads too"), arguments)
+               _parser("implam-to-abaqus", "Abaqus input, which CalculiX reads too"), arguments)

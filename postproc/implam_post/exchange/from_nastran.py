@@ -1,4 +1,4 @@
-"""Turn the bulk data of a rectangular panel into a deck (`implam-from-nastran FILE.bdf`)."""
+"""Convert the bulk data of a rectangular panel to a deck (`implam-from-nastran FILE.bdf`)."""
 
 import argparse
 import re
@@ -26,12 +26,12 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
             shear_23: float | None = None) -> tuple[str, Remarks]:
     """Return the deck of a panel and remarks on its cards."""
     for card in bulk.named("INCLUDE"):
-        raise bulk.error(card, "it is not followed: put all bulk data into one file.")
+        raise bulk.error(card, "it is not supported: put all bulk data into one file.")
     remarks = Remarks()
     systems, grids = read_systems(bulk), read_grids(bulk)
     shape = read_shape(bulk, systems, grids, struck_last, remarks)
     plies = read_laminate(bulk, shape.properties, remarks, shear_23)
-    # Plies of isotropic materials have no axis: their elements may begin at any corner.
+    # Isotropic plies have no material axis, so the first corner of their elements does not matter.
     angle = 0.0 if all(ply.material.isotropic for ply in plies) else material_angle(bulk, systems, shape)
     plies = _turned(plies, angle, shape.turn)
     thermal = read_thermal(bulk, shape.properties, plies, remarks)
@@ -40,9 +40,8 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
 
 
 def _turned(plies: list[Ply], angle: float, turn: int) -> list[Ply]:
-    """Return the plies from the struck face on, their angles from the panel's x, where the material axis has `angle`.
-
-    `turn` is -1 if the last ply is at the struck face.
+    """Return the plies from the struck face on, with fibre angles from x of the panel; `angle` is that of the material
+    axis, and `turn` is -1 if the last ply is at the struck face.
     """
     if turn > 0 and angle == 0:
         return plies
@@ -51,16 +50,16 @@ def _turned(plies: list[Ply], angle: float, turn: int) -> list[Ply]:
 
 
 def _within(angle: float) -> float:
-    """Return an angle of fibres, which have no sense, above -90 and up to 90 degrees."""
+    """Return a fibre angle in (-90, 90] degrees."""
     return float(f"{90 - (90 - angle) % 180:.10g}")
 
 
 def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
-    """Return the cards that were read, fields of them that were not, and other cards, with their lines."""
+    """Return the cards that were read, remarks on their fields, and the cards that were ignored, with line numbers."""
     lines = [card.line for card in bulk.cards]
     if bulk.first_line > 1:
-        yield f"lines 1-{bulk.first_line - 1}: executive and case control, of which SPC, TEMP and WTMASS count"
-    yield "taken:"
+        yield f"lines 1-{bulk.first_line - 1}: executive and case control; SPC, TEMP and WTMASS are read"
+    yield "read:"
     for name in TAKEN:
         if there := [card.line for card in bulk.named(name)]:
             yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
@@ -70,10 +69,10 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
     elif bulk.mass_factor != 1:
         yield f"  WTMASS   {bulk.mass_factor:g}, in the case control: times RHO"
     texts = remarks.texts(bulk)
-    yield from ["taken in part or otherwise:", *(f"  {text}" for text in texts)] if texts else []
+    yield from ["read in part or with changes:", *(f"  {text}" for text in texts)] if texts else []
     left = [card for card in bulk.cards if card.name not in TAKEN and card not in mass_cards]
     others = list(dict.fromkeys(card.name for card in left))
-    yield "not taken:" if others else "not taken: none"
+    yield "ignored:" if others else "ignored: none"
     for name in others:
         there = [card.line for card in left if card.name == name]
         yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
@@ -83,14 +82,14 @@ def _command(options: argparse.Namespace) -> int:
     """Read, write and report."""
     impact = Impact(options.mass, options.velocity, options.radius, options.end, options.step)
     if len({value is None for value in impact[:3]}) > 1:
-        raise ImplamError("--mass, --velocity and --radius go together.")
+        raise ImplamError("--mass, --velocity and --radius must be given together.")
     if (options.end is None) != (options.step is None):
-        raise ImplamError("--end and --step go together.")
+        raise ImplamError("--end and --step must be given together.")
     output = options.output or options.bulk.with_suffix(".nml")
     if options.output is None and output.exists():
-        raise FileError(f"{output} is already there: name another deck by -o, or this one to replace it.")
+        raise FileError(f"{output} already exists: give another deck by -o, or this one to replace it.")
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # pyNastran's, beside the error that it raises
+        warnings.simplefilter("ignore", UserWarning)  # messages of pyNastran besides the error that it raises
         bulk = read_bulk_data(options.bulk)
         text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
                                 options.struck == "last", options.spc, options.g2z)
@@ -104,17 +103,17 @@ def _command(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
-    parser = CommandParser("implam-from-nastran", description="Turn Nastran's bulk data of a rectangular composite "
-                           "panel into a deck, and report which cards were taken and which were not.")
+    parser = CommandParser("implam-from-nastran", description="Convert Nastran bulk data of a rectangular composite "
+                           "panel to a deck, and report which cards were read and which were ignored.")
     parser.add_argument("bulk", type=Path, metavar="FILE.bdf", help="bulk data, with or without case control")
     parser.add_argument("-o", "--output", type=Path, metavar="DECK.nml", help="the deck (default: FILE.nml)")
     parser.add_argument("--struck", choices=("first", "last"), default="first",
-                        help="ply of the face that is struck, as the property counts them (default: first)")
-    parser.add_argument("--spc", type=int, metavar="SET", help="set of supports (default: that of the case control)")
+                        help="ply at the struck face, in the order of the property (default: first)")
+    parser.add_argument("--spc", type=int, metavar="SET", help="support set (default: that of the case control)")
     parser.add_argument("--g2z", type=positive, metavar="NUMBER",
                         help="transverse shear modulus of the plies whose G2Z is blank")
-    for key, words in (("mass", "mass of the impactor"), ("velocity", "its speed"), ("radius", "radius of its nose"),
-                       ("end", "end of the run"), ("step", "time step")):
+    for key, words in (("mass", "mass of the impactor"), ("velocity", "velocity of the impactor"),
+                       ("radius", "radius of the impactor"), ("end", "end of the run"), ("step", "time step")):
         parser.add_argument(f"--{key}", type=positive, metavar="NUMBER", help=f"{words}, in the file's units")
     return run(_command, parser, arguments)
 

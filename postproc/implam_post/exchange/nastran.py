@@ -1,4 +1,4 @@
-"""A panel as Nastran's bulk data, with the executive and case control of a static analysis."""
+"""A panel as Nastran bulk data, with the executive and case control of a static analysis."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -12,9 +12,9 @@ _SUPPORTS, _LOAD = 1, 1
 
 
 def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[str]:
-    """Return the lines: CQUAD4 by fours, a PCOMP for each section, MAT8 or MAT1, SPC1, PLOAD2 if there is a pressure.
+    """Return the lines: four CQUAD4 per cell, a PCOMP for each section, MAT8 or MAT1, SPC1, and PLOAD2 for a pressure.
 
-    Stacks beside the middle have ZOFFS on their elements, or Z0 on their PCOMP.
+    Stacks away from the mid-plane have ZOFFS on their elements, or Z0 on their PCOMP.
     """
     mesh, sections = shell_mesh(panel, with_middles=True), panel.sections()
     yield from (f"$ {panel.name}: panel from {source}", "$ z points from the struck face to the back; the first ply of "
@@ -50,7 +50,7 @@ def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section], with_z
 
 
 def _property(number: int, section: Section, materials: dict[MaterialState, int], with_z0: bool) -> Iterator[str]:
-    """Return a PCOMP about its own middle, or with the place of its first face if `with_z0`."""
+    """Return a PCOMP about its own mid-plane, or with the z of its bottom surface if `with_z0`."""
     yield f"$ {section.title}"
     plies = [field for layer in section.layers
              for field in (materials[layer.material], layer.thickness, layer.angle, "YES")]
@@ -59,7 +59,7 @@ def _property(number: int, section: Section, materials: dict[MaterialState, int]
 
 
 def _material(number: int, state: MaterialState, material: Material) -> Iterator[str]:
-    """Return a MAT8, or a MAT1 if the deck gave E and nu and nothing failed; strengths only where nothing failed."""
+    """Return a MAT8, or a MAT1 of an undamaged material with E and nu; strengths are written if it is undamaged."""
     yield f"$ {state.name} {state.failed}".rstrip()
     strengths = dict(material.strengths)
     for key in ("Sf", "Sm23"):
@@ -75,14 +75,14 @@ def _material(number: int, state: MaterialState, material: Material) -> Iterator
 
 
 def _supports(mesh: ShellMesh) -> Iterator[str]:
-    """Return the supports, and the rotation about the normal, which has no stiffness in a flat panel."""
+    """Return the supports; they include the rotation about the normal, which has no stiffness in a flat panel."""
     for components, grids in mesh.supports.items():
         yield from card("SPC1", _SUPPORTS, int(components), *grids)
     yield from card("SPC1", _SUPPORTS, 6, 1, "THRU", len(mesh.coordinates))
 
 
 def card(name: str, *fields: Field) -> Iterator[str]:
-    """Return a card in small fields, or in large ones if a number needs them to keep its digits."""
+    """Return a card in small fields, or in large fields if a number needs them to keep its digits."""
     while fields and fields[-1] is None:
         fields = fields[:-1]
     small = all(not isinstance(field, float) or same(field, 8) for field in fields)
@@ -98,7 +98,7 @@ def card(name: str, *fields: Field) -> Iterator[str]:
 
 
 def same(number: float, width: int) -> bool:
-    """Return whether a field of `width` characters keeps a number as it is."""
+    """Return whether a field of `width` characters keeps all digits of a number."""
     mantissa, sign, exponent = re.fullmatch(r"(-?[0-9.]+)([+-]?)([0-9]*)", real(number, width)).groups()
     return float(f"{mantissa}e{sign}{exponent or 0}") == number
 

@@ -1,4 +1,4 @@
-"""The panel for other programs: its cells, the layers of plies in each, its supports."""
+"""The panel for export to other programs: its cells, their sublaminates, its supports."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ Cell = tuple[int, int]
 
 
 class Stack(NamedTuple):
-    """Plies `first` to `last` that hold together, from the struck face down, and the modes each has failed in."""
+    """A sublaminate: plies `first` to `last`, counted from the struck face, and the failure modes of each."""
 
     first: int
     last: int
@@ -22,14 +22,14 @@ class Stack(NamedTuple):
 
 
 class MaterialState(NamedTuple):
-    """A material of the deck after some modes of failure."""
+    """A material of the deck after some failure modes."""
 
     name: str
     failures: int
 
     @property
     def failed(self) -> str:
-        """Failures in words; empty without any."""
+        """Names of the failure modes; empty if undamaged."""
         return failed_modes(self.failures)
 
 
@@ -43,7 +43,7 @@ class Layer(NamedTuple):
 
 @dataclass(frozen=True)
 class Section:
-    """The plies of a stack and the z of its middle, from that of the full laminate downwards."""
+    """The plies of a stack and z of its mid-plane, from that of the full laminate towards the back."""
 
     layers: tuple[Layer, ...]
     middle: float
@@ -56,12 +56,12 @@ class Section:
 
     @property
     def first_face(self) -> float:
-        """The z of the face nearest to the struck one."""
+        """z of the surface nearest to the struck face."""
         return _plain(self.middle - self.thickness / 2, self.thickness)
 
     @property
     def title(self) -> str:
-        """Plies by their numbers and failures."""
+        """Numbers of the plies and their failures, as text."""
         words = [f"plies {self.first} to {self.first + len(self.layers) - 1}"]
         words += [f"{number} {layer.material.failed}" for number, layer in enumerate(self.layers, self.first)
                   if layer.material.failures]
@@ -69,16 +69,16 @@ class Section:
 
 
 def _plain(place: float, thickness: float) -> float:
-    """Return a place without the rounding of sums of thicknesses, or of a zero of a sine."""
+    """Return a coordinate without the round-off of summed thicknesses, or of a zero of a sine."""
     return 0.0 if abs(place) <= 1e-9 * thickness else float(f"{place:.12g}")
 
 
 @dataclass(frozen=True)
 class Panel:
-    """A rectangular panel about its middle in its cells; lines are those between cells, in ascending order.
+    """A rectangular panel, centred at the origin, in cells; `x` and `y` are the lines between cells, ascending.
 
-    `unwritten` names groups of the deck that hold or load the panel and are not exchanged. The panel without stress
-    has an initial deflection in half waves along x and y, with the amplitude `imperfection`.
+    `unwritten` names groups of the deck with supports or loads that are not exported. The stress-free panel has an
+    initial deflection in half waves along x and y, with the amplitude `imperfection`.
     """
 
     name: str
@@ -100,13 +100,13 @@ class Panel:
         return len(self.x) - 1, len(self.y) - 1
 
     def initial_deflection(self, x: float, y: float) -> float:
-        """Return the deflection without stress at a place, towards the back."""
+        """Return the stress-free initial deflection at a position, positive towards the back."""
         waves = [math.sin(count * math.pi * (place - lines[0]) / (lines[-1] - lines[0]))
                  for count, place, lines in zip(self.half_waves, (x, y), (self.x, self.y), strict=True)]
         return _plain(self.imperfection * math.prod(waves), abs(self.imperfection))
 
     def section(self, stack: Stack) -> Section:
-        """Return plies and place of a stack."""
+        """Return the section of a stack."""
         faces = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in self.plies])])
         plies = self.plies[stack.first - 1:stack.last]
         layers = tuple(Layer(MaterialState(ply.material.name, failed), ply.thickness, ply.angle)
@@ -115,7 +115,7 @@ class Panel:
         return Section(layers, _plain(middle, faces[-1]), stack.first)
 
     def sections(self) -> list[Section]:
-        """Return the sections that occur, the most frequent first: the undamaged one, as a rule."""
+        """Return the sections of the panel, the most frequent one first, which usually is the undamaged one."""
         count: dict[Section, int] = {}
         for stacks in self.stacks.values():
             for stack in stacks:
@@ -124,7 +124,7 @@ class Panel:
         return sorted(count, key=lambda section: (-len(section.layers), -count[section], section.first))
 
     def materials(self) -> dict[MaterialState, Material]:
-        """Return the materials that occur, each with its reduced stiffness, undamaged ones first."""
+        """Return the material states of the panel with their elastic constants, undamaged ones first."""
         originals = {ply.material.name: ply.material for ply in self.plies}
         states = {MaterialState(name, 0) for name in originals}
         states |= {layer.material for section in self.sections() for layer in section.layers}
@@ -133,9 +133,9 @@ class Panel:
                 for state in sorted(states, key=lambda state: (state.failures, order.index(state.name)))}
 
     def delaminated(self, cell: Cell) -> frozenset[int]:
-        """Return the delaminated interfaces of a cell, by the ply above each."""
+        """Return the delaminated interfaces of a cell, as numbers of the ply above."""
         return frozenset(stack.last for stack in self.stacks[cell][:-1])
 
     def with_pressure(self, pressure: float | None) -> "Panel":
-        """Return the panel under another pressure; none leaves it as it is."""
+        """Return the panel under another pressure; None keeps the pressure."""
         return self if pressure is None else replace(self, pressure=pressure)

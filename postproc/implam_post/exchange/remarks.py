@@ -1,4 +1,4 @@
-"""Remarks on the cards that were read: fields with another effect, or none."""
+"""Remarks on the cards that were read: fields that are ignored or have another effect in Implam."""
 
 from collections.abc import Mapping
 
@@ -7,10 +7,10 @@ from implam_post.exchange.bulk_data import BulkData, ranges
 
 
 class Remarks:
-    """Remarks on cards, equal ones on several cards as one, and on edges."""
+    """Remarks on cards and edges; equal remarks on several cards are merged."""
 
     def __init__(self) -> None:
-        """Begin with none."""
+        """Begin without remarks."""
         self._lines: dict[tuple[str, str], set[int]] = {}
         self._edges: list[str] = []
 
@@ -22,14 +22,14 @@ class Remarks:
         """Add a remark on an edge."""
         self._edges.append(f"edge {edge}: {sentence}")
 
-    def untaken(self, card: BulkCard, names: Mapping[int, str]) -> None:
-        """Add which of these fields of a card are there, for they are not taken."""
+    def ignored(self, card: BulkCard, names: Mapping[int, str]) -> None:
+        """Add a remark on each of these fields that the card has, as they are ignored."""
         for number, name in names.items():
             if card.given(number):
-                self.add(card, f"{name} is not taken")
+                self.add(card, f"{name} is ignored")
 
     def texts(self, bulk: BulkData) -> list[str]:
-        """Return the remarks in the order of the file, those on edges at the end."""
+        """Return the remarks in the order of the file, then those on edges."""
         everything = [card.line for card in bulk.cards]
         found = [(min(lines), f"{name}, {ranges(lines, everything)}: {sentence}")
                  for (name, sentence), lines in self._lines.items()]

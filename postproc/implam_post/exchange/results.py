@@ -1,4 +1,4 @@
-"""Panels out of results (NAME.h5, with the deck it holds) and out of decks."""
+"""Read panels from results (NAME.h5, which holds the deck) and from decks."""
 
 from pathlib import Path
 
@@ -14,21 +14,21 @@ from implam_post.laminate.decks import plies_of
 from implam_post.laminate.sections import Ply
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
-# Groups that hold or load the panel and have no card of their own.
+# Groups with supports or loads that are not exported.
 _UNWRITTEN = ("support", "line")
 
 
 def read_panel(path: Path, time: float | None = None) -> Panel:
-    """Return the panel of a NAME.h5 at the time nearest to `time` (none: the last), or of a deck as it begins."""
+    """Return the panel of a NAME.h5 at the time nearest to `time` (None: the last), or the initial one of a deck."""
     if path.suffix.lower() == ".h5":
         return _from_results(path, time)
     if time is not None:
-        raise ImplamError("--time goes with a NAME.h5.")
+        raise ImplamError("--time needs a NAME.h5.")
     return _from_deck(read_deck(path))
 
 
 def _from_results(path: Path, time: float | None) -> Panel:
-    """Return the panel in the cells of the run, mirrored if a quarter was modelled."""
+    """Return the panel in the cells of the run, mirrored if the run used symmetry."""
     fields = read_fields(path)
     snapshot = fields.snapshots[-1 if time is None else fields.place(time)]
     with opened(path) as file:
@@ -40,31 +40,31 @@ def _from_results(path: Path, time: float | None) -> Panel:
                             f"&output.")
     plies = plies_of(deck)
     if snapshot.mesh.last_ply.max() != len(plies):
-        raise FileError(f"{path} has {snapshot.mesh.last_ply.max()} plies and its deck {len(plies)}: it is damaged.")
+        raise FileError(f"{path} is damaged: it has {snapshot.mesh.last_ply.max()} plies, but its deck {len(plies)}.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
     stacks = _stacks(snapshot, x, y)
     x, y, stacks = _completed(x, y, stacks, fields.part)
     every_cell = {(column, row) for column in range(len(x) - 1) for row in range(len(y) - 1)}
     if stacks.keys() != every_cell or not all(_is_complete(found, len(plies)) for found in stacks.values()):
-        raise FileError(f"{path} is damaged: its cells do not make a plate of {len(plies)} plies.")
+        raise FileError(f"{path} is damaged: its cells do not form a plate of {len(plies)} plies.")
     return _panel(deck, plies, x, y, stacks)
 
 
 def _is_complete(stacks: tuple[Stack, ...], plies: int) -> bool:
-    """Return whether stacks have every ply once, from the struck face down."""
+    """Return whether stacks have every ply once, from the struck face to the back."""
     ends = [0, *(stack.last for stack in stacks)]
     return ends[-1] == plies and all(stack.first == above + 1 and len(stack.failures) == stack.last - above
                                      for above, stack in zip(ends, stacks, strict=False))
 
 
 def _lines(coordinates: np.ndarray) -> np.ndarray:
-    """Return the coordinates that differ by more than rounding, in ascending order."""
+    """Return the coordinates that differ by more than round-off, in ascending order."""
     ordered = np.sort(coordinates.ravel())
     return ordered[np.concatenate([[True], np.diff(ordered) > 1e-9 * np.ptp(ordered)])]
 
 
 def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray) -> dict[Cell, tuple[Stack, ...]]:
-    """Return the stacks of each cell: its layers, joined where their interface holds."""
+    """Return the stacks of each cell: its layers, joined where the interface between them is intact."""
     mesh = snapshot.mesh
     low = mesh.corners.min(axis=1)
     places = [np.argmin(np.abs(lines - low[:, axis, None]), axis=1) for axis, lines in enumerate((x, y))]
@@ -100,11 +100,11 @@ def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...
 
 
 def _from_deck(deck: Deck) -> Panel:
-    """Return the panel in equal cells, as many as the deck's elements on the full plate, with its starters."""
+    """Return the panel with the starters of a deck, in equal cells, as many as the full plate has elements."""
     plies = plies_of(deck)
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
-        raise deck.error("mesh", "elements needs two integers greater than zero.")
+        raise deck.error("mesh", "elements must be two integers greater than zero.")
     part = deck.choice("plate", "symmetry", ("none", *list(IMAGES)[1:]))
     parts = (1 if part in ("none", "half_y") else 2, 2 if part in ("quarter", "half_y") else 1)
     x, y = (np.linspace(-length / 2, length / 2, factor * int(count) + 1)
@@ -122,14 +122,14 @@ def _from_deck(deck: Deck) -> Panel:
 def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
     """Combine the panel with supports and load of the deck."""
     if "elastic" in deck.edges():
-        raise deck.error("plate", "edges = 'elastic' cannot be written: give other edges, and add springs there.")
+        raise deck.error("plate", "edges = 'elastic' cannot be exported: give other edges, and add springs there.")
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
-        raise deck.error("plate", f"edges = '{unknown[0]}' is none of clamped, simple, free.")
+        raise deck.error("plate", f"edges = '{unknown[0]}' is not one of clamped, simple, free.")
     fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"
     half_waves = deck.numbers("plate", "half_waves") or [1, 1]
     if len(half_waves) != 2 or min(half_waves) < 1 or any(count % 1 for count in half_waves):
-        raise deck.error("plate", "half_waves needs two integers greater than zero.")
-    # Linear strains do not contain the initial deflection.
+        raise deck.error("plate", "half_waves must be two integers greater than zero.")
+    # Linear strains do not depend on the initial deflection.
     is_deep = deck.choice("case", "kinematics", ("von_karman", "linear")) == "von_karman"
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
     return Panel(deck.name, plies, x, y, stacks, deck.edges(), fixed, degradation_of(deck),

@@ -1,4 +1,4 @@
-"""Grids and elements of a panel: one grid where plies are joined, coincident grids where they have delaminated."""
+"""Grids and elements of a panel; sublaminates have coincident grids where they are delaminated."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -7,7 +7,7 @@ import numpy as np
 
 from implam_post.exchange.panel import Cell, Panel, Stack
 
-# Places of the corners and sides of a cell in its 3 by 3 nodes: counter-clockwise, the sides after the corners.
+# Corners, then mid-sides of a cell in its 3 by 3 nodes, counter-clockwise.
 EIGHT = ((0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1))
 Place = tuple[int, int]
 
@@ -20,21 +20,21 @@ class Element(NamedTuple):
 
     @property
     def eight(self) -> list[int]:
-        """Corners and sides, counter-clockwise from the corner of least x and y."""
+        """Corners, then mid-sides, counter-clockwise from the corner of least x and y."""
         return [self.grids[i][j] for i, j in EIGHT]
 
     @property
     def quarters(self) -> list[list[int]]:
-        """Corners of the four quadrilaterals that make up the cell, each as `eight` has them."""
+        """Corners of the four quadrilaterals of the cell, in the order of `eight`."""
         return [[self.grids[i][j], self.grids[i + 1][j], self.grids[i + 1][j + 1], self.grids[i][j + 1]]
                 for j in (0, 1) for i in (0, 1)]
 
 
 @dataclass(frozen=True)
 class ShellMesh:
-    """Grids by their numbers from 1, elements of the struck face first, and the grids that share each support.
+    """Grids numbered from 1, elements (those at the struck face first), and the grids with each support.
 
-    Supports are digits of the components held: 1 to 3 along x, y and z, 4 to 6 about them.
+    Supports are the digits of the constrained components: 1 to 3 along x, y and z, 4 to 6 about them.
     """
 
     coordinates: np.ndarray
@@ -53,9 +53,9 @@ def shell_mesh(panel: Panel, with_middles: bool) -> ShellMesh:
 
 
 def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, int]], list[tuple[float, float, float]]]:
-    """Return the grid that each first ply of a stack has at each place, and the coordinates of the grids.
+    """Return for each place and each first ply of a stack its grid, and the coordinates of the grids.
 
-    At the edge of a delamination, where some cell around still holds together, so does the grid.
+    At the border of a delamination, next to an intact cell, the sublaminates share one grid.
     """
     x, y = (_halved(lines) for lines in (panel.x, panel.y))
     numbers: dict[Place, dict[int, int]] = {}
@@ -73,21 +73,21 @@ def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, i
 
 
 def _halved(lines: np.ndarray) -> np.ndarray:
-    """Return the lines with one in the middle between each two."""
+    """Return the lines and the midpoints between neighbouring lines."""
     halved = np.empty(2 * len(lines) - 1)
     halved[::2], halved[1::2] = lines, (lines[1:] + lines[:-1]) / 2
     return halved
 
 
 def _around(panel: Panel, i: int, j: int) -> list[Cell]:
-    """Return the cells that a place belongs to."""
+    """Return the cells that share a place."""
     columns, rows = ([place for place in {(line - 1) // 2, line // 2} if 0 <= place < count]
                      for line, count in zip((i, j), panel.cells, strict=True))
     return [(column, row) for column in columns for row in rows]
 
 
 def _element(cell: Cell, stack: Stack, numbers: dict[Place, dict[int, int]]) -> Element:
-    """Return the element of a stack: at each place the lowest grid that is not below the stack's top; 0 if none."""
+    """Return the element of a stack: at each place the grid of the greatest first ply up to its own; 0 if none."""
     def grid(place: Place) -> int:
         at = numbers.get(place, {})
         return at[max(first for first in at if first <= stack.first)] if at else 0
@@ -116,9 +116,9 @@ def _supports(panel: Panel, numbers: dict[Place, dict[int, int]]) -> dict[str, l
 
 
 def held_by_edge(edge: str, axis: int, in_plane_fixed: bool) -> str:
-    """Return the components that an edge holds whose normal is x (`axis` 0) or y (1).
+    """Return the components constrained at an edge whose normal is x (`axis` 0) or y (1).
 
-    A simple support holds the rotation of the normal along the edge, which turns about the edge's own normal.
+    A simple support constrains the rotation of the director along the edge, whose axis is the normal of the edge.
     """
     if edge == "free":
         return ""

@@ -1,4 +1,4 @@
-"""Cells of a panel that are delaminated before the run, by the starters of its deck, as the solver takes them."""
+"""Cells of a panel that are delaminated by the starters of its deck, chosen as in the solver."""
 
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
@@ -11,11 +11,11 @@ from implam_post.laminate.sections import Ply
 
 # Keys of a front; without a law, one of them makes the interface a front (src/delamination/delamination_deck.f90).
 _FRONT_KEYS = ("energy_release", "growth", "tie", "penalty", "unloading", "smoothing", "contact_exponent")
-# Strengths of a cohesive law, and those of the adjacent plies that are taken for them.
+# Strengths of a cohesive law, and those of the adjacent plies that are their defaults.
 _STRENGTHS = {"strength_opening": "YT", "strength_shear": "S12"}
-# Part of the plate that the starter of a front covers by default.
+# Fraction of the plate area that the starter of a front covers by default.
 _DEFAULT_PART = 0.0005
-# Degrees by which the fibres of adjacent plies differ at least where an interface is.
+# Smallest difference of fibre angles, degrees, between plies that have an interface.
 _SAME_ANGLE = 1e-6
 
 
@@ -23,7 +23,7 @@ def starters_of(deck: Deck, plies: Sequence[Ply], x: np.ndarray, y: np.ndarray, 
                 ) -> list[tuple[int, np.ndarray]]:
     """Return for each starter the ply above it and its cells, (columns, rows), of the full plate.
 
-    Lines x and y are those between the cells; `images` are the signs of x and y under the symmetry of the deck.
+    `x` and `y` are the lines between cells; `images` are the signs of x and y under the symmetry of the deck.
     """
     found = []
     struck = _pair(deck, deck.groups.get("impactor", [{}])[0], "impactor", "at")
@@ -36,7 +36,7 @@ def starters_of(deck: Deck, plies: Sequence[Ply], x: np.ndarray, y: np.ndarray, 
 
 
 def _interfaces(deck: Deck, group: Group, plies: Sequence[Ply]) -> Iterator[int]:
-    """Give the plies above the interfaces of a group."""
+    """Yield the plies above the interfaces of a group."""
     named = group.get("below_ply", [0.0])
     if str(named[0]).lower() in ("all", "between_angles"):
         named = [float(place) for place, (above, below) in enumerate(itertools.pairwise(plies), start=1)
@@ -45,12 +45,12 @@ def _interfaces(deck: Deck, group: Group, plies: Sequence[Ply]) -> Iterator[int]
     for value in named:
         below_ply = as_number(value, f"{deck.path.name}: &delamination below_ply")
         if below_ply not in range(1, len(plies)):
-            raise deck.error("delamination", f"below_ply needs integers from 1 to {len(plies) - 1}.")
+            raise deck.error("delamination", f"below_ply must be integers from 1 to {len(plies) - 1}.")
         yield int(below_ply)
 
 
 def _is_front(group: Group, beside: Sequence[Ply]) -> bool:
-    """Return whether a front delaminates the interface between two plies, rather than a cohesive law."""
+    """Return whether the interface between two plies delaminates by a front rather than a cohesive law."""
     if "law" in group:
         return str(group["law"][0]).lower() == "front"
     return any(key in group for key in _FRONT_KEYS) or not all(
@@ -59,7 +59,7 @@ def _is_front(group: Group, beside: Sequence[Ply]) -> bool:
 
 
 def _cells(deck: Deck, group: Group, is_front: bool, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the cells of a starter, (columns, rows); lines are from the struck point."""
+    """Return the cells of a starter, (columns, rows); `x` and `y` are measured from the struck point."""
     if "starter_strip" in group:
         first, last = _pair(deck, group, "delamination", "starter_strip")
         _, width = _pair(deck, group, "delamination", "zone", (np.inf, np.inf))
@@ -77,7 +77,7 @@ def _cells(deck: Deck, group: Group, is_front: bool, x: np.ndarray, y: np.ndarra
 
 
 def _middles(lines: np.ndarray) -> np.ndarray:
-    """Return the middles between lines."""
+    """Return the midpoints between lines."""
     return (lines[1:] + lines[:-1]) / 2
 
 
@@ -88,7 +88,7 @@ def _touching(lines: np.ndarray) -> np.ndarray:
 
 
 def _within(lines: np.ndarray, extent: float) -> np.ndarray:
-    """Return which cells have their middle within an extent about 0, its border left out, or touch 0."""
+    """Return which cells have their centre within an extent about 0, border excluded, or touch 0."""
     return (2 * np.abs(_middles(lines)) < extent - 1e-9 * np.ptp(lines)) | _touching(lines)
 
 

@@ -1,3 +1,3 @@
-"""Files of the program and what they hold: decks as text and by key, histories, fields, summaries and logs; how the
-program is started; and single figures taken from a run, such as peak force or the extent of the damage. Every other
-package may use this one; it uses none."""
+"""Files of the program: decks as text and by key, histories, fields, summaries and logs; starting the program; and
+single figures of a run, such as peak force or the extent of the damage. All other packages may import this one, which
+imports none of them."""

@@ -1,4 +1,4 @@
-"""Figures of a plate under compression, as after an impact, from its summary and its history."""
+"""Figures of a plate under compression, such as compression after impact, from its summary and its history."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,29 +12,29 @@ from implam_post.io.run import read_summary
 from implam_post.io.summary_shape import ACROSS
 
 STRENGTH, STRESS = "residual_strength", "far_field_stress"
-# The plate has failed once the stress falls below this part of its maximum beyond this nominal strain, as in the
-# summary: the halves of a failed plate vibrate, and press on its ends with more than it bore.
+# The plate has failed once the stress falls below this fraction of its maximum at a nominal strain above this one, as
+# in the summary. Later maxima are ignored: the halves of a failed plate vibrate with a load above its strength.
 _FAILED, _FAILED_BEYOND = 0.7, 1e-3
-# Part of the strength from which on the motion has to be slow: below it the work is too small to hold anything against.
+# Fraction of the strength from which on the motion has to be slow: below it the work is too small as a reference.
 _FROM = 0.1
 
 
 class Across(NamedTuple):
-    """What went across the width: plies above interfaces that delaminated, plies whose fibres broke."""
+    """Failures across the width: plies above delaminated interfaces, plies with fibre failure."""
 
     interfaces: list[int]
     plies: list[int]
 
 
 def row_of_strength(history: History) -> int:
-    """Return the row with the largest stress up to the failure of the plate."""
+    """Return the row of the largest stress up to the failure of the plate."""
     stress = history[STRESS]
     failed = (stress < _FAILED * np.maximum.accumulate(stress)) & (history["nominal_strain"] > _FAILED_BEYOND)
     return int(np.argmax(stress[:int(np.argmax(failed)) + 1] if np.any(failed) else stress))
 
 
 def kinetic_share(history: History) -> float:
-    """Return the largest kinetic energy over the work done, from a tenth of the strength to the strength."""
+    """Return the largest ratio of kinetic energy to external work, from a tenth of the strength to the strength."""
     stress, top = history[STRESS], row_of_strength(history)
     low = np.flatnonzero(stress[:top + 1] < _FROM * stress[top])
     rows = slice(int(low[-1]) + 1 if len(low) else 0, top + 1)
@@ -43,15 +43,15 @@ def kinetic_share(history: History) -> float:
 
 
 def strength_of(path: Path) -> float:
-    """Return the strength that the summary of another run has."""
+    """Return the residual strength in the summary of another run."""
     summary = read_summary(path)
     if STRENGTH not in summary:
-        raise FileError(f"{path} has no {STRENGTH}: no lines press ends of that plate together.")
+        raise FileError(f"{path} has no {STRENGTH}: no &line compresses that plate.")
     return float(summary[STRENGTH])
 
 
 def failed_across_width(summary: Mapping[str, Any]) -> Across:
-    """Return what has failed across the width under the load."""
+    """Return the interfaces and plies that failed across the width under the load."""
     collapse = summary.get("collapse", {})
     return Across([entry["ply_above"] for entry in collapse.get("interfaces", []) if entry[ACROSS]],
                   [entry["ply"] for entry in collapse.get("fibres", []) if entry[ACROSS]])

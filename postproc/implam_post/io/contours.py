@@ -1,26 +1,26 @@
-"""Smooth regions of plates: where a field over the nine points of elements reaches a level, as polygons.
+"""Regions of plates where a field, given at the nine points of elements, is above a level, as polygons.
 
-An element is cut into eight triangles, its field taken as linear in each, so that outlines are no stairs of elements.
-The level is chosen so that the region has a given area: that which a cohesive law has dissipated is the integral of the
-share, which lies between the area of all that is damaged and that of all that has failed.
+The field is linear in each of eight triangles per element, so that outlines are smooth. The level is chosen so that the
+region has a given area. For a cohesive law this area is the integral of the share of the toughness that is dissipated;
+it lies between the failed and the damaged area.
 """
 
 import numpy as np
 
-# Simpson's weights of corners, sides and middle: parts of an element's area that belong to its points.
+# Simpson weights of corners, mid-sides and centre, as fractions of the area of an element.
 WEIGHTS = np.array([1, 1, 1, 1, 4, 4, 4, 4, 16]) / 36
-# Triangles of an element: corner, side, middle, counter-clockwise; diagonals meet in the middle, so images agree.
+# Triangles of an element: corner, mid-side, centre, counter-clockwise; they are symmetric, so that mirror images agree.
 _TRIANGLES = np.array([three for corner in range(4) for three in ((corner, 4 + corner, 8),
                                                                   (corner, 8, 4 + (corner + 3) % 4))])
 _QUADS = np.array([(corner, 4 + corner, 8, 4 + (corner + 3) % 4) for corner in range(4)])
-# Halvings of the level: beyond rounding of the shares, which lie between 0 and 1.
+# Bisections of the level, which is between 0 and 1: enough for round-off accuracy.
 _HALVINGS = 50
-# Places differ by more than this part of the largest coordinate: images agree but for rounding.
+# Points coincide within this fraction of the largest coordinate: mirror images differ by round-off.
 GRAIN = 1e-7
 
 
 def area(cells: np.ndarray) -> float:
-    """Return the area of cells in plan."""
+    """Return the total area of cells in plan."""
     return float(np.sum(areas(cells)))
 
 
@@ -31,18 +31,18 @@ def areas(cells: np.ndarray) -> np.ndarray:
 
 
 def nine_points(corners: np.ndarray) -> np.ndarray:
-    """Return corners, sides and middle of elements with straight edges, (elements, 9, 2)."""
+    """Return corners, mid-sides and centre of elements with straight edges, (elements, 9, 2)."""
     sides = (corners + np.roll(corners, -1, axis=1)) / 2
     return np.concatenate([corners, sides, corners.mean(axis=1, keepdims=True)], axis=1)
 
 
 def region(corners: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """Return polygons, (polygons, 4, 2), where shares, (elements, 9), are largest; their area is the integral."""
+    """Return polygons, (polygons, 4, 2), of the largest shares, (elements, 9), with an area equal to their integral."""
     return above(corners, shares, level_of(corners, shares))
 
 
 def level_of(corners: np.ndarray, shares: np.ndarray) -> float:
-    """Return the level above which shares lie in an area that is their integral; infinity if they are nothing."""
+    """Return the level for which the area of larger shares equals the integral of shares; infinity if all are zero."""
     reached = shares.max(axis=1, initial=0) > 0
     corners, shares = corners[reached], shares[reached]
     if not len(corners):
@@ -54,19 +54,19 @@ def level_of(corners: np.ndarray, shares: np.ndarray) -> float:
     for _ in range(_HALVINGS):
         level = (low + high) / 2
         low, high = (level, high) if np.sum(triangles * _part_above(values, level)) >= content else (low, level)
-    # Where shares are even over elements the area has steps: the nearer one is taken.
+    # The area is discontinuous at a level where shares are uniform over elements: the nearer value is chosen.
     beyond = [abs(np.sum(triangles * _part_above(values, level)) - content) for level in (low, high)]
     return low if beyond[0] <= beyond[1] else high
 
 
 def above(corners: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
-    """Return polygons, (polygons, 4, 2), where shares, (elements, 9), reach a level."""
+    """Return polygons, (polygons, 4, 2), where shares, (elements, 9), are at least a level."""
     reached = shares.max(axis=1, initial=0) >= level
     return _cut(nine_points(corners[reached]), shares[reached], level)
 
 
 def _part_above(values: np.ndarray, level: float) -> np.ndarray:
-    """Return the part of each triangle where a linear field is at least a level; its values at the corners ascend."""
+    """Return the fraction of each triangle where a linear field, with ascending corner values, is at least a level."""
     least, middle, most = values.T
     with np.errstate(divide="ignore", invalid="ignore"):
         below = (level - least)**2 / ((middle - least) * (most - least))
@@ -75,7 +75,7 @@ def _part_above(values: np.ndarray, level: float) -> np.ndarray:
 
 
 def _cut(points: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
-    """Return the parts of the elements above a level: quarters of entire ones, parts of the triangles of others."""
+    """Return the parts of elements above a level: quarters of elements entirely above, parts of triangles of others."""
     entire = np.all(shares >= level, axis=1)
     quarters = points[entire][:, _QUADS].reshape(-1, 4, 2)
     triangles, values = points[~entire][:, _TRIANGLES].reshape(-1, 3, 2), shares[~entire][:, _TRIANGLES].reshape(-1, 3)
@@ -83,7 +83,7 @@ def _cut(points: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
     pieces = [quarters]
     for count in (1, 2, 3):
         chosen = inside.sum(axis=1) == count
-        # The corner that differs from the other two comes first.
+        # The corner on the other side of the level than the other two comes first.
         odd = np.argmax(inside[chosen] if count == 1 else ~inside[chosen], axis=1) if count < 3 else 0
         order = (np.reshape(odd, (-1, 1)) + np.arange(3)) % 3
         (first, second, third), (a, b, c) = (np.moveaxis(np.take_along_axis(
@@ -99,7 +99,7 @@ def _cut(points: np.ndarray, shares: np.ndarray, level: float) -> np.ndarray:
 
 
 def outline(cells: np.ndarray) -> np.ndarray:
-    """Return the edges around cells, (edges, 2 ends, 2), cells on their left; those between cells cancel."""
+    """Return the boundary edges of cells, (edges, 2 ends, 2), with the cells on their left; inner edges cancel."""
     if not len(cells):
         return np.empty((0, 2, 2))
     edges = np.stack([cells, np.roll(cells, -1, axis=1)], axis=2).reshape(-1, 2, 2)

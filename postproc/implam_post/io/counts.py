@@ -1,6 +1,6 @@
-"""Numbers with the nouns of what they count."""
+"""Numbers with nouns in the singular or plural."""
 
 
 def counted(number: int, noun: str, plural: str | None = None) -> str:
-    """Return a number and its noun, in the plural unless the number is 1; without `plural` that ends with s."""
+    """Return a number with its noun, in the plural unless the number is 1; the default plural ends with s."""
     return f"{number} {noun if number == 1 else plural or noun + 's'}"

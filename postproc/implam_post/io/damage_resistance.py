@@ -1,4 +1,4 @@
-"""What ASTM D7136 requires to be reported of an impact: threshold force, energies, size and type of the damage."""
+"""The figures of an impact that ASTM D7136 requires: threshold force, energies, size and type of the damage."""
 
 import math
 from collections.abc import Mapping
@@ -12,25 +12,25 @@ from implam_post.io.fields import Fields, struck_point
 from implam_post.io.history import History
 from implam_post.io.quantities import impact_energy, peak
 
-# Corner frequency, Hz, of the low-pass filter of the force: the least natural frequency that ASTM D7136 lets
-# a load cell with its impactor have. A deck's own force_filter goes before it.
+# Corner frequency, Hz, of the low-pass filter of the force: the lowest natural frequency of load cell and impactor that
+# ASTM D7136 permits. The force_filter of a deck replaces it.
 CORNER = 6e3
-# A fall counts from this part of the force on, and if plies and interfaces took at least this part of what the fall
-# releases with the impactor fixed, F w/2. On panels of 6.5, 10 and 25 J falls by vibration have up to .04 of it, those
-# in which plies and interfaces break from .18 on.
+# Thresholds for a drop by damage: the drop over the force, and the energy dissipated by plies and interfaces over the
+# energy F w/2 that a drop F releases at fixed displacement w. In panels impacted with 6.5, 10 and 25 J the latter ratio
+# is up to .04 for drops by vibration and at least .18 for drops in which plies and interfaces fail.
 _MIN_FORCE_DROP, _MIN_ENERGY_RATIO = 0.02, 0.1
-# Delay of the low pass, in radians at its corner.
+# Delay of the filter, in radians at the corner frequency.
 _DELAY = 2.6
-# Steps of the filter in a period of its corner, and the fewest rows of the history in one.
+# Time steps of the filter per period of the corner frequency, and the required rows of the history per period.
 _STEPS, _FEWEST_ROWS = 20, 4
 _DISSIPATED = ("energy_delamination", "energy_ply_damage")
-# Directions along which the damage is measured, degrees.
+# Directions in which the extent of the damage is measured, degrees.
 DIRECTIONS = (0, 45, 90, -45)
 
 
 @dataclass(frozen=True)
 class Threshold:
-    """Where the force curve first drops by damage: force behind the low pass, its time, energy transferred by then."""
+    """First drop of the force by damage: filtered force, time, energy transferred until then, corner frequency."""
 
     force: float
     time: float
@@ -40,8 +40,8 @@ class Threshold:
 
 @dataclass(frozen=True)
 class Extent:
-    """Size of the projected damage: its largest diameter with the direction of that in degrees, its lengths along x
-    and y, and what lies between its outermost points on lines through the struck point, by direction."""
+    """Size of the projected damage: largest diameter and its direction in degrees, lengths along x and y, and the
+    distance of its outermost points on lines through the struck point, by direction."""
 
     diameter: float
     direction: float
@@ -51,7 +51,7 @@ class Extent:
 
 
 def low_pass(time: np.ndarray, values: np.ndarray, corner: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return even times and what a causal Butterworth low pass of 4th order leaves of values that begin with zero."""
+    """Return equally spaced times and values after a causal 4th-order Butterworth low-pass filter, from zero on."""
     from scipy.signal import butter, sosfilt
 
     step = min(1 / (_STEPS * corner), float(np.min(np.diff(time), initial=np.inf)))
@@ -61,28 +61,28 @@ def low_pass(time: np.ndarray, values: np.ndarray, corner: float) -> tuple[np.nd
 
 
 def threshold(history: History, corner: float) -> Threshold | None:
-    """Return where the force first drops by damage while the impactor moves towards the plate; None if never.
+    """Return the first drop of the force by damage while the impactor moves towards the plate; None if there is none.
 
-    The force is that behind a low pass with this corner frequency. It drops if it falls by 2 % before it is regained,
-    and if plies and interfaces take a tenth at least of F w/2, F being the fall and w the displacement: that is what
-    a loss of stiffness releases at fixed displacement, and what the plate's vibration does not take.
+    The force is low-pass filtered with this corner frequency. A drop by damage is at least 2 % of the force, and plies
+    and interfaces dissipate at least a tenth of F w/2 in it, where F is the drop and w the displacement. A loss of
+    stiffness releases F w/2 at fixed displacement; in a drop by vibration little is dissipated.
     """
     time, w = history.time, history["impactor_displacement"]
     if not np.any(w) or not np.any(history["force"]) or len(time) < _FEWEST_ROWS * time[-1] * corner:
         return None
     even, force = low_pass(time, history["force"], corner)
     delay = _DELAY / (2 * math.pi * corner)
-    taken = np.interp(even - delay, time, sum(history[name] for name in _DISSIPATED))
-    displaced = np.interp(even - delay, time, w)
+    dissipated = np.interp(even - delay, time, sum(history[name] for name in _DISSIPATED))
+    displacement = np.interp(even - delay, time, w)
     last = int(np.searchsorted(even, time[np.argmax(w)] + delay))
     place = 0
     while place < last:
         ahead = np.flatnonzero(force[place + 1:last + 1] >= force[place])
         after = place + 1 + int(ahead[0]) if len(ahead) else last
         lowest = place + int(np.argmin(force[place:after + 1]))
-        fall = force[place] - force[lowest]
-        if fall >= _MIN_FORCE_DROP * force[place] > 0 and (
-                taken[lowest] - taken[place] >= _MIN_ENERGY_RATIO * fall * displaced[place] / 2):
+        drop = force[place] - force[lowest]
+        if drop >= _MIN_FORCE_DROP * force[place] > 0 and (
+                dissipated[lowest] - dissipated[place] >= _MIN_ENERGY_RATIO * drop * displacement[place] / 2):
             at = float(even[place])
             return Threshold(float(force[place]), at, energy_transferred(history, at - delay), corner)
         place = after
@@ -90,17 +90,17 @@ def threshold(history: History, corner: float) -> Threshold | None:
 
 
 def energy_transferred(history: History, time: float) -> float:
-    """Return the energy that the impactor has given to the plate by a time."""
+    """Return the energy transferred from the impactor to the plate until a time."""
     return impact_energy(history) - history.at("energy_impactor", max(time, float(history.time[0])))
 
 
 def energy_to_peak(history: History) -> float:
-    """Return the energy that the impactor has given to the plate when its force is largest."""
+    """Return the energy transferred from the impactor to the plate until the peak force."""
     return energy_transferred(history, peak(history, "force").time)
 
 
 def extent(fields: Fields) -> Extent | None:
-    """Return the size of what a C-scan sees at the last time; None if it sees nothing."""
+    """Return the size of the projected (C-scan) damage at the last time; None without damage."""
     cells = fields.projected(len(fields.snapshots) - 1)
     if not len(cells):
         return None
@@ -113,10 +113,10 @@ def extent(fields: Fields) -> Extent | None:
 
 
 def _widest(points: np.ndarray) -> tuple[float, float]:
-    """Return the largest distance of two points, and the direction from one to the other, -90 < degrees <= 90."""
+    """Return the largest distance of two points, and the direction of their line, -90 < degrees <= 90."""
     angles = np.radians(np.arange(0, 180, 0.5))
     reach = points @ np.stack([np.cos(angles), np.sin(angles)])
-    # Only points that lie outermost in some direction can be ends of the largest diameter.
+    # Only points of the convex hull can be ends of the largest diameter.
     outer = np.unique(points[np.concatenate([np.argmax(reach, axis=0), np.argmin(reach, axis=0)])], axis=0)
     distances = outer[:, None] - outer[None]
     lengths = np.hypot(*np.moveaxis(distances, -1, 0))
@@ -126,7 +126,7 @@ def _widest(points: np.ndarray) -> tuple[float, float]:
 
 
 def _between_outermost(edges: np.ndarray, angle: float) -> float:
-    """Return the length between the outermost points of edges on a line through the origin; 0 if none meets it."""
+    """Return the distance of the outermost intersections of edges with a line through the origin; 0 without any."""
     along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
     heights, places = edges @ across, edges @ along
     met = (heights[:, 0] >= 0) != (heights[:, 1] >= 0)
@@ -138,13 +138,13 @@ def _between_outermost(edges: np.ndarray, angle: float) -> float:
 
 
 def kinds_of_damage(summary: Mapping[str, Any]) -> list[str]:
-    """Return the kinds of damage that a run ends with, each with where it is."""
+    """Return the kinds of damage at the end of a run, each with its interfaces or plies."""
     kinds = []
     grown = [entry["ply_above"] for entry in summary.get("interfaces", []) if entry["first_growth"]]
     if grown:
         kinds.append(f"delamination below {_listed(grown)}")
-    for name, key in (("matrix cracks", "matrix_crack_area"), ("crushed matrix", "matrix_crushing_area"),
-                      ("failed fibres", "fibre_failure_area")):
+    for name, key in (("matrix cracks", "matrix_crack_area"), ("matrix crushing", "matrix_crushing_area"),
+                      ("fibre failure", "fibre_failure_area")):
         plies = [ply["ply"] for ply in summary["plies"] if ply.get(key, 0) > 0]
         if plies:
             kinds.append(f"{name} in {_listed(plies)}")
@@ -152,7 +152,7 @@ def kinds_of_damage(summary: Mapping[str, Any]) -> list[str]:
 
 
 def _listed(plies: list[int]) -> str:
-    """Return numbers of plies, runs of them in short."""
+    """Return numbers of plies as text, consecutive ones as ranges."""
     runs: list[list[int]] = []
     for ply in sorted(plies):
         if runs and ply == runs[-1][-1] + 1:

@@ -1,4 +1,4 @@
-"""The deck: its groups, and the values of their keys with their defaults."""
+"""The deck: its groups, and the values of their keys or defaults."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -14,13 +14,13 @@ from implam_post.io.units import SYSTEMS, system_of
 
 
 class Deck:
-    """The groups of a deck, with its defaults filled in."""
+    """The groups of a deck; methods return values of keys or defaults."""
 
     def __init__(self, text: str, path: Path, adopted: str | None = None) -> None:
         """Read the groups from `text`; `path` names the deck in messages.
 
-        `adopted` lists values that published materials gave in a run, a line each: &material 1 E1 = 130e9 [source];
-        None: the deck is none of a run.
+        `adopted` lists the values of published materials in a run, one per line: &material 1 E1 = 130e9 [source];
+        None: the deck does not come from a run.
         """
         self.path, self.has_adopted = path, adopted is not None
         self.groups = read_namelist(text, path.name)
@@ -30,7 +30,7 @@ class Deck:
 
     @property
     def name(self) -> str:
-        """Name of the case, from which those of the results are made."""
+        """Name of the case, with which the names of the results begin."""
         return str(self.value("case", "name", self.path.stem))
 
     @property
@@ -43,37 +43,37 @@ class Deck:
         return group.lower() in self.groups
 
     def values(self, group: str, key: str) -> list[Value]:
-        """Return all values of a key; empty if the deck does not give it."""
+        """Return all values of a key; empty if the deck does not have it."""
         found = self.groups.get(group.lower(), [])
         if len(found) > 1:
-            raise self.error(group, "stands in the deck more than once.")
+            raise self.error(group, "is given more than once.")
         return found[0].get(key.lower(), []) if found else []
 
     def value(self, group: str, key: str, default: Value | None = None) -> Value:
-        """Return the value of a key, or `default` if the deck does not give it; no default means it must be there."""
+        """Return the value of a key, or `default` if the deck does not have it; a key without a default is required."""
         return self.single(self.values(group, key), group, key, default)
 
     def number(self, group: str, key: str, default: float | None = None) -> float:
-        """Return a number, as `value` does."""
+        """Return the value of a key as a number; see `value`."""
         return as_number(self.value(group, key, default), f"{self.path.name}: &{group} {key}")
 
     def numbers(self, group: str, key: str) -> list[float]:
-        """Return all values of a key as numbers; empty if the deck does not give it."""
+        """Return all values of a key as numbers; empty if the deck does not have it."""
         return [as_number(value, f"{self.path.name}: &{group} {key}") for value in self.values(group, key)]
 
     def choice(self, group: str, key: str, allowed: Iterable[str]) -> str:
-        """Return a word out of `allowed`, the first of which is the default."""
+        """Return a word, one of `allowed`, the first of which is the default."""
         allowed = list(allowed)
         word = str(self.value(group, key, allowed[0])).lower()
         if word not in allowed:
-            raise self.error(group, f"{key} = '{word}' is none of {', '.join(allowed)}.")
+            raise self.error(group, f"{key} = '{word}' is not one of {', '.join(allowed)}.")
         return word
 
     def lengths(self) -> tuple[float, float]:
         """Return the sides of the full plate along x and y."""
         sides = self.numbers("plate", "length")
         if len(sides) != 2 or min(sides) <= 0:
-            raise self.error("plate", "length needs the two sides of the plate, greater than zero.")
+            raise self.error("plate", "length must be the two sides of the plate, greater than zero.")
         return sides[0], sides[1]
 
     def edges(self) -> list[str]:
@@ -87,17 +87,17 @@ class Deck:
     def single(self, values: list[Value], group: str, key: str, default: Value | None) -> Value:
         """Return the only value of a key, or its default."""
         if len(values) > 1:
-            raise self.error(group, f"{key} takes one value.")
+            raise self.error(group, f"{key} must be one value.")
         if values:
             return values[0]
         if default is None:
-            raise self.error(group, f"{key} is needed.")
+            raise self.error(group, f"{key} is required.")
         return default
 
     def spread(self, values: list[Value], count: int, group: str) -> list[Value]:
-        """Return `count` values; a single one serves all."""
+        """Return `count` values; a single value is repeated."""
         if len(values) not in (1, count):
-            raise self.error(group, f"a list has {len(values)} values where 1 or {count} are needed.")
+            raise self.error(group, f"a list has {len(values)} values where 1 or {count} are required.")
         return values if len(values) == count else count * values
 
 
@@ -122,7 +122,7 @@ def read_deck(path: Path | str) -> Deck:
 
 
 def system_of_deck(deck: Deck | None) -> str:
-    """Return the system of units of a deck: the one it names, else that in which its first material is a solid."""
+    """Return the system of units of a deck: the one it gives, else that in which the first density is of a solid."""
     if deck is None:
         return ""
     try:

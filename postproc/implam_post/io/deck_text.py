@@ -1,10 +1,11 @@
-"""The text of a deck with changed keys; comments and everything else stay as they are."""
+"""Change keys in the text of a deck; comments and all other text are kept."""
 
 import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from implam_post.io.counts import counted
 from implam_post.io.errors import DeckError
 from implam_post.io.namelist import Token, Value, is_key, read_namelist, read_tokens
 
@@ -14,14 +15,14 @@ _PATH = re.compile(r"([A-Za-z]\w*)(?:\[(\d+|\*)\])?[.%]([A-Za-z]\w*)")
 
 @dataclass(frozen=True)
 class KeyPath:
-    """A key of a group; `number` counts groups of one name from 1, 0 means all of them, None the only one."""
+    """A key of a group; `number` counts groups of the same name from 1; 0 is all of them, None the only one."""
 
     group: str
     number: int | None
     key: str
 
     def __str__(self) -> str:
-        """Return the path as a user writes it."""
+        """Return the path in the notation of decks and commands."""
         number = "" if self.number is None else f"[{self.number or '*'}]"
         return f"{self.group}{number}.{self.key}"
 
@@ -46,7 +47,7 @@ class _Place:
 
 
 def key_path(text: str) -> KeyPath | None:
-    """Return the path that group.key, group[2].key, group[*].key or group%key stand for; None for any other text."""
+    """Return the path of a text group.key, group[2].key, group[*].key or group%key; None for any other text."""
     match = _PATH.fullmatch(text.strip())
     if match is None or match[2] == "0":
         return None
@@ -55,7 +56,7 @@ def key_path(text: str) -> KeyPath | None:
 
 
 def group_path(text: str) -> tuple[str, int | None] | None:
-    """Return the group and its number that group, group[2] or group[*] stand for; None for any other text."""
+    """Return group and number of a text group, group[2] or group[*]; None for any other text."""
     match = _GROUP.fullmatch(text.strip())
     if match is None or match[2] == "0":
         return None
@@ -63,9 +64,9 @@ def group_path(text: str) -> tuple[str, int | None] | None:
 
 
 def deck_value(value: object) -> str:
-    """Return the text that stands in a deck for a number, a logical, a text, or a list of them.
+    """Return the text of a number, a logical, a text, or a list of them in a deck.
 
-    Text that a deck could hold as values stays as it is (8*90, 'a', 'b', .true.); any other is put in quotes.
+    Text that is already valid in a deck is kept (8*90, 'a', 'b', .true.); other text is put in quotes.
     """
     if isinstance(value, list):
         return ", ".join(deck_value(item) for item in value)
@@ -75,11 +76,11 @@ def deck_value(value: object) -> str:
         return value if not value or _reads_as_values(value) else "'" + value.replace("'", "''") + "'"
     if isinstance(value, int) or (isinstance(value, float) and math.isfinite(value)):
         return repr(value)
-    raise DeckError(f"{value!r} cannot stand in a deck.")
+    raise DeckError(f"{value!r} is not a valid value in a deck.")
 
 
 def set_keys(text: str, settings: Mapping[KeyPath, str], name: str = "deck") -> str:
-    """Return the deck with keys set; an empty value takes the key out. A missing group is added at the end."""
+    """Return the deck with changed keys; an empty value removes the key. A missing group is added at the end."""
     for path, value in settings.items():
         places = [place for place in _places(text, name) if place.name == path.group]
         if path.number is None and len(places) > 1:
@@ -87,7 +88,7 @@ def set_keys(text: str, settings: Mapping[KeyPath, str], name: str = "deck") -> 
                             f"or {path.group}[*].{path.key} for all.")
         number = 1 if path.number is None else path.number
         if number > len(places) + 1:
-            raise DeckError(f"{name}: {path}: there are {len(places)} groups &{path.group} only.")
+            raise DeckError(f"{name}: {path}: the deck has only {counted(len(places), 'group')} &{path.group}.")
         if number == len(places) + 1 or not places:
             text = text if not value else f"{text.rstrip()}\n&{path.group} {path.key}={value} /\n"
             continue
@@ -117,7 +118,7 @@ def copy_groups(source: str, text: str, groups: Sequence[str], name: str = "deck
 
 
 def number_of(text: str, path: KeyPath, name: str = "deck") -> float:
-    """Return the number that a key has in a deck."""
+    """Return the value of a key in a deck as a number."""
     groups = read_namelist(text, name).get(path.group, [])
     number = 1 if path.number is None else path.number
     if not 0 < number <= len(groups) or (path.number is None and len(groups) > 1):
@@ -129,7 +130,7 @@ def number_of(text: str, path: KeyPath, name: str = "deck") -> float:
 
 
 def _reads_as_values(text: str) -> bool:
-    """Return whether a text could stand in a deck after key= as it is."""
+    """Return whether a text is valid in a deck after key=."""
     try:
         groups = read_namelist(f"&a b={text} /")
     except DeckError:
@@ -139,7 +140,7 @@ def _reads_as_values(text: str) -> bool:
 
 def _places(text: str, name: str) -> list[_Place]:
     """Return the positions of the groups of a deck and of their keys."""
-    read_namelist(text, name)  # raises what is wrong with the deck
+    read_namelist(text, name)  # raises an error if the deck is wrong
     tokens, found, position = read_tokens(text, name), [], 0
     while position < len(tokens):
         group, start, keys = tokens[position].text[1:].strip().lower(), tokens[position].start, {}
@@ -157,7 +158,7 @@ def _places(text: str, name: str) -> list[_Place]:
 
 
 def _set_key(text: str, place: _Place, key: str, value: str) -> str:
-    """Set or take out a key in one group."""
+    """Set or remove a key in one group."""
     span = place.keys.get(key.lower())
     if span is None:
         return text if not value else f"{text[:place.end.start].rstrip(' ')}  {key}={value} {text[place.end.start:]}"

@@ -11,39 +11,39 @@ EXIT_DONE, EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_INTERRUPTED = 0, 1, 2, 4, 130
 
 
 class ImplamError(Exception):
-    """An error that one sentence explains."""
+    """An error whose text is one sentence."""
 
     exit_code = EXIT_USAGE
 
 
 class DeckError(ImplamError):
-    """The deck cannot be read, or describes what the semi-analytic solution does not cover."""
+    """The deck cannot be read, or is outside the scope of the semi-analytic solution."""
 
     exit_code = EXIT_DECK
 
 
 class FileError(ImplamError):
-    """A file is missing or not what it should be."""
+    """A file is missing, damaged or of another kind."""
 
     exit_code = EXIT_FILES
 
 
 def reason(error: Exception) -> str:
-    """Return why a file or program failed; of the system's errors without number and path, which the user knows."""
+    """Return the reason of an error; errors of the operating system without number and path."""
     return error.strerror.lower() if isinstance(error, OSError) and error.strerror else str(error)
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Parser of a command line that ends with the solver's exit code for wrong usage."""
+    """Parser of a command line; wrong usage ends with the same exit code as in the solver."""
 
     def error(self, message: str) -> Never:
-        """Print what is wrong and end."""
+        """Print the message and exit."""
         self.print_usage(sys.stderr)
         self.exit(EXIT_USAGE, f"{self.prog}: {message}\n")
 
 
 def count(text: str) -> int:
-    """Return an integer greater than zero, out of a command line."""
+    """Return an argument as an integer greater than zero."""
     number = int(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} is not greater than zero")
@@ -51,7 +51,7 @@ def count(text: str) -> int:
 
 
 def finite(text: str) -> float:
-    """Return a finite number, out of a command line."""
+    """Return an argument as a finite number."""
     number = float(text)
     if not math.isfinite(number):
         raise argparse.ArgumentTypeError(f"{text} is not a finite number")
@@ -59,7 +59,7 @@ def finite(text: str) -> float:
 
 
 def positive(text: str) -> float:
-    """Return a finite number greater than zero, out of a command line."""
+    """Return an argument as a finite number greater than zero."""
     number = float(text)
     if not (math.isfinite(number) and number > 0):
         raise argparse.ArgumentTypeError(f"{text} is not a number greater than zero")
@@ -67,10 +67,10 @@ def positive(text: str) -> float:
 
 
 def run(command: Callable[[argparse.Namespace], int], parser: CommandParser, arguments: Sequence[str] | None) -> int:
-    """Run `command` on the parsed `arguments` and return the exit code; errors become one sentence."""
+    """Run `command` with the parsed `arguments` and return the exit code; errors are printed as one sentence."""
     options = parser.parse_args(arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="surrogateescape")  # names of files whose bytes are no text
+        sys.stdout.reconfigure(errors="surrogateescape")  # file names with bytes that are not text
     try:
         return command(options)
     except ImplamError as error:

@@ -1,4 +1,4 @@
-"""Fields over the plate at chosen times, from NAME.h5: what has delaminated and what failed, seen in plan."""
+"""Delaminations and ply failures in plan at the times written to NAME.h5."""
 
 import os
 import re
@@ -18,18 +18,18 @@ from implam_post.io.errors import FileError, ImplamError
 __all__ = ["IMAGES", "MODES", "Fields", "Interface", "Mesh", "NoTimeError", "Snapshot", "area", "deck_in", "extents",
            "opened", "outline", "read_fields", "struck_point"]
 MODES = {"fibre failure": 1, "matrix cracking": 2, "matrix crushing": 4}
-# What h5py and numpy raise over a file whose bytes are damaged, or that is another program's.
+# Exceptions of h5py and numpy on damaged files or files of another program.
 _DAMAGED = (KeyError, IndexError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError)
 
 
 class NoTimeError(FileError):
-    """The run ended, or was stopped, before fields were written."""
+    """The file has no times: the run ended before fields were written."""
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Cells in plan: their corners, counter-clockwise (elements, 4, 2), the plies of each element, and whether its
-    interface on top was delaminated before the run."""
+    """Elements in plan: corners, counter-clockwise (elements, 4, 2), first and last ply of each element, and whether
+    the interface on top of it was delaminated initially."""
 
     corners: np.ndarray
     first_ply: np.ndarray
@@ -38,7 +38,7 @@ class Mesh:
 
     @property
     def interfaces(self) -> list[int]:
-        """Plies above the interfaces that may delaminate."""
+        """Numbers of the plies above the interfaces that may delaminate."""
         return [int(ply) - 1 for ply in np.unique(self.first_ply) if ply > 1]
 
     @property
@@ -49,7 +49,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Interface:
-    """Figures of an interface as the summary has them; `bounds` are least and greatest x, then y, of what failed."""
+    """Figures of an interface as in the summary; `bounds` are least and greatest x, then y, of the delamination."""
 
     area: float
     is_cohesive: bool
@@ -64,8 +64,8 @@ class Interface:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """The state of interfaces and plies at one time, by element: share of the toughness dissipated at the nine points
-    of the interface on top, failures, G/G_c ahead of the fronts; figures of the interfaces and the projected area."""
+    """State at one time, by element: fraction of the toughness dissipated at the nine points of the interface on top,
+    ply failures, G/G_c ahead of fronts; also the figures of the interfaces and the projected area."""
 
     time: float
     mesh: Mesh
@@ -77,24 +77,24 @@ class Snapshot:
 
     @property
     def delaminated(self) -> np.ndarray:
-        """Whether an element counts as delaminated on top: those with the largest shares, as many as have the area
-        dissipated; with fronts those that are."""
+        """Whether the interface on top of an element is delaminated: with cohesive laws the elements of largest shares,
+        as many as have the dissipated area; with fronts the elements behind the front."""
         found = np.zeros(len(self.shares), dtype=bool)
         parts = self.shares @ WEIGHTS
         for below_ply in self.mesh.interfaces:
             own = np.flatnonzero((self.mesh.first_ply == below_ply + 1) & (parts > 0))
             own = own[np.argsort(-parts[own], kind="stable")]
             sizes = areas(self.mesh.corners[own])
-            # An element counts if more than half of it is needed to reach the area.
+            # The last element counts as delaminated if more than half of it is needed to reach the area.
             found[own[np.cumsum(sizes) - sizes / 2 < np.sum(sizes * parts[own])]] = True
         return found
 
     def of_interface(self, below_ply: int) -> np.ndarray:
-        """Return which elements have this interface on top."""
+        """Return for each element whether this interface is on top of it."""
         return np.asarray(self.mesh.first_ply == below_ply + 1)
 
     def projected(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return cells in plan and the largest of the shares of all interfaces at each of their points."""
+        """Return cells in plan and at each of their points the largest share of all interfaces."""
         layered = self.mesh.first_ply > 1
         corners, shares = self.mesh.corners[layered], self.shares[layered]
         middles = np.round(corners.mean(axis=1) / (np.abs(self.mesh.corners).max() or 1) * 1e7).astype(np.int64)
@@ -104,24 +104,24 @@ class Snapshot:
         return corners[first], largest
 
     def release(self, below_ply: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the corners of the cells ahead of the front below a ply that release energy, and G/G_c there."""
+        """Return the corners of cells ahead of the front below a ply with G > 0, and their G/G_c."""
         loaded = (self.release_ratio > 0) & self.of_interface(below_ply)
         return self.mesh.corners[loaded], self.release_ratio[loaded]
 
     def failed_cells(self, ply: int, mode: int) -> np.ndarray:
-        """Return the corners of the cells in which a ply failed in a mode (1 fibres, 2 cracking, 4 crushing)."""
+        """Return the corners of cells in which a ply failed in a mode (1 fibre failure, 2 cracking, 4 crushing)."""
         of_ply = (self.mesh.first_ply <= ply) & (ply <= self.mesh.last_ply)
         return self.mesh.corners[of_ply & (self.failures[ply] & mode > 0)]
 
 
-# Signs of x and y that put the images of a part of the plate in their places.
+# Signs of x and y of the mirror images of the modelled part.
 IMAGES = {"whole": [(1, 1)], "full": [(1, 1)], "quarter": [(1, 1), (-1, 1), (-1, -1), (1, -1)],
           "half_x": [(1, 1), (-1, 1)], "half_y": [(1, 1), (1, -1)], "point": [(1, 1), (-1, -1)]}
 
 
 @dataclass(frozen=True)
 class Fields:
-    """The times of a run; cells are those of the modelled part of the plate."""
+    """The state of a run at all times written; cells are those of the modelled part of the plate."""
 
     name: str
     part: str
@@ -134,25 +134,25 @@ class Fields:
         return Path(self.name)
 
     def place(self, time: float) -> int:
-        """Return the place among the snapshots of the one nearest to a time."""
+        """Return the index of the snapshot nearest to a time."""
         stored = np.array([snapshot.time for snapshot in self.snapshots])
         if not stored[0] * (1 - 1e-6) <= time <= stored[-1] * (1 + 1e-6):
-            raise ImplamError(f"time {time:g} is outside the fields, which reach from {stored[0]:g} to {stored[-1]:g}.")
+            raise ImplamError(f"time {time:g} is outside the times of the fields, {stored[0]:g} to {stored[-1]:g}.")
         return int(np.argmin(np.abs(stored - time)))
 
     @property
     def quarter(self) -> bool:
-        """Whether a quarter was modelled."""
+        """Whether a quarter of the plate was modelled."""
         return self.part == "quarter"
 
     def full_plate(self, cells: np.ndarray) -> np.ndarray:
-        """Return the cells of the full plate: those of the modelled part and their images, all counter-clockwise."""
+        """Return the cells of the full plate: those of the modelled part and their mirror images, counter-clockwise."""
         return np.concatenate([(cells * np.array(signs))[:, ::signs[0] * signs[1]] for signs in IMAGES[self.part]])
 
     def delaminated(self, place: int, below_ply: int) -> np.ndarray:
-        """Return what has delaminated below a ply at one of the times, as polygons of the full plate.
+        """Return the delamination below a ply at one of the times, as polygons on the full plate.
 
-        They hold the largest shares of dissipated toughness, and have the area dissipated.
+        With cohesive laws they enclose the largest fractions of dissipated toughness and have the dissipated area.
         """
         if (place, below_ply) not in self._found:
             snapshot = self._snapshot(place, below_ply)
@@ -161,10 +161,10 @@ class Fields:
         return self._found[place, below_ply]
 
     def _snapshot(self, place: int, below_ply: int | None = None) -> Snapshot:
-        """Return one of the times; a place or an interface that the file does not hold is refused."""
+        """Return one of the snapshots; raise FileError if the file has no such time or interface."""
         count = len(self.snapshots)
         if not -count <= place < count:
-            raise ImplamError(f"{self.name} has no time at place {place}: it has {count}, from 0 to {count - 1}.")
+            raise ImplamError(f"{self.name} has no time with index {place}: indices are 0 to {count - 1}.")
         known = sorted({ply for each in self.snapshots for ply in (*each.mesh.interfaces, *each.interfaces)})
         if below_ply is not None and below_ply not in known:
             raise ImplamError(f"{self.name} has no interface below ply {below_ply}; it has "
@@ -172,23 +172,23 @@ class Fields:
         return self.snapshots[place]
 
     def projected(self, place: int) -> np.ndarray:
-        """Return what a C-scan sees of all interfaces at one of the times, as polygons of the full plate."""
+        """Return the projected (C-scan) delamination at one of the times, as polygons on the full plate."""
         return self.full_plate(region(*self._snapshot(place).projected()))
 
     def projected_depths(self, place: int) -> list[np.ndarray]:
-        """Return what each interface has of the region that a C-scan sees, as polygons of the full plate."""
+        """Return the part of each interface in the projected delamination, as polygons on the full plate."""
         snapshot = self.snapshots[place]
         level = level_of(*snapshot.projected())
         owns = [snapshot.of_interface(below_ply) for below_ply in snapshot.mesh.interfaces]
         return [self.full_plate(above(snapshot.mesh.corners[own], snapshot.shares[own], level)) for own in owns]
 
     def starter(self, below_ply: int) -> np.ndarray:
-        """Return the cells of the full plate that had delaminated below a ply before the run."""
+        """Return the cells of the full plate that were initially delaminated below a ply."""
         mesh = self.snapshots[-1].mesh
         return self.full_plate(mesh.corners[mesh.starter & (mesh.first_ply == below_ply + 1)])
 
     def interface(self, place: int, below_ply: int) -> Interface:
-        """Return the figures of an interface at one of the times; from its polygons where the file holds none."""
+        """Return the figures of an interface at one of the times, computed from its polygons if the file has none."""
         snapshot = self._snapshot(place, below_ply)
         if below_ply in snapshot.interfaces:
             return snapshot.interfaces[below_ply]
@@ -197,7 +197,7 @@ class Fields:
         return Interface(area(cells), bool(np.any(snapshot.shares % 1 > 0)), len(cells) > 0, tuple(bounds.ravel()))
 
     def projected_area(self, place: int) -> float:
-        """Return the area that a C-scan sees at one of the times."""
+        """Return the projected (C-scan) area at one of the times."""
         found = self._snapshot(place).projected_area
         return area(self.projected(place)) if found is None else found
 
@@ -218,9 +218,9 @@ def read_fields(path: Path | str) -> Fields:
         snapshots = [_snapshot(group, meshes) for group in _in_order(file["times"])]
         part = file["part"][()].decode()
     if not snapshots:
-        raise NoTimeError(f"{path} holds no time yet.")
+        raise NoTimeError(f"{path} has no times yet.")
     if part not in IMAGES:
-        raise FileError(f"{path} holds a part of the plate that is not known here: {part}.")
+        raise FileError(f"{path} has an unknown symmetry: {part}.")
     return Fields(str(path), part, snapshots)
 
 
@@ -229,7 +229,7 @@ _CHECKPOINT = "_restart"
 
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 file; whatever is wrong with it becomes one sentence."""
+    """Open an HDF5 file; all errors on it are reported as one sentence."""
     if not path.is_file():
         raise FileError(f"{path} is a folder; give the fields NAME.h5 in it." if path.is_dir() else
                         f"the fields {path} cannot be read (there is no such file).")
@@ -248,11 +248,11 @@ def opened(path: Path) -> Iterator[h5py.File]:
 
 
 class _MemberError(ValueError):
-    """What is wrong with a member of the file, in words of this package."""
+    """An error about a member of the file, found by this module."""
 
 
 def _reason(error: Exception) -> str:
-    """Return what is wrong; libraries describe it by their internals, which do not help a user."""
+    """Return the reason of an error in terms of the file; messages of h5py and numpy are about their internals."""
     if isinstance(error, _MemberError):
         return str(error)
     if lacking := re.search(r"object '([^']*)' doesn.t exist", str(error)):
@@ -261,26 +261,26 @@ def _reason(error: Exception) -> str:
         return os.strerror(error.errno).lower()
     if isinstance(error, OSError) and "truncated" in str(error):
         return "it ends too early"
-    return "part of it is not what implam writes"
+    return "part of it was not written by implam"
 
 
 def _in_order(group: h5py.Group) -> list[h5py.Group]:
-    """Return the numbered members of a group in their order."""
+    """Return the numbered members of a group in ascending order."""
     return [group[name] for name in sorted(group)]
 
 
 def _finite(values: np.ndarray, name: str, count: int | None = None) -> np.ndarray:
-    """Return numbers, of which there must be so many, all finite."""
+    """Return an array of this size; raise an error unless all its numbers are finite."""
     if values.dtype.kind not in "biuf" or not np.all(np.isfinite(values)) or (
             count is not None and len(values) != count):
-        raise _MemberError(f"{name} holds no numbers, or not one an element")
+        raise _MemberError(f"{name} does not have one number per element")
     return values
 
 
 def _flags(values: np.ndarray, name: str, count: int) -> np.ndarray:
-    """Return failures by element, modes added up."""
+    """Return failures by element, as sums of modes."""
     if not np.all((_finite(values, name, count) >= 0) & (values <= sum(MODES.values()))):
-        raise _MemberError(f"{name} holds no failures")
+        raise _MemberError(f"{name} does not have failures")
     return values.astype(int)
 
 
@@ -288,18 +288,18 @@ def _mesh(group: h5py.Group) -> Mesh:
     """Read a mesh; the first four points of an element are its corners."""
     points, connectivity = group["coordinates"][()], group["connectivity"][()]
     if connectivity.min(initial=0) < 0:
-        raise _MemberError("connectivity has numbers below zero")
+        raise _MemberError("connectivity has negative numbers")
     corners = _finite(points[:, :2][connectivity[:, :4]], "coordinates")
     first, last = (_finite(group[f"cells/{name}"][()].ravel(), name, len(corners)) for name in ("first_ply",
                                                                                                  "last_ply"))
     if first.min() < 1 or np.any(last < first):
-        raise _MemberError("first_ply and last_ply are no plies")
+        raise _MemberError("first_ply and last_ply are not numbers of plies")
     starter = group["cells/starter_above"][()].ravel() if "starter_above" in group["cells"] else np.zeros(len(first))
     return Mesh(corners, first, last, _finite(starter, "starter_above", len(first)) > 0)
 
 
 def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
-    """Read a time; without interfaces nothing is delaminated, without ply damage no ply has an entry."""
+    """Read a time; without interfaces no element is delaminated, without ply damage no ply has an entry."""
     number = int(group["mesh"][()])
     if number not in meshes:
         raise _MemberError(f"it has no mesh {number}")
@@ -322,7 +322,7 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
 
 
 def _figures(group: h5py.Group | dict[str, Any]) -> tuple[dict[int, Interface], float | None]:
-    """Read the figures of the interfaces and the projected area; files of earlier versions have none."""
+    """Read the figures of the interfaces and the projected area; files of earlier versions do not have them."""
     if not len(group):
         return {}, None
     plies, cohesive, stages, sizes = (_finite(group[name][()].ravel(), name) for name in (
@@ -336,7 +336,7 @@ def _figures(group: h5py.Group | dict[str, Any]) -> tuple[dict[int, Interface], 
 
 
 def deck_in(path: Path) -> Deck | None:
-    """Return the deck of the run whose NAME.h5 or history this is; None if it is not known."""
+    """Return the deck of the run from its NAME.h5 or history; None if it is not known."""
     fields = path if path.suffix == ".h5" else path.with_name(path.name.removesuffix("_history.csv") + ".h5")
     try:
         with opened(fields) as file:
@@ -346,7 +346,7 @@ def deck_in(path: Path) -> Deck | None:
 
 
 def struck_point(fields: Fields) -> np.ndarray:
-    """Return where the plate was struck, from its middle; the middle, if the deck of the run is not known."""
+    """Return the struck point, from the centre of the plate; the centre if the deck of the run is not known."""
     deck = deck_in(fields.path)
     at = [] if deck is None else deck.numbers("impactor", "at")
     return np.array(at if len(at) == 2 else [0.0, 0.0])

@@ -1,4 +1,4 @@
-"""Files that are replaced at once: a reader, or a stopped process, finds the old one or the new one."""
+"""Atomic replacement of files: a reader, or a stopped process, finds the old file or the new one."""
 
 import fcntl
 import os
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
-    """Give the path of a draft, with the same suffix; it takes the place of `path` once it has been written."""
+    """Yield the path of a draft with the same suffix, which replaces `path` when it is complete."""
     draft = path.with_name(f".draft_{path.name}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -34,38 +34,38 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_table(path: Path, table: "pd.DataFrame", float_format: str | None = None) -> None:
-    """Replace a file by one with a table as CSV; numbers have all digits by default, missing ones are empty cells."""
+    """Replace a file by a table as CSV; numbers have all digits by default, missing values are empty cells."""
     write_text(path, table.to_csv(index=False, float_format=float_format, lineterminator="\n"))
 
 
 def read_text(path: Path, what: str) -> str:
-    """Return the text of a file; `what` it is stands in the message if it cannot be read."""
+    """Return the text of a file; `what` names its kind in the error message."""
     try:
         return path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise FileError(f"{what} {path} cannot be read ({reason(error)}).") from None
     except UnicodeDecodeError:
-        raise FileError(f"{what} {path} cannot be read: it is no text.") from None
+        raise FileError(f"{what} {path} cannot be read: it is not a text file.") from None
 
 
 def printable(name: str) -> str:
-    """Return a file's name for a line of text: it may hold an end of line, or bytes that are no text."""
+    """Return a file name for a line of text, with line ends and bytes that are not text replaced."""
     return "".join(letter if letter.isprintable() else "?" for letter in name)
 
 
 def refuse_equal_names(paths: Sequence[Path], folder: Path | None) -> None:
-    """Refuse results of one name if what is made of them goes into one folder, where one would replace the other."""
+    """Refuse results of equal names if their output goes into one folder, where one would overwrite the other."""
     first: dict[str, Path] = {}
     for path in paths if folder is not None else ():
         if (other := first.setdefault(path.name, path)) != path:
-            raise FileError(f"{other} and {path} have the same name, so that the files of one would replace those of "
-                            f"the other in {folder}: leave --output out, or give it for each alone.")
+            raise FileError(f"{other} and {path} have the same name, so that the files of one would overwrite those of "
+                            f"the other in {folder}: omit --output, or give it for each separately.")
 
 
 def try_lock(path: Path) -> int | None:
-    """Lock a file, made if it is not there; return its descriptor, or nothing if somebody else has locked it.
+    """Lock a file, which is created if missing; return its descriptor, or None if another process has locked it.
 
-    The lock belongs to whoever has the descriptor, children that inherit it too, and ends with the last of them.
+    All processes that inherit the descriptor share the lock; it ends with the last of them.
     """
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)

@@ -1,4 +1,4 @@
-"""A history: columns of numbers against time."""
+"""Histories: columns of numbers over time."""
 
 import io
 import json
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
-# Those of every history.
+# Columns of every history.
 ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
-# What each is called in legends and pages, as in the summary; histories of earlier versions lack the last three.
+# Names in legends and pages, as in the summary; histories of earlier versions do not have the last three.
 ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "energy_strain": "strain",
                 "energy_indentation": "indentation", "energy_delamination": "delamination",
                 "energy_ply_damage": "ply damage", "energy_contact": "contact",
@@ -30,10 +30,10 @@ _ENDING = "_history.csv"
 
 @dataclass(frozen=True)
 class History:
-    """Columns by name, all of one length, `time` among them.
+    """Columns of equal length by name, including `time`.
 
-    `impact_energy` is that of the impactor before the first row, as in the summary of the run; None: not known.
-    Of a run by load steps the times are load factors.
+    `impact_energy` is the energy of the impactor before the first row, as in the summary; None: not known.
+    In a run by load steps the times are load factors.
     """
 
     columns: dict[str, np.ndarray]
@@ -53,9 +53,9 @@ class History:
         return self["time"]
 
     def table(self, system: str = "") -> "pd.DataFrame":
-        """Return the columns as a table, with the unit of each in `attrs["units"]`; empty where it is not known.
+        """Return the columns as a table, with the unit of each in `attrs["units"]`; empty if it is not known.
 
-        `system` is that of the deck.
+        `system` is the system of units of the deck.
         """
         import pandas as pd
 
@@ -78,7 +78,7 @@ class History:
 
 
 def read_history(path: Path | str) -> History:
-    """Read a history from the solver's CSV, and from the other results of the run the impact energy and its kind.
+    """Read a history from its CSV; the impact energy, and whether times are load factors, come from the other results.
 
     Lines that begin with # are comments.
     """
@@ -92,22 +92,22 @@ def read_history(path: Path | str) -> History:
 
 
 def _summary_beside(path: Path) -> dict[str, Any]:
-    """Return the summary beside a history; empty without one, as of a run that has not ended."""
+    """Return the summary of the run of a history; empty if there is none, as before the end of the run."""
     summary = path.with_name(path.name.removesuffix(_ENDING) + "_summary.json")
     if not path.name.endswith(_ENDING) or not summary.exists():
         return {}
     try:
         found = json.loads(read_text(summary, "the summary"))
     except (FileError, ValueError, RecursionError):
-        return {}  # damaged, which those who need it report
+        return {}  # damaged; functions that need the summary report it
     return found if isinstance(found, dict) else {}
 
 
 def _is_static(path: Path) -> bool:
-    """Return whether the deck in the fields beside a history has load steps."""
+    """Return whether the run of a history has load steps, from the deck in its fields."""
     if not path.name.endswith(_ENDING) or not path.with_name(path.name.removesuffix(_ENDING) + ".h5").exists():
         return False
-    # h5py takes a while to load.
+    # Importing h5py is slow.
     from implam_post.io.fields import deck_in
 
     deck = deck_in(path)
@@ -115,7 +115,7 @@ def _is_static(path: Path) -> bool:
 
 
 def read_columns(path: Path | str) -> History:
-    """Read columns of numbers under their names, in any order of the rows and with or without a time."""
+    """Read columns of numbers by name; rows may be in any order, and a time is not required."""
     import pandas as pd
 
     path = Path(path)
@@ -126,20 +126,20 @@ def read_columns(path: Path | str) -> History:
         raise FileError(f"the history {path} has no rows.")
     widths = [line.count(",") + 1 for _, line in lines]
     for (number, _), width in zip(lines, widths, strict=True):
-        if width != widths[0]:  # pandas would fill a short row up
+        if width != widths[0]:  # pandas would complete a short row
             raise FileError(f"the history {path} has {width} cells under {widths[0]} names in line {number}.")
-    # A run ends each row by a new line; the last number may otherwise have lost digits.
+    # Each complete row ends with a new line; without it the last number may have lost digits.
     if path.name.endswith(_ENDING) and not text.endswith("\n"):
-        raise FileError(f"the history {path} is cut off in line {lines[-1][0]}, which has no end.")
+        raise FileError(f"the history {path} is truncated in line {lines[-1][0]}, which has no end of line.")
     try:
         cells = pd.read_csv(io.StringIO("\n".join(line for _, line in lines)), skipinitialspace=True, dtype=str,
                             keep_default_na=False)
     except ValueError:
-        raise FileError(f"the history {path} is no table of numbers.") from None
+        raise FileError(f"the history {path} is not a table of numbers.") from None
     try:
         table = cells.astype(float)
     except ValueError:
         is_number = cells.apply(pd.to_numeric, errors="coerce").notna() | cells.isin(["nan", "NaN"])
         number = lines[1 + int((~is_number).any(axis=1).argmax())][0]
-        raise FileError(f"the history {path} has a cell in line {number} that is no number.") from None
+        raise FileError(f"the history {path} has a cell in line {number} that is not a number.") from None
     return History({name.strip(): table[name].to_numpy() for name in table}, str(path))

@@ -1,7 +1,7 @@
-"""Reader of Fortran namelists, as far as decks use them.
+"""Reader of the part of Fortran namelists that decks use.
 
-Comments from `!` to the end of the line, strings in either kind of quotes, repeat counts such as 8*90, subscripts
-such as edges(2), several groups of one name. Group and key names are lower-cased.
+It supports comments from `!` to the end of the line, strings in single or double quotes, repeat counts such as 8*90,
+subscripts such as edges(2), and several groups of the same name. Names of groups and keys are lower-cased.
 """
 
 import re
@@ -29,7 +29,7 @@ _LOGICALS = {".true.": True, ".t.": True, "t": True, "true": True,
 
 @dataclass(frozen=True)
 class Token:
-    """A piece of a deck: its kind (a name of the groups above), text, line and the place of its first letter."""
+    """A token of a deck: its kind (a group name of the pattern), text, line and the position of its first letter."""
 
     kind: str
     text: str
@@ -38,12 +38,12 @@ class Token:
 
     @property
     def end(self) -> int:
-        """Return the place after its last letter."""
+        """Return the position after its last letter."""
         return self.start + len(self.text)
 
 
 def read_namelist(text: str, name: str = "deck") -> dict[str, list[Group]]:
-    """Return the groups of `text` by name, each name with its groups in order; `name` is used in messages."""
+    """Return for each name of groups in `text` the list of its groups; `name` is used in messages."""
     groups: dict[str, list[Group]] = {}
     tokens = read_tokens(text, name)
     position = 0
@@ -58,7 +58,7 @@ def read_namelist(text: str, name: str = "deck") -> dict[str, list[Group]]:
 
 
 def read_tokens(text: str, name: str) -> list[Token]:
-    """Split `text` into tokens, leaving out blanks, commas and comments."""
+    """Split `text` into tokens, without blanks, commas and comments."""
     tokens = []
     position = 0
     line = 1
@@ -88,7 +88,7 @@ def _read_group(tokens: list[Token], position: int, opening: Token, name: str) -
 
 
 def is_key(tokens: list[Token], position: int) -> bool:
-    """Return whether a key stands at `position`: a name with an equals sign after it."""
+    """Return whether there is a key at `position`: a name followed by an equals sign."""
     return (tokens[position].kind in ("word", "subscripted") and position + 1 < len(tokens)
             and tokens[position + 1].kind == "equals")
 
@@ -113,7 +113,7 @@ def _read_values(tokens: list[Token], position: int, name: str) -> tuple[list[Va
 
 
 def _value(token: Token, name: str) -> Value:
-    """Return the value that a token stands for."""
+    """Return the value of a token."""
     if token.kind == "string":
         quote = token.text[0]
         return token.text[1:-1].replace(2 * quote, quote)
@@ -122,12 +122,12 @@ def _value(token: Token, name: str) -> Value:
     try:
         return float(re.sub("[dD]", "e", token.text))
     except ValueError:
-        raise DeckError(f"{name}:{token.line}: '{token.text}' is neither a number, a logical nor a string in quotes."
+        raise DeckError(f"{name}:{token.line}: '{token.text}' is not a number, a logical or a string in quotes."
                         ) from None
 
 
 def _assign(group: Group, key: Token, values: list[Value], name: str) -> None:
-    """Store the values of a key, from its subscript on if it has one."""
+    """Store the values of a key, starting at its subscript if there is one."""
     if not values:
         raise DeckError(f"{name}:{key.line}: {key.text} has no value.")
     stem, _, subscript = key.text.lower().partition("(")

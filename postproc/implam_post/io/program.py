@@ -1,4 +1,4 @@
-"""The program implam: where it is, its exit codes, and how it is started."""
+"""The program implam: its path, exit codes and environment."""
 
 import os
 import shlex
@@ -10,38 +10,38 @@ from pathlib import Path
 from implam_post.io.errors import FileError, reason
 
 EXIT_CONVERGENCE, EXIT_STOPPED = 3, 75
-PROGRAM_HELP = ("the program and what starts it, as \"mpirun -n 2 build/implam\" (default: the environment's IMPLAM, "
-                "else implam on the PATH)")
-_WAITING = 60.0  # seconds for a check of a deck
+PROGRAM_HELP = ("command that starts implam, such as \"mpirun -n 2 build/implam\" (default: environment variable "
+                "IMPLAM, else implam on the PATH)")
+_WAITING = 60.0  # time limit of a check of a deck, seconds
 
 
 def find_program(words: str | None) -> list[str]:
-    """Return the words that start the program; paths become absolute. `words` are a user's, if any."""
+    """Return the command that starts the program, with absolute paths; `words` is that of the user, if given."""
     chosen = shlex.split(words or os.environ.get("IMPLAM") or "implam")
     for position in dict.fromkeys((0, len(chosen) - 1)):
         found = shutil.which(chosen[position]) if chosen else None
         if found is None:
-            raise FileError(f"the program '{shlex.join(chosen)}' is not there: name it by --program or by IMPLAM in "
+            raise FileError(f"the program '{shlex.join(chosen)}' was not found: give it with --program or IMPLAM in "
                             "the environment, or put implam on the PATH.")
         chosen[position] = str(Path(found).absolute())
     return chosen
 
 
 def environment() -> dict[str, str]:
-    """Return the environment for several runs side by side: one thread each, no core for oneself."""
+    """Return the environment for simultaneous runs: one thread each, not bound to cores."""
     return {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
             "PRTE_MCA_hwloc_default_binding_policy": "none", **os.environ}
 
 
 def processors() -> int:
-    """Return how many processors this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
-    """Let the program check a deck; return whether it may be run, and what it printed about it."""
+    """Check a deck with the program; return whether it can be run, and what the program printed."""
     try:
-        # Without what starts it: checking takes one process.
+        # Without mpirun: a check needs one process.
         ended = subprocess.run([program[-1], "check", str(deck)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, errors="replace", timeout=_WAITING, check=False,
                                env=environment())
@@ -52,12 +52,12 @@ def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
 
 
 def shell_code(code: int) -> int:
-    """Return an exit code as a shell reports it: 128 and the number of the signal that ended a process."""
+    """Return an exit code as in a shell: 128 plus the signal number for a process ended by a signal."""
     return 128 - code if code < 0 else code
 
 
 def last_words(output: str) -> str:
-    """Return the sentence with which a run ended, or its last line; a warning only if there is nothing else."""
+    """Return the final message of a run, or its last line; a warning only if there is no other line."""
     printed = [line.strip() for line in output.splitlines() if line.strip()]
     lines = [line for line in printed if ": warning: " not in line] or printed
     sentences = [line.removeprefix("implam: ") for line in lines if line.startswith("implam: ")]
@@ -75,7 +75,7 @@ def checkpoint_in(folder: Path) -> Path | None:
 
 
 def version_in(folder: Path) -> str:
-    """Return the version that wrote the results, by the last of its lines in the log."""
+    """Return the version that wrote the results, from the last line in the log that names it."""
     for path in sorted(folder.glob("*.log"))[:1]:
         lines = [line for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
                  if line.startswith("Implam ")]

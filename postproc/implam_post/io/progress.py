@@ -1,4 +1,4 @@
-"""How far many runs are: a bar with the time left on a terminal, a line for each run anywhere else."""
+"""Progress of many runs: a bar with the remaining time on a terminal, otherwise a line for each run."""
 
 import sys
 import time
@@ -9,10 +9,10 @@ from tqdm import tqdm
 
 
 class Progress:
-    """Counts runs that have ended; used in a `with`, so that the bar's line ends."""
+    """Counter of ended runs; to be used in a `with` statement, which ends the line of the bar."""
 
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
-        """Runs still to end are `total`; the progress goes to `stream`, the error output unless given."""
+        """Count up to `total` runs; print to `stream`, by default the error output."""
         self._stream = stream or sys.stderr
         self._total, self._ended, self._failed, self._start = total, 0, 0, time.monotonic()
         self._bar = tqdm(total=total, file=self._stream, unit="run", dynamic_ncols=True, miniters=1) if (
@@ -24,12 +24,12 @@ class Progress:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        """End the bar's line."""
+        """End the line of the bar."""
         if self._bar is not None:
             self._bar.close()
 
     def end_run(self, label: str, failure: str = "") -> None:
-        """Count a run that has ended; one that failed is reported at once."""
+        """Count a run that has ended; a failed run is reported immediately."""
         self._ended, self._failed = self._ended + 1, self._failed + bool(failure)
         if self._bar is None:
             seconds = (time.monotonic() - self._start) / self._ended * (self._total - self._ended)
@@ -42,7 +42,7 @@ class Progress:
         self._bar.update()
 
     def tick(self) -> None:
-        """Let the bar's clock go on; nothing without a terminal."""
+        """Update the time of the bar; without a terminal do nothing."""
         if self._bar is not None and time.time() - self._bar.last_print_t > 1:
             self._bar.refresh()
             self._bar.last_print_t = time.time()

@@ -1,4 +1,4 @@
-"""Single numbers that characterize a history: peaks, contacts, rebound, energy. A NaN in the data gives a NaN here."""
+"""Single numbers that characterize a history: peaks, contacts, rebound, energy. NaN in the data results in NaN."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -9,14 +9,14 @@ from implam_post.io.history import ENERGIES, KEPT_ENERGIES, History
 
 
 class Peak(NamedTuple):
-    """The largest value of a column, and when it is reached."""
+    """The largest value of a column, and its time."""
 
     value: float
     time: float
 
 
 class Contact(NamedTuple):
-    """A stretch of time with force; its end is NaN if the history ends first."""
+    """An interval of time with contact force; its end is NaN if the history ends in contact."""
 
     begin: float
     end: float
@@ -26,7 +26,7 @@ NO_PEAK, NO_CONTACT = Peak(np.nan, np.nan), Contact(np.nan, np.nan)
 
 
 def peak(history: History, column: str, window: Contact | None = None) -> Peak:
-    """Return the largest value of a column, within a window if one is given, by a parabola through the top rows."""
+    """Return the largest value of a column, in a time window if given, by a parabola through the rows at the peak."""
     time, values = history.time, history[column]
     if window is not None:
         inside = (time >= window.begin) & ~(time > window.end)
@@ -46,7 +46,7 @@ def peak(history: History, column: str, window: Contact | None = None) -> Peak:
 
 
 def contacts(history: History) -> list[Contact]:
-    """Return the contacts in order; begin and end are where force**(2/3), linear in the indentation, reaches zero."""
+    """Return the contacts in order; they begin and end where force**(2/3), linear in the indentation, is zero."""
     time, force = history.time, history["force"]
     if not np.all(np.isfinite(force)):
         return [NO_CONTACT]
@@ -62,7 +62,7 @@ def contacts(history: History) -> list[Contact]:
 
 
 def _zero(time: np.ndarray, depth: np.ndarray, row: np.integer, inward: int, limit: float) -> float:
-    """Return when `depth`, extrapolated from `row` and its neighbour in the contact, is zero, between row and limit."""
+    """Return the time, between row and limit, of zero `depth`, extrapolated from `row` and its neighbour in contact."""
     neighbour = row + inward
     if not 0 <= neighbour < len(time) or depth[neighbour] <= depth[row]:
         return limit
@@ -71,7 +71,7 @@ def _zero(time: np.ndarray, depth: np.ndarray, row: np.integer, inward: int, lim
 
 
 def contact(history: History, number: int) -> Contact:
-    """Return one of the contacts, counted from 0; NaN if there is none of that number."""
+    """Return one of the contacts, counted from 0; NaN if it does not exist."""
     found = contacts(history)
     return found[number] if number < len(found) else NO_CONTACT
 
@@ -89,16 +89,16 @@ def rebound_velocity(history: History) -> float:
 
 
 def contact_duration(history: History) -> float:
-    """Return the time from first contact to the end of the last contact."""
+    """Return the time from the first contact to the end of the last contact."""
     found = contacts(history)
     return found[-1].end - found[0].begin if found else np.nan
 
 
 def impact_energy(history: History) -> float:
-    """Return the energy the impactor brings, kinetic and of gravity, as the run has written it.
+    """Return the kinetic and gravitational energy of the impactor at the start, as written by the run.
 
-    Without it, of a history on its own, it is all energy in the first row less the work of pressure and lines, which is
-    that of the impactor if the plate had none before.
+    For a history alone it is the total energy in the first row minus the work of pressure and lines, which equals the
+    energy of the impactor if the plate had none initially.
     """
     if history.impact_energy is not None:
         return history.impact_energy
@@ -106,33 +106,33 @@ def impact_energy(history: History) -> float:
 
 
 def absorbed_energy(history: History) -> float:
-    """Return the energy the impactor has left behind, kinetic and of gravity, at the end of the last contact."""
+    """Return the kinetic and gravitational energy that the impactor has lost at the end of the last contact."""
     found = contacts(history)
     return impact_energy(history) - history.at("energy_impactor", found[-1].end) if found else np.nan
 
 
 def energy_error(history: History) -> float:
-    """Return the largest energy the energy balance fails to account for, as a fraction of the total at the start."""
+    """Return the largest error of the energy balance, as a fraction of the total energy at the start."""
     initial = sum(history[column][0] for column in ENERGIES)
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.max(np.abs(history["energy_error"])) / np.abs(initial))
 
 
 def energy_rise(history: History) -> float:
-    """Return the largest rise of energy less the work of pressure over any window, over the energy at the start."""
+    """Return the largest increase of energy minus work of pressure over any window, over the energy at the start."""
     kept = sum(history[column] for column in KEPT_ENERGIES) - history["work_external"]
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.max(kept - np.minimum.accumulate(kept)) / np.abs(kept[0]))
 
 
 def growth_rows(history: History) -> np.ndarray:
-    """Return the rows at which delaminations have grown; none if the history has no area."""
+    """Return the rows at which delaminations have grown; none if the history has no delaminated area."""
     area = history.columns.get("delaminated_area", np.zeros(len(history.time)))
     return 1 + np.flatnonzero(np.diff(area) > 1e-9 * np.max(area, initial=0))
 
 
 def first_growth(history: History) -> Peak:
-    """Return the largest force up to the row at which delaminations first grow, and the time of that row."""
+    """Return the largest force up to the row of first delamination growth, and the time of that row."""
     rows = growth_rows(history)
     if not len(rows):
         return NO_PEAK
@@ -140,10 +140,9 @@ def first_growth(history: History) -> Peak:
 
 
 def rms_force_difference(history: History, reference: History) -> float:
-    """Return the rms difference of force over the reference's first contact, as a fraction of its peak.
+    """Return the rms difference of the forces in the first contact, as a fraction of the peak of the reference.
 
-    The window reaches to the later release of the two. NaN if either history ends before the contact does in the
-    other.
+    The window ends with the later end of contact of the two. NaN if either history ends before that.
     """
     first, other = contact(reference, 0), contact(history, 0)
     both = [max(one.end if np.isfinite(one.end) else data.time[-1], one.begin)
@@ -157,12 +156,12 @@ def rms_force_difference(history: History, reference: History) -> float:
 
 
 def l2_force_difference(history: History, reference: History) -> float:
-    """Return the relative L2 difference of force over the reference's time; NaN if the history ends before it."""
+    """Return the relative L2 difference of the forces over the time of the reference; NaN if the history is shorter."""
     grid = reference.time
     if len(grid) < 2 or history.time[-1] * (1 + 1e-6) < grid[-1]:
         return np.nan
     weights = np.gradient(grid)
-    # A history begins with its first step, before which there is no force.
+    # The first row is the end of the first step; the force before it is zero.
     difference = np.interp(grid, history.time, history["force"], left=0) - reference["force"]
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.sqrt(weights @ difference**2 / (weights @ reference["force"]**2)))

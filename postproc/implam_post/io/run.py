@@ -1,4 +1,4 @@
-"""A run that has ended or been stopped, opened by its results: deck, summary, history, fields, warnings."""
+"""The results of a run: deck, summary, history, fields, warnings."""
 
 import json
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from implam_post.io.run_figures import Measured
 
 SUMMARY, HISTORY, FIELDS = "_summary.json", "_history.csv", ".h5"
-# Units as the results state them, and what this package calls their dimensions.
+# Units as written in the results, and names of their dimensions in this package.
 _DIMENSIONS = {"pressure": "stress", "length/time": "velocity"}
 
 
@@ -31,8 +31,8 @@ _DIMENSIONS = {"pressure": "stress", "length/time": "velocity"}
 class Field:
     """A field at one time: a value, or a row of components, at each place of the modelled part of the plate.
 
-    Places are points or the centres of cells, (places, 3), z from the struck face to the back. `first_ply` is that of
-    the layer of each cell, so that the interface on top of it lies below ply `first_ply - 1`; None for points.
+    Places are points or the centres of cells, (places, 3), z from the struck face to the back. `first_ply` is the first
+    ply of each cell; the interface on top of the cell is below ply `first_ply - 1`. It is None for points.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Field:
 
 
 class Summary(dict[str, Any]):
-    """Members of NAME_summary.json; one that is not there is reported with the file."""
+    """Members of NAME_summary.json; the error on a missing member names the file."""
 
     def __init__(self, members: Mapping[str, Any], path: Path) -> None:
         """Keep the members."""
@@ -53,22 +53,22 @@ class Summary(dict[str, Any]):
         self.path = path
 
     def __missing__(self, name: str) -> object:
-        """Report what is missing."""
+        """Raise the error on a missing member."""
         raise FileError(f"{self.path} lacks '{name}': the run has no such figure, or the file is damaged.")
 
 
 class Run:
-    """The results of a run; each part is read when it is first needed.
+    """The results of a run; each part is read when it is first used.
 
-    `base` is what the names of its files begin with: DIRECTORY/NAME for NAME_summary.json, NAME_history.csv, NAME.h5.
+    `base` is the common part of its file names: DIRECTORY/NAME for NAME_summary.json, NAME_history.csv, NAME.h5.
     """
 
     def __init__(self, base: Path) -> None:
-        """Read nothing yet."""
+        """Store the paths; files are read later."""
         self.base = base
 
     def __repr__(self) -> str:
-        """Return the place of the results."""
+        """Return the path of the results."""
         return f"Run({str(self.base)!r})"
 
     @property
@@ -93,7 +93,7 @@ class Run:
 
     @cached_property
     def deck(self) -> Deck:
-        """The deck that was run, with the values of published materials that it names."""
+        """The deck of the run, with the values of its published materials."""
         if self._file(SUMMARY).exists():
             return recorded_deck(self.summary["provenance"], self._file(".nml"))
         with opened(self._file(FIELDS)) as file:
@@ -122,7 +122,7 @@ class Run:
 
     @cached_property
     def fields(self) -> Fields | None:
-        """State of interfaces and plies in plan at the times written; None if there are none, or none yet."""
+        """State of interfaces and plies in plan at the times written; None if there are none yet."""
         path = self._file(FIELDS)
         try:
             return read_fields(path) if path.exists() else None
@@ -153,7 +153,7 @@ class Run:
             mesh, values = file["meshes"][f"{int(group['mesh'][()]):08d}"], group[where][name]
             places = mesh["coordinates"][()]
             first_ply = None
-            if where == "cells":  # the last of its nine points is the centre of a cell
+            if where == "cells":  # the last of the nine points of a cell is its centre
                 places, first_ply = places[mesh["connectivity"][:, 8]], mesh["cells/first_ply"][()].astype(int)
             unit, meaning = (bytes(values.attrs.get(key, b"")).decode() for key in ("unit", "meaning"))
             unit = unit_of(_DIMENSIONS.get(unit, unit), self.system) or unit.replace("-", "")
@@ -171,7 +171,7 @@ class Run:
         self.__dict__.pop("fields", None)
 
     def _file(self, ending: str) -> Path:
-        """Return the path of one of the results."""
+        """Return the path of one of the result files."""
         return self.base.with_name(f"{self.base.name}{ending}")
 
 
@@ -187,16 +187,16 @@ def open_run(path: Path | str) -> Run:
         found = sorted({found.name.removesuffix(ending) for ending in (SUMMARY, HISTORY)
                         for found in path.glob(f"*{ending}")})
         if not found:
-            raise FileError(f"{path} holds no summary of a run.")
+            raise FileError(f"{path} has no summary of a run.")
         if len(found) > 1:
-            raise FileError(f"{path} holds the results of several runs, {', '.join(found)}: name one NAME{SUMMARY}.")
+            raise FileError(f"{path} has the results of several runs, {', '.join(found)}: give one NAME{SUMMARY}.")
         return Run(path / found[0])
     for ending in (SUMMARY, HISTORY, FIELDS):
         if path.name.endswith(ending) and not path.name.endswith("_restart.h5"):
             if not path.exists():
                 raise FileError(f"{path} cannot be read: there is no such file.")
             return Run(path.with_name(path.name.removesuffix(ending)))
-    raise FileError(f"{path} is none of NAME{SUMMARY}, NAME{HISTORY}, NAME{FIELDS}, and no folder with one.")
+    raise FileError(f"{path} is not one of NAME{SUMMARY}, NAME{HISTORY}, NAME{FIELDS}, or a folder with one.")
 
 
 def read_summary(path: Path) -> Summary:
@@ -204,7 +204,7 @@ def read_summary(path: Path) -> Summary:
     try:
         summary = json.loads(read_text(path, "the summary"))
     except json.JSONDecodeError as error:
-        raise FileError(f"{path} is not a summary written by implam (line {error.lineno} is no JSON).") from None
+        raise FileError(f"{path} is not a summary written by implam (line {error.lineno} is not JSON).") from None
     except (ValueError, RecursionError):
         raise FileError(f"{path} is not a summary written by implam.") from None
     if not isinstance(summary, dict) or not {"case", "exit", "plies", "provenance"} <= summary.keys():

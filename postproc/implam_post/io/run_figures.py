@@ -1,4 +1,4 @@
-"""Figures of runs: numbers of a summary and what ASTM D7136 requires, each with its dimension; two runs compared."""
+"""Figures of runs: numbers of the summary and of ASTM D7136, with their dimensions; comparison of two runs."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -15,7 +15,7 @@ from implam_post.io.units import SYSTEMS, dimension_of, unit_of
 if TYPE_CHECKING:
     import pandas as pd
 
-# Members of a summary that are no figures of the run.
+# Members of a summary that are not figures of the run.
 _NO_FIGURES = ("costs", "profile", "provenance", "estimated_errors", "exit", "warnings", "plies", "interfaces",
                "plate_size", "collapse", "failure_code")
 _OF_ENDED_CONTACT = ("contact_duration", "contact_until")
@@ -30,7 +30,7 @@ class Measured(NamedTuple):
 
 
 def corner_of(run: Run) -> float | None:
-    """Return the corner frequency of the low pass for the threshold force, in the deck's units; None if it has none."""
+    """Return the corner frequency of the filter for the threshold force, in the deck's units; None if not known."""
     given = run.summary.get("force_filter")
     if given:
         return float(given["frequency"])
@@ -38,10 +38,10 @@ def corner_of(run: Run) -> float | None:
 
 
 def resistance(run: Run) -> dict[str, Measured]:
-    """Return what ASTM D7136 requires beyond the summary; NaN where the force never drops, or nothing is damaged.
+    """Return the figures of ASTM D7136 that are not in the summary; NaN if the force never drops or without damage.
 
-    Energies are those of an impactor that is free: one whose travel is given brings none. Load steps have no time over
-    which a force could be filtered, and no threshold.
+    An impactor with given displacement has no impact energy, so that the energies are missing. Load steps have no time
+    in which the force could be filtered, so that the threshold is missing.
     """
     found: dict[str, Measured] = {}
     history, corner = run.columns, corner_of(run)
@@ -72,9 +72,9 @@ def figures(run: Run) -> dict[str, Measured]:
 
 
 def compare(first: Run, second: Run) -> "pd.DataFrame":
-    """Return the figures of two runs side by side: a row for each with both values, difference, ratio less 1, and unit.
+    """Return the figures of two runs: a row for each with both values, their difference, second/first - 1, and unit.
 
-    `force_history` is the relative L2 norm of the difference of the contact forces, over the time of the first run.
+    `force_history` is the relative L2 norm of the difference of the contact forces over the time of the first run.
     """
     import pandas as pd
 
@@ -93,7 +93,7 @@ def compare(first: Run, second: Run) -> "pd.DataFrame":
 
 
 def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
-    """Give the numbers of a summary under their names, those of an interface with the ply above it."""
+    """Yield the numbers of a summary by name; names of interfaces include the number of the ply above."""
     for name, value in summary.items():
         if name in _NO_FIGURES:
             continue
@@ -116,5 +116,5 @@ def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
 
 
 def _is_number(value: object) -> bool:
-    """Return whether a member of a summary is a number, or one that the run does not have."""
+    """Return whether a member of a summary is a number or null."""
     return value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))

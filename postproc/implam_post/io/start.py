@@ -1,4 +1,4 @@
-"""Runs of a deck, with some of its keys changed, as processes beside this one."""
+"""Run a deck with changed keys in another process."""
 
 import signal
 import subprocess
@@ -19,14 +19,14 @@ OUTPUT = "output.txt"
 
 
 class RunError(ImplamError):
-    """A run that did not end as it should; `exit_code` is that of the program."""
+    """A run ended with another exit code than 0; `exit_code` is that of the program."""
 
 
 class StartedRun:
-    """A run in a process of its own; what it prints goes into output.txt beside its results."""
+    """A run in a separate process; its output is written to output.txt in the folder of the results."""
 
     def __init__(self, folder: Path, process: subprocess.Popen[bytes], deck: Path) -> None:
-        """Watch over a process that runs a deck and writes into a folder."""
+        """Store the process, its deck and the folder of its results."""
         self.folder, self.process, self._deck = folder, process, deck
 
     @property
@@ -38,7 +38,7 @@ class StartedRun:
         """Wait for the end of the run and return its results.
 
         A run that ends with another exit code than 0 raises RunError. After `timeout` seconds TimeoutError is raised,
-        and the run goes on.
+        and the run continues.
         """
         from implam_post.io.run import SUMMARY, open_run
 
@@ -51,15 +51,15 @@ class StartedRun:
             error = RunError(f"the run ended with {code}: {last_words(printed)}")
             error.exit_code = code
             raise error
-        # By its name: the folder may hold other runs.
+        # By name, as the folder may contain other runs.
         return open_run(self.folder / f"{read_deck(self._deck).name}{SUMMARY}")
 
     def stop(self) -> None:
-        """Stop the run after its step, with a checkpoint; `wait` raises RunError with exit code 75 then."""
+        """Stop the run after the current step, with a checkpoint; `wait` then raises RunError with exit code 75."""
         self.process.send_signal(signal.SIGTERM)
 
     def kill(self) -> None:
-        """End the run at once."""
+        """End the run immediately, without a checkpoint."""
         self.process.kill()
         self.process.wait()
 
@@ -69,9 +69,10 @@ def run_deck(deck: Path | str, changes: Mapping[str | KeyPath, object] | None = 
     """Start a run of a deck and return at once.
 
     `changes` has values by key, {"mesh%cell": 1e-3, "delamination[2]%G_c": 400.0, "laminate%angles": [0, 90, 0]};
-    None takes a key out. The changed deck, under its own name unless `deck_name` gives another, and all results go into
-    the folder `output`, by default one beside the deck with its name. `program` is what starts implam, as
-    "mpirun -n 2 build/implam"; by default IMPLAM of the environment, else implam on the PATH.
+    None removes a key. The changed deck, under its own name unless `deck_name` gives another, and all results are
+    written to the folder `output`, by default one with the name of the deck next to it. `program` is the command that
+    starts implam, such as "mpirun -n 2 build/implam"; by default the environment variable IMPLAM, else implam on the
+    PATH.
     """
     path = Path(deck)
     folder = Path(output) if output is not None else path.with_suffix("")
@@ -81,7 +82,7 @@ def run_deck(deck: Path | str, changes: Mapping[str | KeyPath, object] | None = 
     written = folder / (deck_name or path.name)
     text = set_keys(read_text(path, "the deck"), settings, path.name)
     if written.exists() and written.samefile(path):
-        raise FileError(f"{folder} is the folder of the deck itself: name another one for the results.")
+        raise FileError(f"{folder} is the folder of the deck itself: give another one for the results.")
     write_text(written, text)
     try:
         with (folder / OUTPUT).open("wb") as printed:
@@ -93,14 +94,14 @@ def run_deck(deck: Path | str, changes: Mapping[str | KeyPath, object] | None = 
 
 
 def _key(name: str | KeyPath) -> KeyPath:
-    """Return the key that a name stands for."""
+    """Return the key of a name."""
     path = name if isinstance(name, KeyPath) else key_path(name)
     if path is None:
-        raise DeckError(f"'{name}' is no key of a deck, as group%key or group[2]%key.")
+        raise DeckError(f"'{name}' is not a key of a deck, such as group%key or group[2]%key.")
     return path
 
 
 def _plain(value: object) -> object:
-    """Return a value in Python's own types: numbers of numpy, tuples and arrays too."""
+    """Return a value in built-in types of Python; it may be a number or array of numpy, or a tuple."""
     value = value.tolist() if hasattr(value, "tolist") else value
     return [_plain(item) for item in value] if isinstance(value, (list, tuple)) else value

@@ -1,7 +1,7 @@
-"""What a summary written by implam holds: the kind of each member, checked when the file is read.
+"""The kind of each member of a summary, which is checked when the file is read.
 
-A kind is a type, a mapping of members, a list of one kind, a pair of that kind and a length, or one of these or
-null."""
+A kind is a type, a mapping of members, a list [kind], a pair (kind, length) for a list of that length, or
+OrNull(kind)."""
 
 import math
 from collections.abc import Mapping
@@ -9,10 +9,10 @@ from typing import Any
 
 
 class OrNull:
-    """A member that may be null, as what a run does not have."""
+    """A member that may be null, such as a figure that a run does not have."""
 
     def __init__(self, kind: object) -> None:
-        """Take the kind of the other value."""
+        """Store the kind of values other than null."""
         self.kind = kind
 
 
@@ -36,7 +36,7 @@ _FIGURES = (
 _ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
              "energy_contact", "energy_friction")
 ACROSS = "failed_across_width"
-_ACROSS_BEFORE = "went_across"  # its name in summaries of version 0.1.0
+_ACROSS_BEFORE = "went_across"  # the name in summaries of version 0.1.0
 _COLLAPSE = {"interfaces": [{"ply_above": int, ACROSS: bool}], "fibres": [{"ply": int, ACROSS: bool}]}
 _COMPRESSION = dict.fromkeys(("residual_strength", "residual_strength_at", "shortening_at_strength", "percent_bending"),
                              float) | {"has_failed": bool, "failure_code": OrNull(str), "collapse": _COLLAPSE}
@@ -46,7 +46,7 @@ _POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "
 
 
 def missing_member(summary: Mapping[str, Any]) -> str:
-    """Return a member that every summary of this version has and this one lacks; empty if there is none."""
+    """Return a required member that is missing; empty if none is."""
     for name in _REQUIRED:
         if name not in summary:
             return name
@@ -55,7 +55,7 @@ def missing_member(summary: Mapping[str, Any]) -> str:
 
 
 def take_earlier_names(summary: Mapping[str, Any]) -> None:
-    """Give members of earlier versions their present names."""
+    """Rename members of earlier versions to their present names."""
     collapse = summary.get("collapse")
     for entries in collapse.values() if isinstance(collapse, dict) else ():
         for entry in entries if isinstance(entries, list) else ():
@@ -64,7 +64,7 @@ def take_earlier_names(summary: Mapping[str, Any]) -> None:
 
 
 def misshapen_member(summary: Mapping[str, Any]) -> str:
-    """Return a member that is not of the kind that implam writes; empty if all are."""
+    """Return a member of the wrong kind; empty if there is none."""
     for name, kind in (_REQUIRED | _POSSIBLE).items():
         if name in summary and (wrong := misshapen(summary[name], kind, name)):
             return wrong
@@ -79,7 +79,7 @@ def misshapen_member(summary: Mapping[str, Any]) -> str:
 
 
 def misshapen(value: object, kind: Any, where: str) -> str:
-    """Return where a value is not of its kind; empty if it is. A number is finite, and no truth value is one."""
+    """Return the member that is not of its kind; empty if there is none. Numbers must be finite and not logicals."""
     if isinstance(kind, OrNull):
         return "" if value is None else misshapen(value, kind.kind, where)
     if isinstance(kind, dict):

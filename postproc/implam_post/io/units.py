@@ -1,4 +1,4 @@
-"""Units of results: which system a deck is written in, and units that make numbers easy to read."""
+"""Units of results: the system of units of a deck, and units for axes and tables."""
 
 import math
 from collections.abc import Iterable
@@ -11,7 +11,7 @@ SYSTEMS = {"SI": (1.0, 1.0, 1.0), "mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1e-3,
 # Powers of length, mass and time in each dimension.
 _POWERS = {"length": (1, 0, 0), "area": (2, 0, 0), "mass": (0, 1, 0), "time": (0, 0, 1), "velocity": (1, 0, -1),
            "force": (1, 1, -2), "energy": (2, 1, -2), "stress": (-1, 1, -2), "toughness": (0, 1, -2)}
-# Dimensions of columns of the history and figures of the summary by their names; the first pattern that fits counts.
+# Dimensions of columns of the history and figures of the summary by name; the first matching pattern applies.
 _NAMES = (
     ("iterations", ""), ("release_ratio", ""), ("nominal_strain", ""), ("buckling_strain", ""), ("time", "time"),
     ("time_reached", "time"), ("step_length", "time"), ("impactor_velocity", "velocity"),
@@ -36,19 +36,19 @@ _SYMBOLS = {
     "mm-mN-kg-s": {"length": "mm", "area": "mm2", "mass": "kg", "time": "s", "velocity": "mm/s", "force": "mN",
                    "energy": "µJ", "stress": "kPa", "toughness": "J/m2"},
 }
-# A solid's density, from foam to heavy metal, in each system.
+# Range of densities of solids, from foam to heavy metal, in each system.
 _DENSITIES = {"SI": (100.0, 25000.0), "mm-kg-ms": (1e-7, 2.5e-5), "mm-t-s": (1e-10, 2.5e-8)}
-# Units of the axes, as factors to SI; the largest in which the largest value is a tenth at least is taken.
+# Units of axes, as factors to SI. The largest unit in which the largest value is at least 0.1 is used.
 _UNITS = {"force": {"N": 1.0, "kN": 1e3}, "energy": {"mJ": 1e-3, "J": 1.0}, "area": {"mm²": 1e-6},
           "length": {"µm": 1e-6, "mm": 1e-3}, "time": {"µs": 1e-6, "ms": 1e-3}, "velocity": {"m/s": 1.0},
           "mass": {"g": 1e-3, "kg": 1.0}, "stress": {"MPa": 1e6, "GPa": 1e9}, "toughness": {"J/m²": 1.0}}
-# A unit is taken from this many of it on, others from a tenth: strengths are in MPa, moduli in GPa.
+# Exceptions from 0.1: strengths are in MPa, moduli in GPa.
 _FROM = {"GPa": 5.0}
 
 
 @dataclass(frozen=True)
 class Axis:
-    """How a quantity is shown: a factor for its numbers, and its label."""
+    """The factor for the values of a quantity on an axis, and the label of the axis."""
 
     factor: float
     label: str
@@ -63,7 +63,7 @@ def system_of(density: float | None) -> str:
 
 
 def axis_of(label: str, dimension: str, values: Iterable[float], system: str) -> Axis:
-    """Return factor and label of an axis; in an unknown system the numbers stay as they are."""
+    """Return factor and label of an axis; the factor is 1 in an unknown system."""
     if dimension not in _UNITS:
         return Axis(1.0, label)
     if system not in SYSTEMS:

@@ -1,2 +1,2 @@
 """Classical laminate theory with first-order transverse shear: materials and plies of a deck, stacking sequences in the
-notation of the field, stiffness and mass of a section. It shares no code with the solver."""
+usual notation, stiffness and mass of a section. It shares no code with the solver."""

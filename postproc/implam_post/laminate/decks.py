@@ -1,4 +1,4 @@
-"""The laminate of a deck: its materials and plies from the struck surface on, its stiffness and mass."""
+"""The laminate of a deck: materials and plies, numbered from the struck face, stiffness and mass."""
 
 from implam_post.io.deck import Deck, as_number
 from implam_post.io.errors import DeckError
@@ -23,7 +23,7 @@ def plies_of(deck: Deck) -> list[Ply]:
         plies.append(Ply(materials[str(name).lower()], as_number(angle, f"{where} angles"),
                          as_number(thickness, f"{where} thicknesses")))
     if not plies:
-        raise deck.error("laminate", "angles are needed, one for each ply.")
+        raise deck.error("laminate", "angles are required, one for each ply.")
     if min(ply.thickness for ply in plies) <= 0:
         raise deck.error("laminate", "every thickness must be greater than zero.")
     return plies
@@ -37,11 +37,11 @@ def section_of_deck(deck: Deck) -> Section:
 
 
 def _stack(deck: Deck) -> tuple[list[Value], list[Value]]:
-    """Return angles, one for each ply, and thicknesses, likewise or one for all."""
+    """Return the angles of all plies, and their thicknesses or a single thickness."""
     if not (deck.values("laminate", "stacking") or deck.values("laminate", "ply_thickness")):
         return deck.values("laminate", "angles"), deck.values("laminate", "thicknesses")
     if deck.values("laminate", "angles") or deck.values("laminate", "thicknesses"):
-        raise deck.error("laminate", "stacking and ply_thickness, or angles and thicknesses, are needed.")
+        raise deck.error("laminate", "either stacking and ply_thickness or angles and thicknesses are required.")
     try:
         angles = angles_of(str(deck.value("laminate", "stacking")))
     except DeckError as error:
@@ -64,10 +64,10 @@ def _material(deck: Deck, group: Group) -> Material:
     """Return one ply material, isotropic if the group gives E and nu."""
     def number(key: str, default: float | None = None) -> float:
         where = f"{deck.path.name}: &material {key}"
-        # A missing density of 0 is that of a static deck, which needs none.
+        # A default of 0 is the density in a static deck, which does not use it.
         if key.lower() not in group and "library" in group and not deck.has_adopted and default != 0:
-            raise deck.error("material", f"{key} is left to library = {group['library'][0]!r}, whose values only the "
-                                         "program knows: write it into the deck, or give NAME.h5 of a run.")
+            raise deck.error("material", f"{key} comes from library = {group['library'][0]!r}, whose values only the "
+                                         "program has: give it in the deck, or give NAME.h5 of a run.")
         return as_number(deck.single(group.get(key.lower(), []), "material", key, default), where)
 
     moves = deck.has("time") or deck.has("impactor")

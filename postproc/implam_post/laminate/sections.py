@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-# Ratio of shear moduli beyond which the solver takes the shear stiffness of equilibrium by itself
+# Ratio of transverse shear moduli beyond which the default of the solver is the shear stiffness from equilibrium
 # (src/laminate/shear_corrections.f90).
 _MAX_CONTRAST = 10
 
@@ -36,7 +36,7 @@ class Material:
         return strain.T @ np.linalg.inv(compliance) @ strain
 
     def transverse_shear_stiffness(self, angle: float) -> np.ndarray:
-        """Return the stiffness against transverse shear (xz, yz) of a ply at `angle`."""
+        """Return the transverse shear stiffness (xz, yz) of a ply at `angle`."""
         c, s = direction(angle)
         rotation = np.array([[c, s], [-s, c]])
         return rotation.T @ np.diag([self.g13, self.g23]) @ rotation
@@ -53,7 +53,7 @@ class Ply:
 
 @dataclass(frozen=True)
 class Section:
-    """Stiffness and mass of a laminate, of its mid-plane.
+    """Stiffness and mass of a laminate, about its mid-plane.
 
     N = a e + b k, M = b e + d k, Q = s g; the mass is the integral of density times (1, z, z**2).
     """
@@ -66,7 +66,7 @@ class Section:
     thickness: float
 
     def is_specially_orthotropic(self) -> bool:
-        """Return whether bending is free of every coupling that Navier's series cannot satisfy."""
+        """Return whether all couplings that Navier's series does not admit are zero."""
         thickness = self.thickness
         couplings = [*(self.a[:2, 2] / self.a[0, 0]), *(self.d[:2, 2] / self.d[0, 0]), self.s[0, 1] / self.s[0, 0],
                      *(self.b.ravel() / (thickness * self.a[0, 0])), self.mass[1] / (thickness * self.mass[0])]
@@ -80,7 +80,7 @@ def shear_contrast(plies: Sequence[Ply]) -> float:
 
 
 def natural_shear_correction(plies: Sequence[Ply]) -> str:
-    """Return the shear correction that the solver takes if the deck gives none."""
+    """Return the default shear correction of the solver."""
     return "energy" if shear_contrast(plies) > _MAX_CONTRAST else "5/6"
 
 
@@ -105,8 +105,8 @@ def section_of(plies: Sequence[Ply], shear_correction: str = "5/6") -> Section:
 def _energy_shear_stiffness(plies: Sequence[Ply], a: np.ndarray, b: np.ndarray, d: np.ndarray) -> np.ndarray:
     """Return the shear stiffness whose energy is that of the shear stresses in equilibrium with Mx,x and My,y.
 
-    Unit shear forces Qx = Mx,x and Qy = My,y strain by e + z k a unit length, without membrane forces. The shear
-    stresses -integral(Q (e + z k) dz) from the struck face on have the energy Q S**-1 Q / 2 (Rolfes and Rohwer 1997).
+    Unit shear forces Qx = Mx,x and Qy = My,y cause the strain gradient e + z k without membrane forces. The shear
+    stresses -integral(Q (e + z k) dz) from the struck face have the energy Q S**-1 Q / 2 (Rolfes and Rohwer 1997).
     """
     points, weights = np.polynomial.legendre.leggauss(3)
     growth = np.linalg.inv(np.block([[a, b], [b, d]]))[:, 3:5]
@@ -128,7 +128,7 @@ def _energy_shear_stiffness(plies: Sequence[Ply], a: np.ndarray, b: np.ndarray, 
 
 
 def _faces(plies: Sequence[Ply]) -> np.ndarray:
-    """Return z of the faces between the plies, from the struck face on."""
+    """Return z of the ply surfaces, from the struck face to the back."""
     heights = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in plies])])
     return heights - heights[-1] / 2
 

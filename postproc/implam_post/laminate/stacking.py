@@ -1,4 +1,4 @@
-"""Stacking sequences in the notation of the field, such as [45/0/-45/90]2s, read as the solver reads them."""
+"""Stacking sequences in the usual notation, such as [45/0/-45/90]2s, read as in the solver."""
 
 import re
 
@@ -20,7 +20,7 @@ def angles_of(sequence: str) -> list[float]:
 
 
 class _Reader:
-    """A place in a sequence."""
+    """Reader of a sequence at its current position."""
 
     def __init__(self, text: str) -> None:
         """Begin before the first character."""
@@ -28,11 +28,11 @@ class _Reader:
         self.at = 0
 
     def error(self) -> DeckError:
-        """Return an error that names the place."""
+        """Return an error with the current position."""
         return DeckError(f"stacking '{self.text}' cannot be read from character {self.at + 1} on.")
 
     def plies(self) -> tuple[list[float], bool]:
-        """Read items separated by slashes; return their angles, and whether the last is the middle one of a mirror."""
+        """Read items separated by slashes; return their angles, and whether the last one is a mid-ply (~)."""
         angles: list[float] = []
         while True:
             item, barred = self._item()
@@ -43,7 +43,7 @@ class _Reader:
                 return angles, barred
 
     def _item(self) -> tuple[list[float], bool]:
-        """Read an angle or a pair with its count, or a bracket with its count and symmetry."""
+        """Read an angle or a pair of angles with its count, or a bracket with its count and symmetry."""
         opening = self._take("[") or self._take("(")
         if not opening:
             angles = self._angle()
@@ -67,7 +67,7 @@ class _Reader:
                 raise self.error()
 
     def _angle(self) -> list[float]:
-        """Read an angle or a pair of opposite ones."""
+        """Read an angle or a pair of opposite angles."""
         match = _ANGLE.match(self.text, self.at)
         if match is None or float(match["angle"]) > 360 or re.match(r"0\d", match["angle"]):
             raise self.error()
@@ -85,7 +85,7 @@ class _Reader:
         return int(match[1])
 
     def _take(self, mark: str) -> str:
-        """Read a mark if it comes next; return it, or nothing."""
+        """Read a mark if it comes next; return it, or an empty text."""
         rest = self.text[self.at:]
         if not rest.lstrip().startswith(mark):
             return ""

@@ -1,6 +1,6 @@
 """Plots of histories and fields (`implam-plot HISTORY.csv ...`, `implam-plot NAME.h5`).
 
-What draws is imported once the command line has been read, as it takes most of the time that a command needs to start.
+Modules that draw are imported after the command line has been read, as they take most of the start-up time.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Draw, and print the names of the pictures."""
+    """Draw the pictures and print their names."""
     import matplotlib
 
     style = style_of(options, options.results)
@@ -28,7 +28,7 @@ def _command(options: argparse.Namespace) -> int:
 
 
 def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
-    """Draw what the command line requires."""
+    """Draw the pictures of the command line."""
     from implam_post.io.fields import read_fields
     from implam_post.io.files import refuse_equal_names
     from implam_post.io.history import read_history
@@ -38,9 +38,9 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
     paths = [path for path in options.results if path.suffix != ".h5"]
     for path in options.results:
         if path.suffix not in (".h5", ".csv") or path.name.endswith("_restart.h5"):
-            raise FileError(f"{path} is neither the fields NAME.h5 nor the history NAME_history.csv of a run.")
+            raise FileError(f"{path} is not the fields NAME.h5 or the history NAME_history.csv of a run.")
     if options.save and (len(results), len(paths)) != (1, 0):
-        raise ImplamError("--save goes with one NAME.h5.")
+        raise ImplamError("--save needs exactly one NAME.h5.")
     if options.save:
         history = options.history or _beside(results[0])
         print(plot_overview(read_fields(results[0]), read_history(history), options.save, style))
@@ -51,22 +51,22 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
             paths.append(history)
     for written in (results, paths):
         refuse_equal_names(written, options.output)
-    # All is read before anything is drawn, so that a faulty file leaves no half of the pictures behind.
+    # All files are read before the first picture is drawn, so that a damaged file does not leave some pictures only.
     curves = _read_curves(paths, options)
     for path, fields in [(path, read_fields(path)) for path in results]:
         drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, style)
-        print(*drawn or [f"{path} holds neither interfaces nor failures of plies."], sep="\n")
+        print(*drawn or [f"{path} has no interfaces and no ply failures."], sep="\n")
     return _plot_histories(curves, options, style) if paths else EXIT_DONE
 
 
 def _beside(path: Path) -> Path:
-    """Return the history beside the fields NAME.h5."""
+    """Return the path of the history that belongs to the fields NAME.h5."""
     return path.with_name(f"{path.stem}_history.csv")
 
 
 @dataclass
 class _Curves:
-    """Paths and histories, summaries of compressions, a measured curve, and the strength of the undamaged plate."""
+    """Histories with their paths, summaries of compressions, a measured curve, strength of the undamaged plate."""
 
     paths: Sequence[Path]
     histories: list[History]
@@ -76,7 +76,7 @@ class _Curves:
 
 
 def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
-    """Read what curves are drawn of."""
+    """Read the data of the curves."""
     from implam_post.io.compression import strength_of
     from implam_post.io.history import read_history
     from implam_post.io.run import HISTORY, SUMMARY, read_summary
@@ -85,7 +85,7 @@ def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
 
     measured = read_history(options.measured) if options.measured else None
     if measured is not None and not set(measured.columns) & set(RESPONSES):
-        raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} beside time.")
+        raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} in addition to time.")
     histories = [read_history(path) for path in paths]
     beside = [path.with_name(path.name.removesuffix(HISTORY) + SUMMARY) for path in paths]
     summaries = [read_summary(path) if is_compressed(history) and path.exists() else {}
@@ -95,7 +95,7 @@ def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
 
 
 def _plot_histories(curves: _Curves, options: argparse.Namespace, style: PictureStyle) -> int:
-    """Draw the responses over each other and the energies of each history."""
+    """Draw the responses in one picture and the energies of each history."""
     from implam_post.plot.pictures import plot_compression, plot_energies, plot_response
 
     paths, histories = curves.paths, curves.histories
@@ -113,27 +113,27 @@ def _plot_histories(curves: _Curves, options: argparse.Namespace, style: Picture
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
-    parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories, "
-                           "several drawn over each other, stress and gauges of compressions, and of NAME.h5 the "
-                           "delamination of each interface and all seen through the plate, the energy release "
-                           "rate along its front and the failures of each ply over the full plate, with the history "
-                           "beside it.")
+    parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories "
+                           "(several in one picture), stress and gauges of compressions, and from NAME.h5 the "
+                           "delamination of each interface and the projected one, the energy release "
+                           "rate along fronts and the failures of each ply, all over the full plate, with the "
+                           "history of the run.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: beside each result)")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: that of each result)")
     parser.add_argument("--history", type=Path, metavar="CSV",
-                        help="history that goes with NAME.h5 (default: NAME_history.csv beside it)")
+                        help="history of the run of NAME.h5 (default: NAME_history.csv in its folder)")
     parser.add_argument("--times", nargs="+", type=finite, metavar="TIME",
-                        help="times at which the front is drawn (default: up to eight of those written)")
+                        help="times at which fronts are drawn (default: up to eight of those written)")
     parser.add_argument("--save", type=Path, metavar="FILE",
-                        help="one picture of delamination, force and energies of NAME.h5, instead of all")
-    parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve to draw as dots: columns time and "
+                        help="write only one picture, with delamination, force and energies of NAME.h5")
+    parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve, drawn as dots: columns time and "
                         "force, indentation or deflection, in the units of the results")
-    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
-                        "compression: its strength is drawn, and the retained fraction given")
+    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the compression of "
+                        "the undamaged plate: its strength and the retained fraction are shown")
     parser.add_argument("--projected", choices=("depth", "time"), default="depth", help="colour of NAME_projected: the "
-                        "first delaminated interface, or when the first one delaminated (default: depth)")
-    parser.add_argument("--format", choices=FORMATS, default="png", help="kind of file (default: png)")
+                        "delaminated interface nearest to the struck face, or time of delamination (default: depth)")
+    parser.add_argument("--format", choices=FORMATS, default="png", help="file format (default: png)")
     add_options(parser)
     return run(_command, parser, arguments)
 

@@ -1,4 +1,4 @@
-"""Pictures of compressed plates: stress against shortening, strains of gauges against stress."""
+"""Pictures of compressed plates: stress against shortening, gauge strains against stress."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,17 +15,17 @@ _GAUGE = "gauge_strain_"
 
 
 def is_compressed(history: History) -> bool:
-    """Return whether the run compresses a plate."""
+    """Return whether a &line of the run compresses the plate."""
     return bool(np.any(history.columns.get(STRESS, 0)))
 
 
 def remark_of(summary: Mapping[str, Any], style: PictureStyle, undamaged: float | None = None) -> str:
-    """Return strength, its share of the undamaged plate's, failure code and percent bending, as far as known."""
+    """Return strength, retained fraction of the undamaged strength, failure code and percent bending, if known."""
     if STRENGTH not in summary:
         return ""
     parts = [style.shown("stress", summary[STRENGTH], 4)]
     if undamaged:
-        parts.append(f"{100 * summary[STRENGTH] / undamaged:.3g} % of the undamaged plate's")
+        parts.append(f"{100 * summary[STRENGTH] / undamaged:.3g} % of the undamaged plate")
     parts.append((summary.get("failure_code") or "code not known") if summary["has_failed"] else "not failed")
     if "percent_bending" in summary:
         parts.append(f"bending {summary['percent_bending']:.3g} %")
@@ -34,9 +34,9 @@ def remark_of(summary: Mapping[str, Any], style: PictureStyle, undamaged: float 
 
 def compression_figure(histories: Mapping[str, History], style: PictureStyle, remarks: Mapping[str, str] | None = None,
                        undamaged: float | None = None) -> Figure:
-    """Draw the stress of some runs, by name, against the shortening, and below it the strains of their gauges.
+    """Draw the stress of runs, by name, against the shortening, and below it the strains of their gauges.
 
-    Remarks on runs stand in the legend; `undamaged` is the strength of the undamaged plate, if that is known.
+    Remarks on runs are shown in the legend; `undamaged` is the strength of the undamaged plate, if known.
     """
     gauges = any(_gauges(history) for history in histories.values())
     figure = Figure(figsize=(7, 8 if gauges else 4.2), layout="constrained")
@@ -48,7 +48,7 @@ def compression_figure(histories: Mapping[str, History], style: PictureStyle, re
 
 
 def _gauges(history: History) -> Sequence[str]:
-    """Return the columns of gauges."""
+    """Return the columns of gauge strains."""
     return [name for name in history.columns if name.startswith(_GAUGE)]
 
 
@@ -73,7 +73,7 @@ def _draw_stress(axes: Axes, histories: Mapping[str, History], style: PictureSty
 
 
 def _draw_gauges(axes: Axes, histories: Mapping[str, History], style: PictureStyle) -> None:
-    """Draw strains of gauges against the stress up to the strength: those back to back part where the plate buckles."""
+    """Draw gauge strains against the stress up to the strength; back-to-back gauges diverge when the plate buckles."""
     up = style.axis("far-field stress", "stress", np.concatenate([one[STRESS] for one in histories.values()]))
     for place, (name, history) in enumerate(histories.items()):
         rows = slice(0, row_of_strength(history) + 1)

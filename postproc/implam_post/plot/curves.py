@@ -1,4 +1,4 @@
-"""Histories over measured curves, each of two columns, such as force against displacement."""
+"""Pictures of a history with measured curves, each of two columns, such as force against displacement."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ from implam_post.io.history import History, read_columns
 from implam_post.io.units import Axis
 from implam_post.plot.style import PictureStyle
 
-# What columns are called on an axis, and their dimensions.
+# Names of columns on axes, and their dimensions.
 AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentation": ("indentation", "length"),
         "deflection": ("deflection of struck point", "length"),
         "patch_deflection": ("deflection of the patch", "length"),
@@ -21,7 +21,7 @@ AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentat
 
 
 def plot_curves(history: History, files: Sequence[Path], path: Path, style: PictureStyle) -> Path:
-    """Draw a history as lines over the curves of some files as dots, a panel each."""
+    """Draw a history as lines and measured curves as dots, a panel for each file of curves."""
     curves = [read_columns(file) for file in files]
     with matplotlib.rc_context({"font.size": style.letters}):
         figure = Figure(figsize=(8, 4.5 * len(curves)), layout="constrained")
@@ -45,19 +45,19 @@ def plot_curves(history: History, files: Sequence[Path], path: Path, style: Pict
 
 
 def axis_of_column(name: str, values: Sequence[float] | np.ndarray, history: History, style: PictureStyle) -> Axis:
-    """Return factor and label of an axis of a column."""
+    """Return factor and label of the axis of a column."""
     return style.clock(values, [history.by_load_steps]) if name == "time" else style.axis(*AXES[name], values)
 
 
 def in_contact(history: History) -> History:
-    """Return the rows up to the end of the last contact, after which the impactor moves away; all if there is none."""
+    """Return the rows up to the end of the last contact; all rows if there is no contact."""
     touching = np.flatnonzero(history["force"] > 0)
     return history.until(history.time[min(touching[-1] + 1, len(history.time) - 1)]) if len(touching) else history
 
 
 def _columns(curve: History) -> tuple[str, str]:
-    """Return the two columns of a curve that are drawn."""
+    """Return the names of the two columns of a measured curve."""
     names = [*curve.columns][:2]
     if len(names) < 2 or not set(names) <= set(AXES):
-        raise FileError(f"{curve.name} begins with the columns {', '.join(names)}; curves are of {', '.join(AXES)}.")
+        raise FileError(f"{curve.name} begins with the columns {', '.join(names)}; possible are {', '.join(AXES)}.")
     return names[0], names[1]

@@ -1,4 +1,4 @@
-"""Pictures of the energy release rate along the fronts over its critical value, around the struck point and in plan."""
+"""Pictures of G/G_c along delamination fronts, around the struck point and in plan."""
 
 from collections.abc import Sequence
 
@@ -20,10 +20,10 @@ _PLAIN = PictureStyle()
 
 
 def front_figure(fields: Fields, times: Sequence[float] | None = None, style: PictureStyle = _PLAIN) -> Figure:
-    """Draw each interface at the given times, or at some of those at which its front is loaded.
+    """Draw each interface at the given times, or at some of the times at which its front is loaded.
 
-    On the left G/G_c against the angle around the struck point, a line for each time; on the right in plan, at that of
-    these times at which G/G_c is largest.
+    Left: G/G_c against the angle around the struck point, a line for each time. Right: G/G_c in plan at the time of
+    these at which it is largest.
     """
     interfaces = fields.snapshots[-1].mesh.interfaces
     figure = Figure(figsize=(11, 4 * len(interfaces)), layout="constrained")
@@ -38,7 +38,7 @@ def front_figure(fields: Fields, times: Sequence[float] | None = None, style: Pi
 
 
 def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, style: PictureStyle = _PLAIN) -> None:
-    """Draw the outline in plan at one time, and the cells ahead of it coloured by G/G_c."""
+    """Draw the front in plan at one time, and the cells ahead of it coloured by G/G_c."""
     cells, ratio = snapshot.release(below_ply)
     cells, ratio = fields.full_plate(cells), np.tile(ratio, len(IMAGES[fields.part]))
     shown = PolyCollection(cells, array=ratio, cmap="plasma_r", norm=Normalize(0, max(1.0, np.max(ratio, initial=0))),
@@ -53,7 +53,7 @@ def draw_front(axes: Axes, fields: Fields, below_ply: int, snapshot: Snapshot, s
 
 def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence[Snapshot],
                  style: PictureStyle) -> None:
-    """Draw G/G_c against the angle from x to the cells ahead of the front; one quarter stands for all."""
+    """Draw G/G_c against the angle from x to the cells ahead of the front; of a quarter only the modelled part."""
     by_load_steps = is_by_load_steps(fields)
     colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
     for snapshot, colour in zip(snapshots, colours, strict=False):
@@ -75,7 +75,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
 
 
 def _chosen(fields: Fields, below_ply: int, times: Sequence[float] | None) -> list[Snapshot]:
-    """Return the times nearest to those required, or up to eight evenly among those with a loaded front."""
+    """Return the stored times nearest to the requested ones, or up to eight equally spaced ones with a loaded front."""
     def loaded(snapshots: Sequence[Snapshot]) -> list[Snapshot]:
         return [snapshot for snapshot in snapshots if len(snapshot.release(below_ply)[1])]
 

@@ -1,4 +1,4 @@
-"""A movie of a run (`implam-movie NAME.h5`): interfaces that delaminate in plan, with force or stress below."""
+"""A movie of a run (`implam-movie NAME.h5`): delamination of all interfaces in plan, with force or stress below."""
 
 import argparse
 from collections.abc import Sequence
@@ -14,25 +14,26 @@ from PIL import Image
 from implam_post.io.compression import STRESS
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
 from implam_post.io.fields import Fields, read_fields
-from implam_post.io.history import History, read_history
+from implam_post.io.history import History
+from implam_post.io.run import open_run
 from implam_post.plot.compression import is_compressed
 from implam_post.plot.plan_frame import fill, frame, reach_of, state_of
 from implam_post.plot.style import PictureStyle, add_options, style_of
 
-# What is drawn against time: without and with lines that compress the plate.
+# Column drawn against time: of an impact, of a compression.
 _LOADS = (("force", "contact force", "force"), (STRESS, "far-field stress", "stress"))
 
-# Least and largest number of pictures per second: files hold whole hundredths or thousandths of a second.
+# Smallest and largest frame rate: files store durations in hundredths or thousandths of a second.
 _RATES = (0.01, 1000.0)
 
 
 def frames(fields: Fields, history: History | None, style: PictureStyle) -> list[Image.Image]:
-    """Return a picture for each time written, all of one scale."""
+    """Return a picture for each time written, all on the same scale."""
     return [_picture(fields, history, style, place) for place in range(len(fields.snapshots))]
 
 
 def _picture(fields: Fields, history: History | None, style: PictureStyle, moment: int) -> Image.Image:
-    """Draw what has delaminated at a time, an interface a colour, the nearest to the struck face on top."""
+    """Draw the delaminations at a time, one colour per interface, the interface nearest to the struck face on top."""
     time = fields.snapshots[moment].time
     figure = Figure(figsize=(6, 6 if history is None else 8), layout="constrained", dpi=style.dots_per_inch)
     canvas = FigureCanvasAgg(figure)
@@ -58,16 +59,15 @@ def _picture(fields: Fields, history: History | None, style: PictureStyle, momen
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Draw the movie, and print its path."""
+    """Draw the movie and print its path."""
     style = style_of(options, [options.fields])
     if not _RATES[0] <= options.rate <= _RATES[1]:
-        raise ImplamError(f"--rate takes {_RATES[0]:g} to {_RATES[1]:g}.")
+        raise ImplamError(f"--rate must be from {_RATES[0]:g} to {_RATES[1]:g}.")
     fields = read_fields(options.fields)
     if not fields.snapshots[-1].mesh.interfaces:
         raise FileError(f"{options.fields} has no interface that may delaminate.")
-    history = options.fields.with_name(f"{options.fields.stem}_history.csv")
     with matplotlib.rc_context({"font.size": style.letters}):
-        pictures = frames(fields, read_history(history) if history.exists() else None, style)
+        pictures = frames(fields, open_run(options.fields).columns, style)
     path = options.save or options.fields.with_suffix(".gif")
     try:
         pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)
@@ -79,9 +79,9 @@ def _command(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
-    parser = CommandParser("implam-movie", description="Draw how the interfaces of NAME.h5 delaminate, a picture for "
-                           "each time written (`fields_every` of &output), with the force of the history below, or "
-                           "with the stress of a compression.")
+    parser = CommandParser("implam-movie", description="Draw the delamination of the interfaces of NAME.h5, a picture "
+                           "for each time written (`fields_every` of &output), with the force of the history or the "
+                           "stress of a compression below.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")
     parser.add_argument("--save", type=Path, metavar="FILE", help="file, .gif, .webp or .png (default: NAME.gif)")
     parser.add_argument("--rate", type=positive, default=5.0, help="pictures per second (default: 5)")

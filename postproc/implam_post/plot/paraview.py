@@ -1,5 +1,5 @@
-"""Files for ParaView beside NAME.xdmf (`implam-paraview NAME.h5`): the impactor as a sphere that moves, damage seen
-through the plate, and a state that opens all of it ready."""
+"""Files for ParaView in addition to NAME.xdmf (`implam-paraview NAME.h5`): the moving impactor as a sphere, the
+projected damage, and a state file that opens both with the plate."""
 
 import argparse
 from collections.abc import Sequence
@@ -11,17 +11,18 @@ import numpy as np
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.fields import MODES, Fields, Snapshot, deck_in, read_fields
 from implam_post.io.files import write_text
-from implam_post.io.history import History, read_history
+from implam_post.io.history import History
+from implam_post.io.run import open_run
 from implam_post.laminate.decks import plies_of
 
 _ROUND, _RINGS = 48, 24
-# Of each place in plan: delaminated interfaces, the first of them, share of the plies with a failure, and by mode.
+# By cell in plan: number of delaminated interfaces, the first of them, fraction of plies with a failure, and by mode.
 _FIELDS = ("delaminated_interfaces", "first_delaminated_below_ply", "share_of_plies_failed", "share_of_plies_cracked",
            "share_of_plies_with_fibre_failure")
 
 
 def sphere(radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return points (points, 3) and triangles (triangles, 3) of a sphere around the origin."""
+    """Return points (points, 3) and triangles (triangles, 3) of a sphere about the origin."""
     polar, around = np.linspace(0, np.pi, _RINGS + 1), np.linspace(0, 2 * np.pi, _ROUND, endpoint=False)
     polar, around = np.meshgrid(polar, around, indexing="ij")
     points = radius * np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)], axis=-1)
@@ -34,7 +35,7 @@ def sphere(radius: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def plan_of(snapshot: Snapshot) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the cells in plan, (cells, 4, 2), and what is seen of damage through the thickness of each."""
+    """Return the cells in plan, (cells, 4, 2), and the damage through the thickness of each."""
     mesh = snapshot.mesh
     scale = np.abs(mesh.corners).max() or 1.0
     middles = np.round(mesh.corners.mean(axis=1) / scale * 1e7).astype(np.int64)
@@ -56,10 +57,10 @@ def plan_of(snapshot: Snapshot) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 
 def write_files(fields: Fields, history: History | None, base: Path) -> list[Path]:
-    """Write BASE_paraview.h5, BASE_through.xdmf, BASE_impactor.xdmf if one moves, BASE_paraview.py; return paths."""
+    """Write BASE_paraview.h5, BASE_through.xdmf, BASE_impactor.xdmf (if any), BASE_paraview.py; return paths."""
     deck = deck_in(fields.path)
     if deck is None:
-        raise FileError(f"{fields.path} holds no deck, from which radius and thickness are taken.")
+        raise FileError(f"{fields.path} has no deck, which is needed for radius and thickness.")
     thickness = sum(ply.thickness for ply in plies_of(deck))
     radius = deck.number("impactor", "radius", 0.0) if deck.has("impactor") else 0.0
     data = base.with_name(f"{base.name}_paraview.h5")
@@ -85,7 +86,7 @@ def write_files(fields: Fields, history: History | None, base: Path) -> list[Pat
 
 
 def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, height: float) -> str:
-    """Write what is seen through the full plate at a time, drawn on its back; return the XDMF of it."""
+    """Write the damage through the thickness of the full plate at a time, on its back face; return the XDMF of it."""
     cells, values = plan_of(snapshot)
     cells_of_plate = fields.full_plate(cells)
     count = len(cells_of_plate)
@@ -99,7 +100,7 @@ def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, 
 
 
 def _write_sphere(file: h5py.File, fields: Fields, history: History, radius: float, start: np.ndarray) -> list[str]:
-    """Write the impactor at every time, from first contact on; return the XDMF of each."""
+    """Write the impactor at every time, starting at first contact; return the XDMF of each."""
     sphere_points, file["triangles"] = sphere(radius)
     depths = np.interp([snapshot.time for snapshot in fields.snapshots], history.time,
                        history["impactor_displacement"])
@@ -109,7 +110,7 @@ def _write_sphere(file: h5py.File, fields: Fields, history: History, radius: flo
 
 
 def _item(file: h5py.File, path: str) -> str:
-    """Return an item of data."""
+    """Return a DataItem of XDMF."""
     data = file[path]
     shape = " ".join(map(str, data.shape))
     kind = "Float" if data.dtype.kind == "f" else "Int"
@@ -118,15 +119,15 @@ def _item(file: h5py.File, path: str) -> str:
 
 
 def _shape(file: h5py.File, kind: str, cells: str, points: str) -> str:
-    """Return topology and geometry."""
+    """Return topology and geometry of XDMF."""
     return (f'<Topology TopologyType="{kind}" NumberOfElements="{len(file[cells])}">{_item(file, cells)}</Topology>\n'
             f'<Geometry GeometryType="XYZ">{_item(file, points)}</Geometry>\n')
 
 
 def _state(base: Path, length: float, may_delaminate: bool, moves: bool) -> str:
-    """Return the state: the plate, coloured by its delaminations, what is seen through it, and the impactor."""
+    """Return the state file: plate, coloured by delaminations, damage through the thickness, and impactor."""
     script = f'''# State of ParaView: File > Load State, or paraview --script={base.name}_paraview.py
-# z points along the impact, away from the struck face; the camera has the struck face above.
+# z points in the direction of impact; the camera shows the struck face on top.
 import os
 
 from paraview.simple import *
@@ -135,14 +136,14 @@ folder = os.path.dirname(os.path.abspath(__file__)) if "__file__" in globals() e
 
 
 def opened(name):
-    """Read a file beside this one."""
+    """Read a file in the folder of this one."""
     reader = XDMFReader(registrationName=name, FileNames=[os.path.join(folder, name + ".xdmf")])
     reader.UpdatePipeline()
     return reader
 
 
 view = GetActiveViewOrCreate("RenderView")
-# The modelled part of the plate: layers at their heights, moved by their displacement.
+# The modelled part of the plate: layers at their z, with displacements.
 plate = opened("{base.name}")
 moved = WarpByVector(registrationName="moved plate", Input=plate)
 moved.Vectors = ["POINTS", "displacement"]
@@ -178,18 +179,16 @@ Render(view)
 def _command(options: argparse.Namespace) -> int:
     """Write the files and print their paths."""
     fields = read_fields(options.fields)
-    path = options.fields.with_name(f"{options.fields.stem}_history.csv")
-    history = read_history(path) if path.exists() else None
-    print(*write_files(fields, history, options.fields.with_suffix("")), sep="\n")
+    print(*write_files(fields, open_run(options.fields).columns, options.fields.with_suffix("")), sep="\n")
     return EXIT_DONE
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
-    parser = CommandParser("implam-paraview", description="Write for ParaView, beside NAME.h5: the impactor as a "
-                           "sphere that moves (NAME_impactor.xdmf), damage seen through the full plate "
-                           "(NAME_through.xdmf), and NAME_paraview.py, a state that opens both with the plate. "
-                           "z points along the impact.")
+    parser = CommandParser("implam-paraview", description="Write files for ParaView to the folder of NAME.h5: moving "
+                           "impactor as a sphere (NAME_impactor.xdmf), projected damage on the full plate "
+                           "(NAME_through.xdmf), and NAME_paraview.py, a state file that opens both with the plate. "
+                           "z points in the direction of impact.")
     parser.add_argument("fields", type=Path, metavar="NAME.h5")
     return run(_command, parser, arguments)
 

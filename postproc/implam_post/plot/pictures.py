@@ -1,4 +1,4 @@
-"""The pictures that `implam-plot` draws of histories and fields."""
+"""Pictures of histories and fields by `implam-plot`."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -31,7 +31,7 @@ _PLAIN = PictureStyle()
 
 
 def plot_forces(histories: Sequence[History], path: Path) -> Path:
-    """Draw the force of several histories over each other."""
+    """Draw the forces of several histories in one picture."""
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     _draw(figure.subplots(), histories, "force")
     return _save(figure, path)
@@ -39,7 +39,7 @@ def plot_forces(histories: Sequence[History], path: Path) -> Path:
 
 def plot_response(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN,
                   measured: History | None = None) -> Path:
-    """Draw force, indentation, deflection, all with what was measured, and force against displacement."""
+    """Draw force, indentation, deflection, all with measured values, and force against displacement."""
     figure = Figure(figsize=(8, 13), layout="constrained")
     *panels, last = figure.subplots(len(RESPONSES) + 1)
     for axes, column in zip(panels, RESPONSES, strict=True):
@@ -52,9 +52,9 @@ def plot_response(histories: Sequence[History], path: Path, style: PictureStyle 
 def plot_compression(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN,
                      summaries: Sequence[Mapping[str, Any]] | None = None,
                      undamaged: float | None = None) -> Path | None:
-    """Draw stress and gauges of the compressions among some histories; None if there are none.
+    """Draw stress and gauges of the histories that are compressions; None if there are none.
 
-    Summaries of the same runs, empty where there is none, give remarks; `undamaged` is the undamaged plate's strength.
+    Remarks are from the summaries of the runs, which may be empty; `undamaged` is the strength of the undamaged plate.
     """
     compressed = [(history, summary) for history, summary in
                   zip(histories, summaries or [{}] * len(histories), strict=True) if is_compressed(history)]
@@ -67,14 +67,14 @@ def plot_compression(histories: Sequence[History], path: Path, style: PictureSty
 
 
 def plot_energies(history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:
-    """Draw the energies of a history stacked, those below zero downwards, and the total at the start."""
+    """Draw the energies of a history stacked, negative ones downwards, and the total at the start."""
     figure = Figure(figsize=(8, 5), layout="constrained")
     _stack(figure.subplots(), history, style)
     return _save(figure, path, style)
 
 
 def plot_overview(fields: Fields, history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:
-    """Draw each interface in plan, with the cracks beside it, the force and the energies in one picture."""
+    """Draw in one picture each interface in plan with the cracks of adjacent plies, the force and the energies."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     if not interfaces:
         raise FileError(f"{fields.name} has no interface that may delaminate.")
@@ -95,7 +95,7 @@ def plot_overview(fields: Fields, history: History, path: Path, style: PictureSt
 
 def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None,
                 style: PictureStyle = _PLAIN) -> list[Path]:
-    """Draw what the fields hold of interfaces, of their fronts (at some times) and of plies, a picture each."""
+    """Draw the interfaces, their fronts (at some times) and the plies of the fields, one picture each."""
     figures = {}
     if fields.snapshots[-1].mesh.interfaces:
         figures["delamination"] = delamination_figure(fields, style)
@@ -131,7 +131,7 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
 
 
 def response_of(history: History, column: str) -> np.ndarray:
-    """Return a column as it is drawn: without the indentation where there is a gap."""
+    """Return the values of a column to be drawn: no indentation where impactor and plate are apart."""
     if column == "indentation" and "force" in history.columns:
         return np.where(history["force"] > 0, history[column], np.nan)
     return history[column]
@@ -139,7 +139,7 @@ def response_of(history: History, column: str) -> np.ndarray:
 
 def _draw(axes: Axes, histories: Sequence[History], column: str, style: PictureStyle = _PLAIN,
           measured: History | None = None) -> None:
-    """Draw a column of several histories, each in a style of its own, and what was measured as dots."""
+    """Draw a column of several histories, each in its own style, and measured values as dots."""
     words, dimension = RESPONSES[column]
     drawn = [*histories, *([measured] if measured is not None and column in measured.columns else [])]
     time = style.clock(np.concatenate([history.time for history in drawn]),
@@ -165,7 +165,7 @@ def _draw(axes: Axes, histories: Sequence[History], column: str, style: PictureS
 
 
 def _draw_loop(axes: Axes, histories: Sequence[History], style: PictureStyle) -> None:
-    """Draw the force against the displacement of the impactor, or of the struck point where no history has that."""
+    """Draw the force against the displacement of the impactor, or of the struck point if no history has the former."""
     along = "impactor_displacement" if all(
         np.any(history.columns.get("impactor_displacement", 0)) for history in histories) else "deflection"
     shown = [in_contact(history) for history in histories]
@@ -180,14 +180,14 @@ def _draw_loop(axes: Axes, histories: Sequence[History], style: PictureStyle) ->
 
 
 def _names(paths: Sequence[str]) -> list[str]:
-    """Return short names of runs: that of the case, with its folder where two have the same."""
+    """Return short names of runs: the name of the case, with its folder where two are equal."""
     stems = [Path(path).stem.removesuffix("_history") for path in paths]
     return [stem if stems.count(stem) == 1 else f"{Path(path).parent.name}/{stem}"
             for stem, path in zip(stems, paths, strict=True)]
 
 
 def _save(figure: Figure, path: Path, style: PictureStyle = _PLAIN) -> Path:
-    """Write the figure, making the folder if it is not there, and return the path."""
+    """Write the figure, create its folder if necessary, and return the path."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         lay_out(figure)

@@ -1,4 +1,4 @@
-"""Pictures of the plate in plan: delamination of each interface and of all as in a C-scan, failures of each ply."""
+"""Pictures of the plate in plan: delamination of each interface, projected delamination, failures of each ply."""
 
 from collections.abc import Sequence
 
@@ -21,14 +21,14 @@ from implam_post.plot.style import PictureStyle
 _COLOURS = {"fibre failure": "C3", "matrix cracking": "C0", "matrix crushing": "C1"}
 _COLUMNS = 5
 _PLAIN = PictureStyle()
-# Inches beside a map, above and below it (title, axis, bar), of the words below all, and of a legend.
+# Inches next to a map, above and below it (title, axis, bar), of the text below all maps, and of a legend.
 _BESIDE, _WORDS, _CAPTION, _BAR = 0.9, 2.0, 0.6, 0.6
-# Digits of areas, as many as the summary prints.
+# Digits of areas, as in the summary.
 _DIGITS = 4
 
 
 def delamination_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
-    """Draw each interface of the full plate on one scale of lengths, coloured by the time it delaminated."""
+    """Draw each interface of the full plate on one scale of lengths, coloured by the time of delamination."""
     interfaces = fields.snapshots[-1].mesh.interfaces
     columns = 1 if len(interfaces) < 4 else 3
     rows = -(-len(interfaces) // columns)
@@ -48,9 +48,9 @@ def delamination_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
 
 def draw_delamination(axes: Axes, fields: Fields, below_ply: int, style: PictureStyle = _PLAIN,
                       reach: Sequence[float] | None = None) -> None:
-    """Draw the delamination below a ply: when each place delaminated, and its outline at every time written.
+    """Draw the delamination below a ply: the time of delamination of each place, and outlines at all times written.
 
-    What had delaminated before the run is the starter, in grey. `reach` is what the picture has to hold.
+    The initial delamination (starter) is grey. `reach` is the size of the region to be shown.
     """
     regions = [fields.delaminated(place, below_ply) for place in range(len(fields.snapshots))]
     draw_times(axes, fields, regions, fields.starter(below_ply), style)
@@ -59,7 +59,7 @@ def draw_delamination(axes: Axes, fields: Fields, below_ply: int, style: Picture
 
 
 def title_of(fields: Fields, below_ply: int, style: PictureStyle = _PLAIN) -> str:
-    """Return area and extents of an interface at the last time, those of the summary."""
+    """Return area and extents of an interface at the last time, as in the summary."""
     figures = fields.interface(len(fields.snapshots) - 1, below_ply)
     kind = "dissipated area" if figures.is_cohesive else "delaminated area"
     along, across = (style.shown("length", length) for length in figures.extents)
@@ -69,10 +69,9 @@ def title_of(fields: Fields, below_ply: int, style: PictureStyle = _PLAIN) -> st
 
 
 def projected_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
-    """Draw all interfaces seen through the plate as a C-scan does, coloured as `style.projected` says.
+    """Draw the projected (C-scan) delamination, coloured according to `style.projected`.
 
-    By depth a place has the colour of the delaminated interface nearest to the struck face, by time of when the first
-    one delaminated.
+    The colour is the delaminated interface nearest to the struck face (depth), or the time of first delamination.
     """
     interfaces, last = fields.snapshots[-1].mesh.interfaces, len(fields.snapshots) - 1
     final = fields.projected(last)
@@ -83,7 +82,7 @@ def projected_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
         earlier = [fields.projected(place) for place in range(last)]
         draw_times(axes, fields, [*earlier, final], np.empty((0, 4, 2)), style)
     else:
-        # Between points the largest share of all is not the larger of two linear ones: grey is left of it.
+        # Interpolating the largest share is not the largest of the interpolated shares: the difference stays grey.
         fill(axes, final, facecolor="lightgrey", linewidth=0)
         draw_depths(axes, fields.projected_depths(last))
     if style.projected == "depth" and len(interfaces) > 1:
@@ -101,7 +100,7 @@ def projected_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
 
 
 def draw_depths(axes: Axes, regions: Sequence[np.ndarray], cmap: str = "turbo") -> None:
-    """Draw interfaces over each other, the nearest to the struck face on top."""
+    """Draw all interfaces in one map, the interface nearest to the struck face on top."""
     norm = BoundaryNorm(np.arange(len(regions) + 1) - 0.5, 256)
     for place in reversed(range(len(regions))):
         fill(axes, regions[place], facecolor=colormaps[cmap](norm(place)), linewidth=0)
@@ -109,7 +108,7 @@ def draw_depths(axes: Axes, regions: Sequence[np.ndarray], cmap: str = "turbo") 
 
 def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starter: np.ndarray,
                style: PictureStyle) -> None:
-    """Draw regions that grow, by the time at which each is reached, the starter in grey, with a bar."""
+    """Draw a growing region coloured by the time of delamination, the starter in grey, with a colour bar."""
     times = [snapshot.time for snapshot in fields.snapshots]
     scale = ScalarMappable(Normalize(0, times[-1] if times[-1] > 0 else 1), "viridis_r")
     several = len(times) > 1
@@ -126,12 +125,12 @@ def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starte
 
 
 def _last(fields: Fields, below_ply: int) -> np.ndarray:
-    """Return what has delaminated below a ply at the last time."""
+    """Return the delamination below a ply at the last time."""
     return fields.delaminated(len(fields.snapshots) - 1, below_ply)
 
 
 def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
-    """Draw over a delamination where the matrix cracked in the ply on the back and in the one above it."""
+    """Draw the matrix cracks of the ply at the back and of the ply above it onto a delamination."""
     last = fields.snapshots[-1]
     for ply, line_style in ((last.mesh.plies[-1], "-"), (below_ply, ":")):
         edges = outline(fields.full_plate(last.failed_cells(ply, MODES["matrix cracking"])))
@@ -141,7 +140,7 @@ def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
 
 
 def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), style: PictureStyle = _PLAIN) -> Figure:
-    """Draw failures of each ply of the full plate at the last time, all on one scale; cracks run along the fibres."""
+    """Draw the failures of each ply of the full plate at the last time on one scale; cracks are along the fibres."""
     last = fields.snapshots[-1]
     plies = sorted(last.failures)
     columns = min(_COLUMNS, len(plies))
@@ -166,7 +165,7 @@ def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), style: 
 
 def draw_failures(axes: Axes, fields: Fields, ply: int, modes: Sequence[str], angle: float | None,
                   style: PictureStyle = _PLAIN) -> None:
-    """Draw where a ply failed, a mode over the others where several meet; cracks as lines along known fibres."""
+    """Draw the failures of a ply, later modes on top of others; cracks are lines if the fibre angle is known."""
     for name in reversed(modes):
         cells = fields.full_plate(fields.snapshots[-1].failed_cells(ply, MODES[name]))
         if name == "matrix cracking" and angle is not None:
@@ -178,7 +177,7 @@ def draw_failures(axes: Axes, fields: Fields, ply: int, modes: Sequence[str], an
 
 
 def along_fibres(cells: np.ndarray, angle: float) -> np.ndarray:
-    """Return a line through the middle of each cell along an angle in degrees, to its border, (cells, 2 ends, 2)."""
+    """Return a line through the centre of each cell at an angle in degrees, to its border, (cells, 2 ends, 2)."""
     middles, halves = cells.mean(axis=1), np.ptp(cells, axis=1) / 2
     direction = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
     lengths = np.min(halves / np.maximum(np.abs(direction), 1e-12), axis=1, initial=np.inf)
@@ -187,9 +186,9 @@ def along_fibres(cells: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _angles(fields: Fields) -> dict[int, float]:
-    """Return the fibre angle of each ply; nothing if the deck of the run is not known.
+    """Return the fibre angle of each ply; empty if the deck of the run is not known.
 
-    A quarter is mirrored, which leaves only 0 and 90 degrees as they are; no other laminate has a quarter.
+    Mirror images of a quarter keep angles of 0 and 90 degrees only, and only such laminates may be modelled so.
     """
     deck = deck_in(fields.path)
     try:
@@ -199,7 +198,7 @@ def _angles(fields: Fields) -> dict[int, float]:
 
 
 def _reach(fields: Fields) -> tuple[float, float]:
-    """Return how far failures reach around the struck point at the last time."""
+    """Return the size of the region of failures around the struck point at the last time."""
     last = fields.snapshots[-1]
     reached = [reach_of(fields.full_plate(last.failed_cells(ply, mode)), fields)
                for ply in last.failures for mode in MODES.values()]

@@ -1,4 +1,4 @@
-"""What maps of the plate have in common: place and size, what they show of the plate, and the words below them."""
+"""Common parts of maps of the plate: position and size, region shown, and the text below."""
 
 from collections.abc import Sequence
 
@@ -16,18 +16,18 @@ from implam_post.io.units import Axis
 from implam_post.plot.style import PictureStyle
 
 _PLAIN = PictureStyle()
-# Room beside what a map shows, as a part of that; the plate in its corner fits into it.
+# Margin of a map as a fraction of the region shown, with space for the small plate in its corner.
 _MARGIN = 0.15
 
 
 def fill(axes: Axes, cells: np.ndarray, **drawn: object) -> PathPatch | None:
-    """Draw cells as one region with an outline; nothing without cells."""
+    """Draw cells as one region with an outline; without cells draw nothing."""
     path = outlines(cells)
     return None if path is None else axes.add_patch(PathPatch(path, **drawn))
 
 
 def outlines(cells: np.ndarray) -> Outline | None:
-    """Return the closed lines around cells as one path, holes turning the other way; nothing without cells."""
+    """Return the closed outlines of cells as one path, holes in the opposite sense; None without cells."""
     edges = outline(cells)
     if not len(edges):
         return None
@@ -57,29 +57,29 @@ def is_by_load_steps(fields: Fields) -> bool:
 
 
 def clock_of(fields: Fields, style: PictureStyle) -> Axis:
-    """Return how times are shown."""
+    """Return factor and label of times."""
     return style.clock([fields.snapshots[-1].time], [is_by_load_steps(fields)])
 
 
 def state_of(fields: Fields, time: float, style: PictureStyle, digits: int = 3) -> str:
-    """Return a time of the fields in words."""
+    """Return a time of the fields as text."""
     by_load_steps = is_by_load_steps(fields)
     return ("" if by_load_steps else "time ") + style.instant(time, by_load_steps, digits)
 
 
 def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True) -> str:
-    """Return what holds for all maps of a picture: state, what outlines enclose, and from where the plate is seen.
+    """Return the text for all maps of a picture: state, meaning of outlines, and direction of view.
 
-    z points from the struck face to the back, so that with x to the right and y up it points at whoever looks.
+    z points from the struck face to the back, so that with x to the right and y up it points towards the viewer.
     """
     state = state_of(fields, fields.snapshots[-1].time, style, 4)
-    law = "outlines enclose the area dissipated, where its share is largest; " if outlined and any(
+    law = "outlines enclose the dissipated area, where the dissipated fraction is largest; " if outlined and any(
         found.is_cohesive for found in fields.snapshots[-1].interfaces.values()) else ""
-    return f"State at {state}; {law}0° along x;\nview on the back face (z points at you), + struck point"
+    return f"State at {state}; {law}0° along x;\nview of the back face (z towards the viewer), + struck point"
 
 
 def locate(axes: Axes, fields: Fields) -> None:
-    """Draw the plate with its supports and what a map shows of it into a corner of the map."""
+    """Draw the plate, its supports and the region shown in a corner of the map."""
     deck = deck_in(fields.path)
     try:
         along, across = deck.lengths() if deck else (0.0, 0.0)
@@ -96,7 +96,7 @@ def locate(axes: Axes, fields: Fields) -> None:
 
 
 def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> None:
-    """Draw the border of the plate and the windows of its supports."""
+    """Draw the edges of the plate and the windows of its supports."""
     axes.add_patch(Rectangle((-along / 2, -across / 2), along, across, facecolor="white", edgecolor="black",
                              linewidth=0.8))
     for support in deck.groups.get("support", []) if deck is not None else ():
@@ -109,7 +109,7 @@ def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> No
 
 
 def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
-    """Return the sides of the smallest rectangle around the struck point that holds cells; 0 if there are none."""
+    """Return the sides of the smallest rectangle, centred at the struck point, around cells; 0 if there are none."""
     if not len(cells):
         return 0.0, 0.0
     along, across = 2 * np.max(np.abs(cells - struck_point(fields)), axis=(0, 1))
@@ -117,13 +117,13 @@ def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
 
 
 def height_of(width: float, reach: Sequence[float]) -> float:
-    """Return the height of a map of some width, without its words."""
+    """Return the height of a map of a given width, without text."""
     along, across = np.maximum(reach, max(reach) / 3)
     return width * min(across / along, 2.0) if along > 0 else width
 
 
 def frame(axes: Axes, fields: Fields, reach: Sequence[float], style: PictureStyle = _PLAIN) -> None:
-    """Show a rectangle around the struck point with a margin, equal scales along both axes, and units."""
+    """Set a map to a rectangle around the struck point with a margin, equal scales on both axes, and units."""
     largest, middle = max(reach), struck_point(fields)
     half = (0.5 + _MARGIN) * np.maximum(reach, largest / 3) if largest > 0 else np.ones(2)
     low, high = middle - half, middle + half

@@ -1,4 +1,4 @@
-"""Style of pictures: units of the axes, kind of file, dots per inch, size of letters, and styles of several runs."""
+"""Style of pictures: units of axes, file format, dots per inch, font size, and line styles of several runs."""
 
 import argparse
 from collections.abc import Iterable
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = ("png", "pdf", "svg")
-# Styles of runs drawn over each other, that differ without colours too.
+# Line styles of several runs, which can be distinguished without colours.
 STYLES = [{"color": f"C{place}", "linestyle": line_style} for place, line_style in
           enumerate(("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 3))))]
 
 
 @dataclass(frozen=True)
 class PictureStyle:
-    """What holds for all pictures of a command; `system` is that of the results, empty if it is not known."""
+    """Settings for all pictures of a command; `system` is the system of units of the results, empty if not known."""
 
     system: str = ""
     dots_per_inch: int = 150
@@ -30,55 +30,55 @@ class PictureStyle:
 
     @property
     def seconds(self) -> float:
-        """Seconds of the unit of time of the results; 1 in an unknown system."""
+        """The time unit of the results in seconds; 1 in an unknown system."""
         return SYSTEMS[self.system][2] if self.system in SYSTEMS else 1.0
 
     def axis(self, label: str, dimension: str, values: Iterable[float]) -> Axis:
-        """Return factor and label of an axis, in units that suit its values."""
+        """Return factor and label of an axis, in units suitable for its values."""
         return axis_of(label, dimension, values, self.system)
 
     def clock(self, times: Iterable[float], by_load_steps: Iterable[bool]) -> Axis:
-        """Return factor and label of an axis of times of some runs; those of load steps are load factors."""
+        """Return factor and label of a time axis of runs; times of load steps are load factors."""
         kinds = set(by_load_steps)
         if kinds == {True}:
             return Axis(1.0, "load factor")
         return Axis(1.0, "time (the deck's units), load factor") if True in kinds else self.axis("time", "time", times)
 
     def instant(self, time: float, by_load_steps: bool, digits: int = 3) -> str:
-        """Return a time with its unit, or what else it is: a load factor."""
+        """Return a time with its unit, or a load factor, as text."""
         return f"load factor {time:.{digits}g}" if by_load_steps else self.shown("time", time, digits)
 
     def shown(self, dimension: str, value: float, digits: int = 3) -> str:
-        """Return a value with its unit, to some digits; without one in an unknown system."""
+        """Return a value with its unit, rounded to some digits; without a unit in an unknown system."""
         axis = self.axis("", dimension, [value])
         unit = axis.label.strip(" []") if self.system in SYSTEMS else ""
         return f"{axis.factor * value:.{digits}g} {unit}".strip()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the appearance of pictures."""
+    """Add the options for the appearance of pictures."""
     parser.add_argument("--units", choices=SYSTEMS, help="system of units of the results (default: that of the deck in "
-                        "NAME.h5); axes are in mm, ms, kN and J then")
+                        "NAME.h5); if it is known, axes are in mm, ms, kN and J")
     parser.add_argument("--dpi", type=int, help="dots per inch (default: 150; pictures of --save and movies 80)")
-    parser.add_argument("--font-size", type=float, default=10.0, help="size of letters in points (default: 10)")
+    parser.add_argument("--font-size", type=float, default=10.0, help="font size in points (default: 10)")
 
 
 def style_of(options: argparse.Namespace, results: Iterable[Path]) -> PictureStyle:
-    """Return the style that the options request; the system of units is that of the first deck that has one."""
+    """Return the style by the options; the default system of units is that of the first deck with a known one."""
     from implam_post.io.deck import system_of_deck
     from implam_post.io.fields import deck_in
 
     dots = (80 if getattr(options, "save", None) else 150) if options.dpi is None else options.dpi
     if not (10 <= dots <= 2400 and 3 <= options.font_size <= 60):
-        raise ImplamError("--dpi takes 10 to 2400, --font-size 3 to 60.")
+        raise ImplamError("--dpi must be from 10 to 2400, --font-size from 3 to 60.")
     system = options.units or next((name for path in results if (name := system_of_deck(deck_in(path)))), "")
     return PictureStyle(system, dots, options.font_size, getattr(options, "format", "png"),
                 getattr(options, "projected", "depth"))
 
 
 def lay_out(figure: "Figure") -> None:
-    """Lay a figure out before it is drawn: ticks follow from the sizes of axes, and these from the widths of ticks.
+    """Compute the layout of a figure before it is drawn, as ticks depend on the sizes of axes and vice versa.
 
-    Drawn at once, titles and labels are cut off where axes keep equal scales.
+    Otherwise titles and labels of axes with equal scales would be cut off.
     """
     figure.draw_without_rendering()

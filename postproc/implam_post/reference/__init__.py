@@ -1,2 +1,2 @@
-"""Closed-form and semi-analytic solutions that runs are checked against: Navier's series for simply supported plates,
-the impact of a rigid sphere by modal superposition with an indentation law, and the command `implam-check-impact`."""
+"""Closed-form and semi-analytic reference solutions: Navier's series for simply supported plates, and the impact of a
+rigid sphere by modal superposition with an indentation law. Command: `implam-check-impact`."""

@@ -21,7 +21,7 @@ _COMPARED = {"peak_force": "peak force", "peak_force_time": "time of peak force"
 
 
 class Difference(NamedTuple):
-    """One quantity of both histories; the difference is a fraction of a scale of that kind of quantity."""
+    """One quantity of both histories; its relative difference refers to `scale`."""
 
     label: str
     found: float
@@ -32,8 +32,8 @@ class Difference(NamedTuple):
 def differences(history: History, reference: History) -> list[Difference]:
     """Return the differences of the quantities that at least one of the histories has.
 
-    Forces are measured by the peak force, times by the length of the first contact, the deflection by its largest
-    value, the velocity by that at first contact; quantities that one history lacks differ by NaN.
+    Scales are the peak force for forces, the duration of the first contact for times, the largest deflection, and the
+    velocity at first contact. The difference is NaN if one history does not have the quantity.
     """
     first = contact(reference, 0)
     end = first.end if math.isfinite(first.end) else reference.time[-1]
@@ -59,26 +59,26 @@ def differences_table(rows: Sequence[Difference]) -> str:
 
 
 def reference_table(reference: History) -> str:
-    """Return the figures of the semi-analytic solution alone as lines of text."""
+    """Return the figures of the semi-analytic solution as lines of text."""
     return "\n".join(f"{label:<26} {value:13.6g}" for name, label in _COMPARED.items()
                      if math.isfinite(value := QUANTITIES[name](reference)))
 
 
 def find_history(deck: Deck, output: Path | None) -> Path | None:
-    """Return the history in `output`, the deck's output folder (from here or from the deck) or here."""
+    """Return the history in `output`, in the deck's output folder (from here or the deck) or in the current folder."""
     folders = [deck.directory, deck.path.parent / deck.directory, Path()]
     candidates = [folder / f"{deck.name}_history.csv" for folder in ([output] if output else []) + folders]
     return next((path for path in candidates if path.is_file()), None)
 
 
 def notes(deck: Deck) -> list[str]:
-    """Return the parts of the deck that the semi-analytic solution does not model."""
+    """Return notes on parts of the deck that the semi-analytic solution does not model."""
     found = []
     if deck.choice("case", "kinematics", ("von_karman", "linear")) != "linear":
         found.append("the deck requires von Karman strains; the semi-analytic plate is linear.")
     if deck.choice("impactor", "contact_area", ("patch", "sphere")) == "sphere":
-        found.append("the deck's impactor presses as a sphere; the semi-analytic one presses on the patch alone.")
-    found += [f"the deck models &{group}; the semi-analytic plate stays undamaged."
+        found.append("contact in the deck is that of a sphere; the semi-analytic solution loads the patch only.")
+    found += [f"the deck models &{group}; the semi-analytic plate is undamaged."
               for group in ("ply_damage", "delamination") if deck.has(group)]
     return found
 
@@ -96,7 +96,7 @@ def _command(options: argparse.Namespace) -> int:
         folder = options.output or (path.parent if path else Path())
         print(f"plot: {plot_forces([reference, *([history] if history else [])], folder / f'{deck.name}_check.png')}")
     if history is None:
-        print(f"no {deck.name}_history.csv found: the semi-analytic solution alone\n{reference_table(reference)}")
+        print(f"no {deck.name}_history.csv was found: semi-analytic solution only\n{reference_table(reference)}")
         return EXIT_DONE
     rows = differences(history, reference.until(history.time[-1]))
     print(f"history: {path}\n{differences_table(rows)}")
@@ -110,13 +110,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
                            "orthotropic plate against its semi-analytic solution.")
     parser.add_argument("deck", type=Path, metavar="DECK", help="the namelist deck")
     parser.add_argument("--history", type=Path, metavar="CSV",
-                        help="history to check (default: NAME_history.csv in the deck's output folder or here)")
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plot (default: beside the history)")
+                        help="history to check (default: NAME_history.csv in the output folder or the current one)")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plot (default: that of the history)")
     parser.add_argument("--modes", type=count, metavar="N",
-                        help="odd half-wave numbers along each side with inertia (default: two half waves in a patch)")
-    parser.add_argument("--no-plot", action="store_true", help="only print")
+                        help="number of odd half-wave numbers with inertia along each side (default: up to two half "
+                        "waves per patch)")
+    parser.add_argument("--no-plot", action="store_true", help="print only, without a plot")
     parser.add_argument("--tolerance", type=finite, metavar="FRACTION",
-                        help="exit with 1 if a difference exceeds this fraction of its scale")
+                        help="exit code 1 if a difference exceeds this fraction of its scale")
     return run(_command, parser, arguments)
 
 

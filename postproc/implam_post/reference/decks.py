@@ -22,9 +22,9 @@ class Impactor:
 def impactor_of(deck: Deck) -> Impactor:
     """Return the impactor."""
     if not deck.has("impactor"):
-        raise DeckError(f"{deck.path.name} has no &impactor: there is no impact to check.")
+        raise DeckError(f"{deck.path.name} has no &impactor, so that there is no impact to check.")
     if deck.values("impactor", "travel"):
-        raise deck.error("impactor", "the semi-analytic solution is that of a free impactor, without travel.")
+        raise deck.error("impactor", "the semi-analytic solution needs a free impactor, without travel.")
     mass = deck.number("impactor", "mass")
     if mass <= 0:
         raise deck.error("impactor", "the mass must be greater than zero.")
@@ -32,12 +32,12 @@ def impactor_of(deck: Deck) -> Impactor:
         return Impactor(mass, deck.number("impactor", "velocity"), deck.number("impactor", "gravity", 0.0))
     energy = deck.number("impactor", "energy")
     if deck.values("impactor", "velocity") or energy < 0:
-        raise deck.error("impactor", "velocity or energy, one of them, is needed, and not below zero.")
+        raise deck.error("impactor", "either velocity or energy is required, and must not be negative.")
     return Impactor(mass, float(np.sqrt(2 * energy / mass)), deck.number("impactor", "gravity", 0.0))
 
 
 def indentation_law_of(deck: Deck) -> IndentationLaw:
-    """Return the indentation law, elastic if the deck has no &indentation; k by Sun's formula if none is given."""
+    """Return the indentation law, elastic if the deck has no &indentation; the default of k is Sun's formula."""
     stiffness = deck.number("indentation", "k") if deck.values("indentation", "k") else _sun_stiffness(deck)
     if stiffness <= 0:
         raise deck.error("indentation", "k must be greater than zero.")
@@ -49,15 +49,15 @@ def indentation_law_of(deck: Deck) -> IndentationLaw:
         critical=deck.number("indentation", "alpha_cr"),
         dent=deck.choice("indentation", "dent", ("tan_sun", "yang_sun")))
     if not (1.5 <= law.reloading <= law.unloading and 0 <= law.slope < 1 and law.critical > 0):
-        raise deck.error("indentation", "1.5 <= reload <= q, 0 <= beta < 1 and 0 < alpha_cr are needed.")
+        raise deck.error("indentation", "1.5 <= reload <= q, 0 <= beta < 1 and 0 < alpha_cr are required.")
     return law
 
 
 def _sun_stiffness(deck: Deck) -> float:
-    """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2]: E and nu of the impactor (no E: rigid), E2 of ply 1."""
+    """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2] with E and nu of the impactor (without E: rigid), E2 of ply 1."""
     radius = deck.number("impactor", "radius", 0.0)
     if radius <= 0:
-        raise deck.error("indentation", "without k, the &impactor needs a radius.")
+        raise deck.error("indentation", "without k, the radius of the &impactor is required.")
     flexibility = 1 / plies_of(deck)[0].material.e2
     if deck.values("indentation", "impactor_E"):
         ratio = deck.number("indentation", "impactor_nu", 0.3)

@@ -1,15 +1,14 @@
-"""Indentation of the laminate by the impactor."""
+"""Indentation law of laminate and impactor."""
 
 from dataclasses import dataclass
 
 
 @dataclass
 class IndentationLaw:
-    """Force against indentation: Hertz both ways, or Tan and Sun's law with its dent, and its history.
+    """Force against indentation with state variables: Hertz's law, or Tan and Sun's law with permanent indentation.
 
-    First loading follows F = k alpha**1.5 up to (alpha_m, F_m). Unloading follows
-    F_m [(alpha - alpha_0)/(alpha_m - alpha_0)]**q, and a reversal during contact goes back up the same curve.
-    After separation the exponent is that of reloading.
+    First loading follows F = k alpha**1.5 up to (alpha_m, F_m). Unloading, and reloading without separation, follow
+    F_m [(alpha - alpha_0)/(alpha_m - alpha_0)]**q. After separation the exponent is that of reloading.
     """
 
     stiffness: float
@@ -25,7 +24,7 @@ class IndentationLaw:
     exponent: float = 1.5
 
     def force(self, indentation: float) -> float:
-        """Return the force at an indentation reached from the state last committed."""
+        """Return the force at an indentation, from the last committed state."""
         if indentation <= self.permanent:
             return 0.0
         if self.hertz or indentation >= self.largest:
@@ -33,7 +32,7 @@ class IndentationLaw:
         return self.largest_force * ((indentation - self.permanent) / (self.largest - self.permanent))**self.exponent
 
     def commit(self, indentation: float) -> None:
-        """Accept an indentation: record a new largest one and the dent it leaves, or a separation."""
+        """Commit an indentation: update the largest and the permanent indentation, and the separation."""
         if self.hertz:
             return
         if indentation > self.largest:
@@ -44,7 +43,7 @@ class IndentationLaw:
             self.exponent = self.reloading
 
     def _dent(self) -> float:
-        """Return the permanent indentation that the largest one leaves."""
+        """Return the permanent indentation after the largest one."""
         if self.largest <= self.critical:
             return 0.0
         if self.dent == "yang_sun":

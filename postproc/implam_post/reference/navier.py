@@ -1,6 +1,6 @@
 """Navier's series for simply supported (hard), specially orthotropic plates by first-order shear theory.
 
-w = W sin sin, theta_x = X cos sin, theta_y = Y sin cos, with rotary inertia; every (m, n) has three modes.
+w = W sin sin, theta_x = X cos sin, theta_y = Y sin cos, with rotatory inertia; each (m, n) has three modes.
 """
 
 from dataclasses import dataclass
@@ -19,13 +19,13 @@ class Plate:
     lengths: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Refuse boundary conditions that the series cannot satisfy."""
+        """Refuse laminates with couplings that the series does not satisfy."""
         if not self.section.is_specially_orthotropic():
             raise DeckError("the laminate couples bending with twisting or stretching (A16, A26, D16, D26, B or the "
-                            "eccentricity of its mass is not zero): Navier's series does not hold.")
+                            "eccentricity of its mass is not zero): Navier's series is not a solution.")
 
     def stiffness(self, m: np.ndarray, n: np.ndarray) -> np.ndarray:
-        """Return the 3x3 stiffness of (W, X, Y) a unit of area/4 for each pair of half-wave numbers."""
+        """Return the 3x3 stiffness of (W, X, Y) over area/4 for each pair of half-wave numbers."""
         d, s = self.section.d, self.section.s
         x, y = np.asarray(m) * np.pi / self.lengths[0], np.asarray(n) * np.pi / self.lengths[1]
         rows = [[s[0, 0] * x**2 + s[1, 1] * y**2, s[0, 0] * x, s[1, 1] * y],
@@ -34,7 +34,7 @@ class Plate:
         return np.moveaxis(np.array(rows, dtype=float), (0, 1), (-2, -1))
 
     def compliance(self, m: np.ndarray, n: np.ndarray) -> np.ndarray:
-        """Return W of each (m, n) under a sinusoidal pressure of amplitude 1, rotations in equilibrium."""
+        """Return W of each (m, n) under a sinusoidal pressure of unit amplitude; rotations are condensed."""
         k = self.stiffness(m, n)
         determinant = k[..., 1, 1] * k[..., 2, 2] - k[..., 1, 2]**2
         condensed = (k[..., 0, 1]**2 * k[..., 2, 2] - 2 * k[..., 0, 1] * k[..., 0, 2] * k[..., 1, 2]
@@ -42,7 +42,7 @@ class Plate:
         return 1 / (k[..., 0, 0] - condensed / determinant)
 
     def modes(self, m: np.ndarray, n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the three angular frequencies of each (m, n), ascending, and W of each mode of unit modal mass."""
+        """Return the three angular frequencies of each (m, n), ascending, and W of each mode with unit modal mass."""
         scale = 1 / np.sqrt(self.section.mass[[0, 2, 2]])
         eigenvalues, vectors = np.linalg.eigh(self.stiffness(m, n) * scale[:, None] * scale)
         return np.sqrt(eigenvalues), vectors[..., 0, :] * scale[0]
@@ -54,29 +54,29 @@ def frequencies(plate: Plate, m: int = 1, n: int = 1) -> np.ndarray:
 
 
 def sinusoidal_deflection(plate: Plate, pressure: float) -> float:
-    """Return the centre's deflection under a pressure of one half-sine along each side."""
+    """Return the centre deflection under a pressure of one half-sine along each side."""
     return float(pressure * plate.compliance(np.array(1), np.array(1)))
 
 
 def uniform_deflection(plate: Plate, pressure: float, terms: int = 200) -> float:
-    """Return the centre's deflection under a uniform pressure, over `terms` half-wave numbers along each side."""
+    """Return the centre deflection under uniform pressure, with `terms` half-wave numbers along each side."""
     m, n = odd_pairs(terms, terms)
     amplitude = 16 * pressure / (np.pi**2 * m * n)
     return float(np.sum(amplitude * centre_shape(m, n) * plate.compliance(m, n)))
 
 
 def odd_pairs(along_x: int, along_y: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return all pairs of the first odd half-wave numbers, the only ones that move the centre."""
+    """Return all pairs of the first odd half-wave numbers; the others do not deflect the centre."""
     m, n = np.meshgrid(2 * np.arange(along_x) + 1, 2 * np.arange(along_y) + 1, indexing="ij")
     return m.ravel(), n.ravel()
 
 
 def centre_shape(m: np.ndarray, n: np.ndarray) -> np.ndarray:
-    """Return the deflection of the shapes (m, n), both odd, at the plate's centre."""
+    """Return the values of the shapes (m, n), both odd, at the centre of the plate."""
     return 1.0 - 2.0 * (((m - 1) // 2 + (n - 1) // 2) % 2)
 
 
 def patch_shape(plate: Plate, patch: float, m: np.ndarray, n: np.ndarray) -> np.ndarray:
-    """Return the mean deflection of the shapes (m, n) over the centred square of side `patch`."""
+    """Return the means of the shapes (m, n) over the central square of side `patch`."""
     along_x, along_y = plate.lengths
     return centre_shape(m, n) * np.sinc(m * patch / (2 * along_x)) * np.sinc(n * patch / (2 * along_y))

@@ -1,7 +1,8 @@
-"""Impact of a rigid sphere on the centre of a simply supported laminate, by Navier's modes.
+"""Impact of a rigid sphere on the centre of a simply supported laminate, by superposition of Navier's modes.
 
-The force is linear between equally spaced instants; plate and sphere then follow exactly, and the only unknown of an
-instant is its force. The patch-mean deflection, conjugate to the load, enters the indentation.
+The force is linear between equally spaced instants. The motion of plate and sphere under it is exact, and the only
+unknown of an instant is its force. The indentation contains the mean deflection of the patch, which is conjugate to the
+load.
 """
 
 from dataclasses import dataclass, replace
@@ -17,7 +18,7 @@ from implam_post.reference.decks import Impactor, impactor_of, indentation_law_o
 from implam_post.reference.indentation import IndentationLaw
 from implam_post.reference.navier import Plate, centre_shape, odd_pairs, patch_shape
 
-# Half waves along a side of the patch with inertia, and those that only add their static compliance.
+# Half waves per side of the patch up to which modes have inertia, and up to which they add static compliance.
 _DYNAMIC_HALF_WAVES, _STATIC_HALF_WAVES = 2, 20
 _STEPS_A_CONTACT, _MIN_STEPS, _MAX_STEPS = 1000, 2000, 40000
 _MODES_AT_ONCE = 8192
@@ -25,7 +26,7 @@ _MODES_AT_ONCE = 8192
 
 @dataclass(frozen=True)
 class ImpactCase:
-    """Plate, sphere and law of one impact, and the time to be computed."""
+    """Plate, sphere and indentation law of one impact, and the end time."""
 
     plate: Plate
     impactor: Impactor
@@ -34,33 +35,33 @@ class ImpactCase:
     end: float
 
     def default_step(self) -> float:
-        """Return a step of a thousandth of the contact time on a rigid base, kept to sensible numbers of steps."""
+        """Return a step of a thousandth of the contact time on a rigid base, with limits for the number of steps."""
         speed = abs(self.impactor.velocity) or np.finfo(float).tiny**0.25
         max_indentation = (1.25 * self.impactor.mass * speed**2 / self.law.stiffness)**0.4
         contact = 2.943 * max_indentation / speed
         return float(np.clip(contact / _STEPS_A_CONTACT, self.end / _MAX_STEPS, self.end / _MIN_STEPS))
 
     def default_modes(self) -> list[int]:
-        """Return how many odd half-wave numbers along x and y have inertia by default."""
+        """Return the default number of odd half-wave numbers with inertia along x and y."""
         return [max(10, round(_DYNAMIC_HALF_WAVES * length / (2 * self.patch))) for length in self.plate.lengths]
 
 
 def impact_case(deck: Deck) -> ImpactCase:
-    """Return the impact that the deck describes; an error says why there is no semi-analytic solution to it."""
+    """Return the impact of a deck; raise DeckError with the reason if there is no semi-analytic solution."""
     impactor = impactor_of(deck)
     if set(deck.edges()) != {"simple"}:
-        raise deck.error("plate", "the semi-analytic solution needs edges = 'simple' all round.")
+        raise deck.error("plate", "the semi-analytic solution needs edges = 'simple' on all sides.")
     for group in ("pressure", "static", "line", "support"):
         if deck.has(group):
-            raise deck.error(group, "the semi-analytic solution knows no load but the impactor, no support but the "
+            raise deck.error(group, "the semi-analytic solution admits no load but the impactor, no support but the "
                                     "edges.")
     if deck.has("initial_state"):
-        raise deck.error("initial_state", "the semi-analytic solution begins at rest and undamaged.")
+        raise deck.error("initial_state", "the semi-analytic solution begins with an undamaged plate at rest.")
     if any(deck.numbers("impactor", "at")):
-        raise deck.error("impactor", "the semi-analytic solution is that of a plate struck in its middle, at = 0, 0.")
+        raise deck.error("impactor", "the semi-analytic solution needs an impact at the plate's centre, at = 0, 0.")
     patch, end = deck.number("mesh", "patch", 0.0), deck.number("time", "end")
     if not 0 < patch <= min(deck.lengths()):
-        raise deck.error("mesh", "patch needs a side between zero and that of the plate: under a point load the "
+        raise deck.error("mesh", "patch must be greater than zero and no larger than the plate: under a point load the "
                                  "deflection of a shear-deformable plate is infinite.")
     if end <= 0:
         raise deck.error("time", "end must be greater than zero.")
@@ -68,16 +69,16 @@ def impact_case(deck: Deck) -> ImpactCase:
 
 
 def semi_analytic(deck: Deck, modes: int | None = None, step: float | None = None) -> History:
-    """Return the semi-analytic history of the impact that the deck describes.
+    """Return the semi-analytic history of the impact of a deck.
 
-    Its columns are those of the solver's history that it can fill, and `patch_deflection`. `modes` is the number of
-    odd half-wave numbers along each side with inertia, `step` the distance between instants.
+    Its columns are a subset of those of the solver's history, and `patch_deflection`. `modes` is the number of odd
+    half-wave numbers with inertia along each side, `step` the time between instants.
     """
     return respond(impact_case(deck), modes, step, deck.name)
 
 
 def respond(case: ImpactCase, modes: int | None = None, step: float | None = None, name: str = "") -> History:
-    """Integrate plate and sphere together; see `semi_analytic`."""
+    """Integrate the coupled motion of plate and sphere; see `semi_analytic`."""
     count = int(np.ceil(case.end / (step or case.default_step())))
     step = case.end / count
     patch_kernel, centre_kernel = _kernels(case, modes, step, count)
@@ -94,9 +95,9 @@ def respond(case: ImpactCase, modes: int | None = None, step: float | None = Non
 
 
 def _kernels(case: ImpactCase, modes: int | None, step: float, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the deflections of patch and centre at every instant after a force that rises and falls in one step.
+    """Return the deflections of patch and centre at all instants after a triangular unit force pulse of two steps h.
 
-    A mode of frequency w and coefficient c deflects by c/w**2 (1 - sin(w h)/(w h)) at the force's peak and
+    A mode of frequency w and coefficient c deflects by c/w**2 (1 - sin(w h)/(w h)) at the peak of the force and by
     4 c sin(w h/2)**2 sin(w t)/(w**3 h) after it.
     """
     plate = case.plate
@@ -116,7 +117,7 @@ def _kernels(case: ImpactCase, modes: int | None, step: float, count: int) -> tu
 
 
 def _static_rest(case: ImpactCase, dynamic: list[int]) -> np.ndarray:
-    """Return the static compliance of patch and centre by the modes beyond the dynamic ones."""
+    """Return the static compliance of patch and centre by the modes without inertia."""
     plate = case.plate
     area = plate.lengths[0] * plate.lengths[1]
     farthest = [max(few, round(_STATIC_HALF_WAVES * length / (2 * case.patch)))
@@ -133,7 +134,7 @@ def _static_rest(case: ImpactCase, dynamic: list[int]) -> np.ndarray:
 
 
 def _sum_of_sines(amplitude: np.ndarray, frequency: np.ndarray, step: float, count: int) -> np.ndarray:
-    """Return the sum of amplitude * sin(frequency * t) at t = 0, step ... count*step, one row for each of `amplitude`.
+    """Return the sum of amplitude * sin(frequency * t) at t = 0, step ... count*step, for each row of `amplitude`.
 
     Angles are split into a coarse and a fine part, so that the sum becomes a product of two small tables.
     """
@@ -150,7 +151,7 @@ def _sum_of_sines(amplitude: np.ndarray, frequency: np.ndarray, step: float, cou
 
 
 def _march(case: ImpactCase, kernel: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
-    """Step plate and sphere through time; return force, displacement and velocity of the sphere, and indentation."""
+    """Integrate in time; return force, displacement and velocity of the sphere, and indentation."""
     instants = len(kernel)
     backwards = kernel[::-1].copy()
     force, displacement, velocity, indentation = (np.zeros(instants) for _ in range(4))
@@ -171,7 +172,7 @@ def _march(case: ImpactCase, kernel: np.ndarray, step: float) -> tuple[np.ndarra
 
 
 def solve_indentation(law: IndentationLaw, free: float, compliance: float) -> float:
-    """Return the indentation alpha = free - compliance * F(alpha)."""
+    """Solve alpha = free - compliance * F(alpha) for the indentation alpha."""
     if free <= law.permanent:
         return free
     return brentq(lambda alpha: alpha + compliance * law.force(alpha) - free, law.permanent, free,

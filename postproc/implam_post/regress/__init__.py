@@ -1,2 +1,2 @@
-"""Runs compared with expected values and tolerances: the format of the expectations, the comparison, accepting new
-values, JUnit XML. Commands: `implam-compare` and `implam-regress`."""
+"""Comparison of runs with expected values and tolerances: file of expectations, comparison, acceptance of new values,
+JUnit XML. Commands: `implam-compare` and `implam-regress`."""

@@ -1,4 +1,4 @@
-"""Results of a run become the expected values of the next."""
+"""Accept the results of a run as expected values."""
 
 import itertools
 import math
@@ -17,7 +17,7 @@ from implam_post.io.quantities import QUANTITIES
 from implam_post.regress.compare import Comparison
 from implam_post.regress.expectations import Expectation, Expectations, parse_expectations
 
-# Of a deck of which nothing is expected yet; those that its history does not have are left out.
+# Figures of a new file of expectations; those that the history does not have are omitted.
 _FIGURES = ("peak_force", "max_deflection", "rebound_velocity", "absorbed_energy", "first_growth_force")
 _TIMES = ("peak_force_time", "contact_duration")
 _COLUMNS = ("delaminated_area", "fibre_failures", "matrix_cracks", "matrix_crushings")
@@ -27,9 +27,9 @@ _NUMBER = r"(\s*{key}\s*=\s*)([-+\w.]+)(.*)"
 
 
 def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison]]) -> list[str]:
-    """Write what was found where it is not within the tolerance; return what was changed, a line for each entry.
+    """Replace expected values that are not met by the values found; return a line for each change.
 
-    `comparisons` are those of each variant. Entries that were met, comments and everything else stay.
+    `comparisons` are those of each variant. Entries that are met, comments and all other text are kept.
     """
     common = len(expectations.common)
     found: dict[tuple[int, int], list[Comparison]] = {
@@ -42,7 +42,7 @@ def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison
     changed = _change(text, {place: (found[place][0].expected, new) for place, new in changes.items()})
     if _all_entries(expectations.path, changed) != {
             place: changes.get(place, entries[0].expected) for place, entries in found.items()}:
-        raise FileError("its entries are not [[expect]] tables with a line for each key.")
+        raise FileError("its entries are not [[expect]] tables with each key on its own line.")
     write_text(expectations.path, changed)
     names = [variant.name for variant in expectations.variants]
     return [_change_text(found[place][0].expected, new, names[place[0]] if place[0] >= 0 and len(names) > 1 else "")
@@ -50,7 +50,7 @@ def accept(expectations: Expectations, comparisons: Sequence[Sequence[Comparison
 
 
 def accept_new(path: Path, history: History, version: str) -> list[str]:
-    """Write a file of expectations with the figures of a run; return what was written."""
+    """Write a file of expectations with the figures of a run; return lines on the entries."""
     entries = []
     step = float(np.mean(np.diff(history.time))) if len(history.time) > 1 else float(history.time[0])
     pushed = np.any(history["force"] > 0)
@@ -66,38 +66,38 @@ def accept_new(path: Path, history: History, version: str) -> list[str]:
         largest = 10.0**math.ceil(math.log10(10 * error)) if error > 0 else 0.0
         entries.append(_entry("energy_error", 0.0, {"absolute": max(largest, MIN_ERROR)}))
     if not entries:
-        raise FileError("the run has no figure to expect.")
+        raise FileError("the run has no figure that can be expected.")
     text = "\n".join(_written(entry) for entry in entries)
     parse_expectations(path, tomllib.loads(text))
     write_text(path, f"# Accepted from a run of Implam {version}.\n\n{text}")
     listed = [f"{entry.label}: {entry.value:g}, tolerance {_tolerance(entry)}" for entry in entries]
-    return [f"written with {len(entries)} figures, tolerance {100 * RELATIVE:g} %, of times {OF_A_STEP:g} of the mean "
+    return [f"written with {len(entries)} figures, tolerance {100 * RELATIVE:g} %, for times {OF_A_STEP:g} of the mean "
             f"step of {step:.3g}", *listed]
 
 
 def _entry(name: str, value: float, tolerance: dict[str, float], column: str = "") -> Expectation:
-    """Return an entry, its value rounded to the digits that the tolerance needs."""
+    """Return an entry with its value rounded according to the tolerance."""
     entry = Expectation(name, value, column=column, **tolerance)
     return replace(entry, value=_short(value, entry.tolerance))
 
 
 def _accepted(entries: Sequence[Comparison]) -> Expectation:
-    """Return the entry that the values found in all variants meet, with the tolerance it had."""
+    """Return the entry with a value that all variants meet, and with its previous tolerance."""
     expected = entries[0].expected
     values = [comparison.found for comparison in entries]
     if not all(map(math.isfinite, values)):
-        raise FileError(f"{expected.label} is not found in the history.")
+        raise FileError(f"{expected.label} was not found in the history.")
     value = (min(values) + max(values)) / 2
     new = replace(expected, relative=None, absolute=expected.tolerance) if not value and expected.relative else expected
     new = replace(new, value=_short(value, abs(new.relative * value) if new.absolute is None else new.absolute))
     if not all(Comparison(new, found).passed for found in values):
         raise FileError(f"{expected.label} differs between the variants, from {min(values):.6g} to {max(values):.6g}, "
-                        "by more than the tolerance: expect it of each, in [[variant.expect]].")
+                        "by more than the tolerance: give it for each variant, in [[variant.expect]].")
     return new
 
 
 def _short(value: float, tolerance: float) -> float:
-    """Return a value with as few digits as leave it within a hundredth of a tolerance."""
+    """Return a value rounded to the fewest digits with an error below a hundredth of the tolerance."""
     rounded = (float(f"{value:.{digits}g}") for digits in range(3, 17))
     return next((number for number in rounded if abs(number - value) <= 0.01 * tolerance), value)
 
@@ -119,7 +119,7 @@ def _blocks(lines: Sequence[str]) -> dict[tuple[int, int], range]:
 
 
 def _change(text: str, changes: dict[tuple[int, int], tuple[Expectation, Expectation]]) -> str:
-    """Return the text of a file with values, and tolerances where they differ, replaced."""
+    """Return the text of a file with new values, and with new tolerances where they differ."""
     lines = text.splitlines()
     blocks = _blocks(lines)
     for place, (old, new) in changes.items():
@@ -133,7 +133,7 @@ def _change(text: str, changes: dict[tuple[int, int], tuple[Expectation, Expecta
 
 
 def _all_entries(path: Path, text: str) -> dict[tuple[int, int], Expectation]:
-    """Return the entries that a text holds, by variant (-1: at the top) and number."""
+    """Return the entries of a text by variant (-1: at the top) and number."""
     parsed = parse_expectations(path, tomllib.loads(text))
     entries = {(-1, number): entry for number, entry in enumerate(parsed.common)}
     for variant, content in enumerate(parsed.variants):
@@ -143,19 +143,19 @@ def _all_entries(path: Path, text: str) -> dict[tuple[int, int], Expectation]:
 
 
 def _written(entry: Expectation) -> str:
-    """Return an entry as it stands in a file."""
+    """Return an entry as text of the file."""
     tolerance = f"relative = {entry.relative!r}" if entry.absolute is None else f"absolute = {entry.absolute!r}"
     column = f'column = "{entry.column}"\n' if entry.column else ""
     return f'[[expect]]\nquantity = "{entry.quantity}"\n{column}value = {entry.value!r}\n{tolerance}\n'
 
 
 def _change_text(old: Expectation, new: Expectation, variant: str) -> str:
-    """Return what was changed."""
+    """Return a line on the change of an entry."""
     kept = "kept" if old.relative == new.relative else "instead of a relative one"
     where = f"{variant}: " if variant else ""
     return f"{where}{new.label}: {old.value:g} -> {new.value:g}, tolerance {_tolerance(new)} {kept}"
 
 
 def _tolerance(entry: Expectation) -> str:
-    """Return the tolerance as it is printed."""
+    """Return the tolerance as text."""
     return f"relative {entry.relative:g}" if entry.absolute is None else f"absolute {entry.absolute:g}"

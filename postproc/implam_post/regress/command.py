@@ -20,9 +20,9 @@ from implam_post.regress.runs import Outcome, run_all, table
 
 
 def find_expectations(paths: Sequence[Path], decks: Path | None) -> list[Expectations]:
-    """Return the expectations in folders and files; a deck beside which there are none comes with an empty list.
+    """Return the expectations in folders and files; a deck without a file of expectations gets an empty list.
 
-    Decks are looked for beside the expectations, or in `decks`.
+    Decks are searched in the folder of the expectations, or in `decks`.
     """
     files = [file for path in paths for file in (sorted(path.glob("*.toml")) if path.is_dir() else [path])]
     found = [read_expectations(path) for path in dict.fromkeys(files)]
@@ -31,20 +31,20 @@ def find_expectations(paths: Sequence[Path], decks: Path | None) -> list[Expecta
         found += [Expectations(deck.with_suffix(".toml"), deck.name, [], [Variant(AS_IT_IS, {}, [])])
                   for deck in sorted(folder.glob("*.nml")) if deck.resolve() not in used]
     if not found:
-        raise FileError(f"there are neither decks nor expectations in {', '.join(map(str, paths))}.")
+        raise FileError(f"there are no decks and no expectations in {', '.join(map(str, paths))}.")
     name, times = Counter(expectations.path.stem for expectations in found).most_common(1)[0]
     if times > 1:
-        raise FileError(f"{times} files are named {name}: take their folders one at a time.")
+        raise FileError(f"{times} files are named {name}: give their folders one at a time.")
     return found
 
 
 def deck_path(expectations: Expectations, decks: Path | None) -> Path:
-    """Return the path of the deck of some expectations."""
+    """Return the path of the deck of expectations."""
     return (expectations.path.parent if decks is None else decks) / expectations.deck
 
 
 def _accept(expectations: Expectations, outcomes: Sequence[Outcome]) -> bool:
-    """Write the results of the runs of one file, and print its name; return False if they cannot be accepted."""
+    """Accept the results of the runs of one file, and print the changes; return False if they cannot be accepted."""
     if all(outcome.passed for outcome in outcomes):
         return True
     path = expectations.path
@@ -64,7 +64,7 @@ def _accept(expectations: Expectations, outcomes: Sequence[Outcome]) -> bool:
 
 
 def _run(options: argparse.Namespace, folder: Path) -> bool:
-    """Run everything in a folder, compare and report; return True if all is as expected, or accepted."""
+    """Run all variants in a folder, compare and report; return True if all results are as expected, or accepted."""
     program, found = find_program(options.program), find_expectations(options.paths, options.decks)
     outcomes = {expectations.path: [
         Outcome(expectations, variant, deck_path(expectations, options.decks),
@@ -74,7 +74,7 @@ def _run(options: argparse.Namespace, folder: Path) -> bool:
     to_run = [outcome for outcome in everything if outcome.variant.expectations or options.accept]
     for outcome in everything:
         if outcome not in to_run:
-            outcome.fault = "nothing is expected of it; --accept writes what is found."
+            outcome.fault = "the deck has no expected values; --accept writes those of the run."
     start = time.monotonic()
     run_all(to_run, program, options.jobs, options.timeout)
     if options.junit:
@@ -100,28 +100,28 @@ def _command(options: argparse.Namespace) -> int:
         if not options.output and (passed or not any(folder.iterdir())):
             shutil.rmtree(folder, ignore_errors=True)
         elif not passed and folder.exists():
-            print(f"The runs are in {folder}", file=sys.stderr)
+            print(f"The results are in {folder}", file=sys.stderr)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 1 if anything is not as expected."""
     parser = CommandParser(
         "implam-regress", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
-        description="Run decks and compare the results with expected values, NAME.toml beside NAME.nml. A deck\n"
+        description="Run decks NAME.nml and compare the results with expected values, NAME.toml. A deck\n"
         "without expected values fails.")
     parser.add_argument("paths", nargs="+", type=Path, metavar="DIR",
                         help="folders of decks and expectations, or files of expectations; the format is given below")
-    parser.add_argument("--decks", type=Path, metavar="DIR", help="folder of the decks (default: beside each file)")
+    parser.add_argument("--decks", type=Path, metavar="DIR", help="folder of the decks (default: that of each file)")
     parser.add_argument("--output", type=Path, metavar="DIR",
-                        help="folder of the runs (default: a temporary one, kept after a failure)")
+                        help="folder of the results (default: a temporary one, kept after a failure)")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
-                        help="runs at a time (default: the number of processors)")
-    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="longest time of a run (default: no limit)")
+                        help="simultaneous runs (default: the number of processors)")
+    parser.add_argument("--timeout", type=positive, metavar="SECONDS", help="time limit of a run (default: none)")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the results as JUnit XML")
     parser.add_argument("--accept", action="store_true",
-                        help="replace expected values that are not met by the results; tolerances stay, and "
-                        "are 0.1 %% and, of times, a tenth of a step in new files")
+                        help="replace expected values that are not met by the results; tolerances are kept, and "
+                        "are 0.1 %% and, for times, a tenth of a step in new files")
     return run(_command, parser, arguments)
 
 

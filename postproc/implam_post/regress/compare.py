@@ -17,26 +17,27 @@ from implam_post.regress.expectations import FORMAT, Expectation, read_expectati
 
 @dataclass(frozen=True)
 class Comparison:
-    """An expectation and what was found."""
+    """An expectation and the value found."""
 
     expected: Expectation
     found: float
 
     @property
     def passed(self) -> bool:
-        """Return whether the value found is within the tolerance; NaN never is."""
+        """Whether the value found is within the tolerance; NaN never is."""
         return abs(self.found - self.expected.value) <= self.expected.tolerance
 
     def row(self, width: int) -> str:
-        """Return the comparison as a line of text, the quantity's name filled up to a width."""
+        """Return the comparison as a line of text, with the name of the quantity padded to a width."""
         expected = self.expected
         numbers = (expected.value, self.found, self.found - expected.value, expected.tolerance)
         return (f"{expected.label:<{width}} " + " ".join(f"{number:13.6g}" for number in numbers) +
                 (" pass" if self.passed else " FAIL"))
 
 
-def compare(history: History, expectations: Sequence[Expectation], folder: Path | str = ".") -> list[Comparison]:
-    """Measure each expectation; `against` names files in `folder`, or else beside the history."""
+def check_expectations(history: History, expectations: Sequence[Expectation], folder: Path | str = "."
+                       ) -> list[Comparison]:
+    """Compare a history with each expectation; files of `against` are in `folder`, or else in that of the history."""
     @cache
     def reference(name: str) -> History:
         path = Path(folder) / name
@@ -63,7 +64,7 @@ def table(comparisons: Sequence[Comparison]) -> str:
 
 
 def heading(width: int) -> str:
-    """Return the line above those of comparisons."""
+    """Return the head of a table of comparisons."""
     return f"{'quantity':<{width}} {'expected':>13} {'found':>13} {'difference':>13} {'tolerance':>13}"
 
 
@@ -72,10 +73,10 @@ def _command(options: argparse.Namespace) -> int:
     expectations, history = read_expectations(options.expect), read_history(options.history)
     if options.plot and not expectations.curves:
         raise FileError(f"--plot needs a [[curve]] in {options.expect}.")
-    comparisons = compare(history, expectations.variant(options.variant).expectations, options.expect.parent)
+    comparisons = check_expectations(history, expectations.variant(options.variant).expectations, options.expect.parent)
     print(table(comparisons))
     if options.plot:
-        # matplotlib takes a while to load.
+        # Importing matplotlib is slow.
         from implam_post.plot.curves import plot_curves
         print(plot_curves(history, expectations.curves, options.plot, style_of(options, [options.history])))
     return EXIT_DONE if all(comparison.passed for comparison in comparisons) else EXIT_USAGE
@@ -89,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("expect", type=Path, metavar="EXPECT.toml", help="expected values; the format is given below")
     parser.add_argument("--variant", metavar="NAME", help="the variant that was run, if the file has several")
     parser.add_argument("--plot", type=Path, metavar="FILE",
-                        help="draw the history over each [[curve]] into a picture (PNG, PDF or SVG)")
+                        help="picture of the history with each [[curve]] (PNG, PDF or SVG)")
     add_options(parser)
     return run(_command, parser, arguments)
 

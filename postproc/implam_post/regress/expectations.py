@@ -1,4 +1,4 @@
-"""What is expected of runs: the file that `implam-compare` and `implam-regress` read."""
+"""Expected values of runs: the file that `implam-compare` and `implam-regress` read."""
 
 import math
 import re
@@ -14,12 +14,12 @@ from implam_post.io.quantities import AGAINST_QUANTITIES, COLUMN_QUANTITIES, QUA
 FORMAT = """
 The file of expectations, of which at least one is needed:
 
-    deck = "sun_chen.nml"            # the deck that is run; default: the name of this file with .nml, beside it
+    deck = "sun_chen.nml"            # the deck to run; default: NAME.nml in the folder of this file NAME.toml
 
     [[expect]]                       # of every variant
     quantity = "peak_force"
     value = 298.87
-    relative = 0.015                 # largest difference, as a fraction of the value; or absolute = 4.5
+    relative = 0.015                 # tolerance as a fraction of the value; or absolute = 4.5
 
     [[expect]]
     quantity = "at"                  # a column of the history at a time
@@ -36,17 +36,17 @@ The file of expectations, of which at least one is needed:
 
     [[expect]]
     quantity = "rms_force"           # over the first contact, as a fraction of the peak
-    against = "deck.nml"             # a deck: its semi-analytic solution; else another history, beside this file or,
-    value = 0.0                      # if it is not there, beside the history; deck.nml there is the deck of the run
-    absolute = 0.01                  # l2_force: relative L2 difference over the reference's time, as of a measured one
+    against = "deck.nml"             # a deck: its semi-analytic solution; or a history, in the folder of this file or
+    value = 0.0                      # else that of the history, where deck.nml is the deck of the run
+    absolute = 0.01                  # l2_force: relative L2 difference over the time of the other history
 
-    [[curve]]                        # optional: a measured curve for --plot, a CSV beside this file; its first two
-    file = "measured.csv"            # columns are columns of the history: time, force, deflection, ...
+    [[curve]]                        # optional: a measured curve for --plot, a CSV in the folder of this file
+    file = "measured.csv"            # first two columns: columns of the history such as time, force, deflection
 
     [[variant]]                      # optional: runs of the deck with other keys
     name = "fast"
     set = ["impactor%velocity=30", "laminate%angles=0,90,0", "delamination[2]%G_c=400"]
-    [[variant.expect]]               # of this variant, besides those at the top
+    [[variant.expect]]               # of this variant, in addition to those at the top
     quantity = "peak_force"
     value = 3120.0
     relative = 0.01
@@ -58,7 +58,7 @@ AS_IT_IS = "as_it_is"
 
 @dataclass(frozen=True)
 class Expectation:
-    """A quantity, its expected value and tolerance, and what it is measured from."""
+    """A quantity, its expected value and tolerance, and its column, time or other history."""
 
     quantity: str
     value: float
@@ -69,24 +69,24 @@ class Expectation:
     against: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse entries that could not be measured or could not fail."""
+        """Refuse entries that cannot be evaluated or cannot fail."""
         if self.time is not None and not _is_number(self.time):
-            raise FileError(f"{self.quantity}: time is a finite number.")
+            raise FileError(f"{self.quantity}: time must be a finite number.")
         known = [*QUANTITIES, *COLUMN_QUANTITIES, "at", *AGAINST_QUANTITIES]
         tolerances = [tolerance for tolerance in (self.relative, self.absolute) if tolerance is not None]
         if self.quantity not in known:
-            raise FileError(f"'{self.quantity}' is none of the quantities {', '.join(known)}.")
+            raise FileError(f"'{self.quantity}' is not one of the quantities {', '.join(known)}.")
         if not _is_number(self.value) or len(tolerances) != 1 or not all(map(_is_number, tolerances)):
-            raise FileError(f"{self.label}: a value and one of relative and absolute are needed, as finite numbers.")
+            raise FileError(f"{self.label}: a value and one of relative and absolute are required, as finite numbers.")
         if self.relative is not None and self.value == 0:
-            raise FileError(f"{self.label}: a tolerance relative to zero means nothing; use absolute.")
+            raise FileError(f"{self.label}: a tolerance relative to zero is meaningless; use absolute.")
         if (self.quantity in COLUMN_QUANTITIES or self.quantity == "at") == (not self.column):
             columns = ", ".join([*COLUMN_QUANTITIES, "at"])
-            raise FileError(f"{self.label}: a column goes with {columns}, and with them only.")
+            raise FileError(f"{self.label}: {columns} require a column, other quantities do not have one.")
         if (self.quantity == "at") != _is_number(self.time):
-            raise FileError(f"{self.label}: a time goes with the quantity at, and with it only.")
+            raise FileError(f"{self.label}: the quantity at requires a time, other quantities do not have one.")
         if (self.quantity in AGAINST_QUANTITIES) == (not self.against):
-            raise FileError(f"{self.label}: against goes with {' and '.join(AGAINST_QUANTITIES)}, and with them only.")
+            raise FileError(f"{self.label}: {' and '.join(AGAINST_QUANTITIES)} require against, others do not have it.")
 
     @property
     def label(self) -> str:
@@ -103,7 +103,7 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Variant:
-    """A run of the deck with changed keys, and all that is expected of it; those at the top come first."""
+    """A run of the deck with changed keys, and all its expectations; common ones come first."""
 
     name: str
     settings: dict[KeyPath, str]
@@ -121,11 +121,11 @@ class Expectations:
     curves: list[Path] = field(default_factory=list)
 
     def variant(self, name: str | None = None) -> Variant:
-        """Return a variant by its name, which may be left out if there is only one."""
+        """Return a variant by its name, which may be omitted if there is only one."""
         names = [variant.name for variant in self.variants]
         if name not in names and (name is not None or len(names) > 1):
             problem = "the file has several variants" if name is None else f"no variant is named '{name}'"
-            raise FileError(f"{self.path}: {problem}; there are {', '.join(names)}.")
+            raise FileError(f"{self.path}: {problem}; variants are {', '.join(names)}.")
         return self.variants[0 if name is None else names.index(name)]
 
 
@@ -140,27 +140,27 @@ def read_expectations(path: Path | str) -> Expectations:
 
 
 def parse_expectations(path: Path, content: dict) -> Expectations:
-    """Return what the content of a file means."""
+    """Return the expectations of the content of a file."""
     deck, common = content.pop("deck", f"{path.stem}.nml"), _entries(content.pop("expect", []))
     tables, curves = content.pop("variant", [{"name": AS_IT_IS}]), _curves(content.pop("curve", []), path.parent)
     if content or not isinstance(deck, str) or not isinstance(tables, list):
-        raise FileError("only deck, [[expect]], [[variant]] and [[curve]] entries are known.")
+        raise FileError("only deck, [[expect]], [[variant]] and [[curve]] entries are allowed.")
     variants = [_variant(table, common) for table in tables]
     names = [variant.name for variant in variants]
     if len(set(names)) < len(names) or not names:
-        raise FileError("variants need names of their own.")
+        raise FileError("names of variants must be unique.")
     return Expectations(path, deck, common, variants, curves)
 
 
 def _variant(table: dict, common: list[Expectation]) -> Variant:
     """Return one variant."""
     if not isinstance(table, dict):
-        raise FileError("variant is a list of tables: [[variant]].")
+        raise FileError("variant must be a list of tables: [[variant]].")
     name, settings = table.get("name", ""), table.get("set", [])
     if not isinstance(name, str) or not isinstance(settings, list) or not all(isinstance(one, str) for one in settings):
-        raise FileError("a variant has a name and a list of texts as set.")
+        raise FileError("name of a variant must be a text, and set a list of texts.")
     if not set(table) <= {"name", "set", "expect"} or not re.fullmatch(r"[\w.+-]+", name) or name.startswith("."):
-        raise FileError(f"a variant has a name of letters, digits and _.+-, set and expect, not {', '.join(table)}.")
+        raise FileError(f"a variant has a name of letters, digits and _.+-, set and expect; found {', '.join(table)}.")
     keys = {}
     for setting in settings:
         target, _, value = setting.partition("=")
@@ -170,31 +170,31 @@ def _variant(table: dict, common: list[Expectation]) -> Variant:
         keys[key] = value.strip()
     expectations = common + _entries(table.get("expect", []))
     if not expectations:
-        raise FileError(f"nothing is expected{'' if name == AS_IT_IS else f' of the variant {name}'}: an [[expect]] "
-                        "entry is needed.")
+        raise FileError(f"there is no expectation{'' if name == AS_IT_IS else f' of the variant {name}'}: an "
+                        "[[expect]] entry is required.")
     return Variant(name, keys, expectations)
 
 
 def _curves(tables: object, folder: Path) -> list[Path]:
     """Return the files of measured curves."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) and set(table) == {"file"} for table in tables):
-        raise FileError("curve is a list of tables with a file: [[curve]].")
+        raise FileError("curve must be a list of tables with a file: [[curve]].")
     return [folder / str(table["file"]) for table in tables]
 
 
 def _entries(tables: object) -> list[Expectation]:
     """Return a list of entries."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise FileError("expect is a list of tables: [[expect]].")
+        raise FileError("expect must be a list of tables: [[expect]].")
     kinds = {entry.name: entry for entry in fields(Expectation)}
     for table in tables:
         unknown, missing = [*table.keys() - kinds.keys()], [*{"quantity", "value"} - table.keys()]
         if unknown:
-            raise FileError(f"an [[expect]] entry has no {', '.join(sorted(unknown))}; it has {', '.join(kinds)}.")
+            raise FileError(f"an [[expect]] entry has no {', '.join(sorted(unknown))}; keys are {', '.join(kinds)}.")
         if missing:
             raise FileError(f"an [[expect]] entry lacks {' and '.join(sorted(missing))}.")
         if not all(isinstance(table.get(name, ""), str) for name in ("quantity", "column", "against")):
-            raise FileError("quantity, column and against of an [[expect]] entry are texts.")
+            raise FileError("quantity, column and against of an [[expect]] entry must be texts.")
     return [Expectation(**table) for table in tables]
 
 

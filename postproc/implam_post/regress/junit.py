@@ -1,4 +1,4 @@
-"""Results of runs as JUnit XML, which continuous integration reads."""
+"""Results of runs as JUnit XML for continuous integration."""
 
 import re
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ _NOT_XML = re.compile(r"[^\t\n\r\u0020-\uD7FF\uE000-\uFFFD\U00010000-\U0010FFFF]
 
 
 def junit(outcomes: Sequence[Outcome], seconds: float) -> str:
-    """Return the XML: a test case a run; one that could not be compared is an error, one that differs a failure."""
+    """Return the XML with a test case per run: an error if it could not be compared, a failure if it differs."""
     errors = sum(bool(outcome.fault) for outcome in outcomes)
     counts = {"tests": len(outcomes), "failures": sum(not outcome.passed for outcome in outcomes) - errors,
               "errors": errors}
@@ -34,5 +34,5 @@ def junit(outcomes: Sequence[Outcome], seconds: float) -> str:
 
 
 def _clean(text: str) -> str:
-    """Return a text without what XML cannot hold."""
+    """Return a text with characters that XML does not allow replaced."""
     return _NOT_XML.sub("?", text)

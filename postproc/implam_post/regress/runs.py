@@ -1,4 +1,4 @@
-"""Runs of decks that are compared with expected values."""
+"""Run decks and compare them with expected values."""
 
 import shutil
 import time
@@ -14,13 +14,13 @@ from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in
 from implam_post.io.progress import Progress
 from implam_post.io.start import RunError, run_deck
-from implam_post.regress.compare import Comparison, compare, heading
+from implam_post.regress.compare import Comparison, check_expectations, heading
 from implam_post.regress.expectations import AS_IT_IS, Expectations, Variant
 
 
 @dataclass(eq=False)
 class Outcome:
-    """What became of one variant, run in a folder: its comparisons, or why there are none, and the seconds it took."""
+    """Result of one variant, run in a folder: its comparisons or the reason why there are none, and wall-clock time."""
 
     expectations: Expectations
     variant: Variant
@@ -39,33 +39,33 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
-        """Return whether everything expected was found, and something was expected."""
+        """Whether there are expectations and all are met."""
         return not self.fault and bool(self.comparisons) and all(comparison.passed for comparison in self.comparisons)
 
     @property
     def verdict(self) -> str:
-        """Why it failed, in one line; empty if it passed."""
+        """Reason of the failure in one line; empty if the variant passed."""
         missed = [comparison.expected.label for comparison in self.comparisons if not comparison.passed]
         return self.fault or (f"not as expected: {', '.join(missed)}" if missed else "")
 
 
 def run_variant(outcome: Outcome, program: Sequence[str], timeout: float | None) -> None:
-    """Run a variant and compare it; the outcome is filled in."""
+    """Run a variant and compare it; the result is stored in `outcome`."""
     start = time.monotonic()
     try:
         shutil.rmtree(outcome.folder, ignore_errors=True)
         outcome.fault = _run(outcome, program, timeout)
         if not outcome.fault:
             outcome.history = _finite_history(outcome.folder)
-            outcome.comparisons = compare(outcome.history, outcome.variant.expectations,
-                                          outcome.expectations.path.parent)
+            outcome.comparisons = check_expectations(outcome.history, outcome.variant.expectations,
+                                                     outcome.expectations.path.parent)
     except ImplamError as error:
         outcome.fault = str(error)
     outcome.seconds = time.monotonic() - start
 
 
 def _run(outcome: Outcome, program: Sequence[str], timeout: float | None) -> str:
-    """Run the deck of a variant in its folder; return what went wrong."""
+    """Run the deck of a variant in its folder; return the error, empty if there is none."""
     started = run_deck(outcome.deck, outcome.variant.settings, outcome.folder, program, "deck.nml")
     try:
         started.wait(timeout)
@@ -78,19 +78,19 @@ def _run(outcome: Outcome, program: Sequence[str], timeout: float | None) -> str
 
 
 def _finite_history(folder: Path) -> History:
-    """Return the history in a folder, in which every number has to be finite."""
+    """Return the history in a folder; raise an error unless all its numbers are finite."""
     path = history_in(folder)
     if path is None:
-        raise FileError(f"{folder} holds no history.")
+        raise FileError(f"{folder} has no history.")
     history = read_history(path)
     for name, values in history.columns.items():
         if not np.all(np.isfinite(values)):
-            raise FileError(f"the column {name} of the history is not finite throughout.")
+            raise FileError(f"the column {name} of the history has values that are not finite.")
     return history
 
 
 def run_all(outcomes: Sequence[Outcome], program: Sequence[str], jobs: int, timeout: float | None) -> None:
-    """Run variants, some at a time."""
+    """Run variants, up to `jobs` simultaneously."""
     with ThreadPoolExecutor(jobs) as pool, Progress(len(outcomes)) as progress:
         runs = {pool.submit(run_variant, outcome, program, timeout): outcome for outcome in outcomes}
         try:

@@ -27,7 +27,7 @@ from implam_post.sweep.scatter_results import STATISTICS
 _FIGURES = (
     ("peak force", "peak_force", "force", "peak_force_at"),
     ("contacts", "contacts", "", None),
-    ("time in contact", "contact_duration", "time", "contact_until"),
+    ("contact duration", "contact_duration", "time", "contact_until"),
     ("rebound velocity", "rebound_velocity", "velocity", None),
     ("velocity of the impactor at the end", "impactor_velocity", "velocity", None),
     ("largest deflection", "largest_deflection", "length", "largest_deflection_at"),
@@ -36,29 +36,29 @@ _FIGURES = (
     ("work of the load", "work_external", "energy", None),
     ("delaminated area, all interfaces", "delaminated_area", "area", None),
     ("delaminated area, projected", "projected_area", "area", None),
-    ("closed form of the force at the starter", "threshold_force_at_starter", "force", None),
-    ("fibre failures, plies of elements", "fibre_failures", "", None),
-    ("matrix cracks, plies of elements", "matrix_cracks", "", None),
-    ("matrix crushings, plies of elements", "matrix_crushings", "", None),
+    ("delamination threshold force, closed form at the starter", "threshold_force_at_starter", "force", None),
+    ("fibre failures (number of plies of elements)", "fibre_failures", "", None),
+    ("matrix cracks (number of plies of elements)", "matrix_cracks", "", None),
+    ("matrix crushing (number of plies of elements)", "matrix_crushings", "", None),
 )
 # Rows of the dent: label, member, remark.
-_DENT = (("depth of the dent", "dent_depth", "at the end of the run; meant for a plate at rest (&time settle)"),
-         ("part of it by the indentation law", "dent_indentation", ""))
-# Words before a time, and what a missing figure means.
+_DENT = (("dent depth", "dent_depth", "at the end of the run; meaningful for a plate at rest (&time settle)"),
+         ("permanent indentation in it, by the indentation law", "dent_indentation", ""))
+# Words before a time, and texts for missing figures.
 _WHEN = {"contact_duration": "until"}
 _UNKNOWN = {"energy_absorbed": "contact has not ended"}
 _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
 
 
 def shown(style: PictureStyle, dimension: str, value: object) -> str:
-    """Return a figure to four digits, as the summary in the log has them, with its unit where that is known."""
+    """Return a figure to four digits, as in the log, with its unit if it is known."""
     if value is None or not dimension:
         return rounded(value)
     return style.shown(dimension, value, 4)
 
 
 def report(run: Run, undamaged: float | None = None) -> str:
-    """Return the page of a run; `undamaged` is the strength of the undamaged plate, if that is known."""
+    """Return the page of a run; `undamaged` is the strength of the undamaged plate, if known."""
     summary, style = run.summary, PictureStyle(run.system)
     found = resistance(run)
     mark = tuple(found[name].value for name in ("threshold_at", "threshold_force")) if "threshold_at" in found else None
@@ -85,15 +85,15 @@ def report(run: Run, undamaged: float | None = None) -> str:
 
 
 def _no_maps(results: Run) -> str:
-    """Return why a page has no maps, if it has none."""
+    """Return the reason why a page has no maps."""
     if results.fields is not None:
-        return "The fields hold neither interfaces nor failures of plies."
+        return "The fields have no interfaces and no ply failures."
     name = f"{results.name}{FIELDS}"
-    return f"{name} holds no time yet." if results.base.with_name(name).exists() else f"There is no {name}."
+    return f"{name} has no times yet." if results.base.with_name(name).exists() else f"There is no {name}."
 
 
 def _resistance(results: Run, found: Mapping[str, Measured], style: PictureStyle) -> str:
-    """Return threshold, energies, size and type of the damage."""
+    """Return the rows of threshold, energies, size and type of the damage."""
     summary = results.summary
 
     def row(name: str, key: str, missing: str = "-", at: str = "") -> tuple[str, str, str]:
@@ -102,12 +102,12 @@ def _resistance(results: Run, found: Mapping[str, Measured], style: PictureStyle
         return name, shown(style, found[key].dimension, found[key].value), at
 
     corner = corner_of(results)
-    behind = f", behind a low pass of {_frequency(style, corner)}" if corner else ""
-    unknown = "the force never drops by damage" if corner else "not known without units"
+    behind = f", after a low-pass filter of {_frequency(style, corner)}" if corner else ""
+    unknown = "no drop of the force by damage" if corner else "not known without units"
     reached = "threshold_at" in found and not math.isnan(found["threshold_at"].value)
     by_load_steps = _is_by_load_steps(summary)
     when = f"at {_instant(style, found['threshold_at'].value, by_load_steps)}" if reached else ""
-    rows = [row(f"threshold: force where its curve first drops by damage{behind}", "threshold_force", unknown, when),
+    rows = [row(f"threshold force: first drop by damage{behind}", "threshold_force", unknown, when),
             ("peak force", shown(style, "force", summary["peak_force"]),
              f"at {_instant(style, summary['peak_force_at'], by_load_steps)}"),
             row("energy to the threshold", "energy_to_threshold"), row("energy to the peak force", "energy_to_peak"),
@@ -132,10 +132,10 @@ def _sizes(results: Run, style: PictureStyle) -> list[tuple[str, str, str]]:
         return [("projected damage", "none", "")]
     rows = [("largest diameter of the projected damage", shown(style, "length", size.diameter),
              f"along {size.direction:.0f}°"),
-            ("its length along 0°, x", shown(style, "length", size.length), ""),
-            ("its width along 90°, y", shown(style, "length", size.width), "")]
-    return rows + [(f"between its outermost points through the struck point, along {angle}°",
-                    shown(style, "length", size.through[angle]) if size.through[angle] else "none there", "")
+            ("length of the projected damage along 0° (x)", shown(style, "length", size.length), ""),
+            ("width of the projected damage along 90° (y)", shown(style, "length", size.width), "")]
+    return rows + [(f"length of the projected damage through the struck point, along {angle}°",
+                    shown(style, "length", size.through[angle]) if size.through[angle] else "none", "")
                    for angle in DIRECTIONS]
 
 
@@ -150,7 +150,7 @@ def _instant(style: PictureStyle, time: float | None, by_load_steps: bool) -> st
 
 
 def _reached(summary: Mapping[str, Any], style: PictureStyle) -> str:
-    """Return how far the run came."""
+    """Return the time or load factor that the run reached."""
     if _is_by_load_steps(summary):
         return style.instant(summary["load_factor_reached"], True, 4)
     return f"time {shown(style, 'time', summary['time_reached'])}"
@@ -170,7 +170,7 @@ def _figures(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[str,
 
 
 def _range(style: PictureStyle, ends: Sequence[float]) -> str:
-    """Return least and greatest coordinate in one unit."""
+    """Return least and greatest coordinate in the same unit."""
     if not any(ends):
         return "none"
     axis = style.axis("", "length", ends)
@@ -204,7 +204,7 @@ def _plate(summary: Mapping[str, Any], style: PictureStyle) -> str:
 
 
 def _failure_areas(summary: Mapping[str, Any]) -> list[str]:
-    """Return the members of a ply that hold areas of failures."""
+    """Return the members of plies with areas of failures."""
     return [key for key in ("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area")
             if key in summary["plies"][0]]
 
@@ -222,21 +222,21 @@ def _plies(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[object
 
 
 def summaries_at(path: Path) -> list[Path]:
-    """Return the summaries of a folder, or the one that a path names; the folder of a sweep stands for itself."""
+    """Return the summaries of a folder, or the path itself if it is a summary or the folder of a sweep."""
     if not path.is_dir() or (path / STATISTICS).exists():
         return [path]
     found = sorted(path.glob(f"*{SUMMARY}"))
     if not found:
-        raise FileError(f"{path} holds no summary of a run (NAME{SUMMARY}).")
+        raise FileError(f"{path} has no summary of a run (NAME{SUMMARY}).")
     return found
 
 
 def write_report(path: Path, output: Path | None, undamaged: float | None = None) -> Path:
-    """Write the page of a summary, or that of a sweep, and return its path."""
+    """Write the page of a summary or of a sweep, and return its path."""
     if path.is_dir():
         return write_page(path, output)
     if not path.name.endswith(SUMMARY):
-        raise FileError(f"{path} is not NAME{SUMMARY}; a report needs that file, or the folder that holds it.")
+        raise FileError(f"{path} is not NAME{SUMMARY}; a report needs that file, or its folder.")
     run_shown = open_run(path)
     written = (output or path.parent) / f"{run_shown.name}_report.html"
     if missing := missing_member(run_shown.summary):
@@ -257,15 +257,15 @@ def _command(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command."""
-    parser = CommandParser("implam-report", description="Write NAME_report.html, one page that needs no other file: "
+    parser = CommandParser("implam-report", description="Write NAME_report.html, one self-contained page: "
                            "the summary of a run, its plate and lay-up, curves of NAME_history.csv, maps of NAME.h5, "
                            "energies at the end, warnings, provenance and the deck. The page of a sweep with random "
-                           "inputs has means with their scatter.")
+                           "inputs has means with their standard errors.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="NAME_summary.json, a folder with such files, or the folder of a sweep")
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: beside each summary)")
-    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the undamaged plate's "
-                        "compression: the page then has the retained fraction of its strength")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the pages (default: that of the result)")
+    parser.add_argument("--undamaged", type=Path, metavar="SUMMARY", help="NAME_summary.json of the compression "
+                        "of the undamaged plate: the page then has the retained fraction of its strength")
     return run(_command, parser, arguments)
 
 

@@ -1,4 +1,4 @@
-"""Pages that need no other file, from the templates of this package."""
+"""Self-contained HTML pages from the templates of this package."""
 
 import base64
 import io
@@ -23,7 +23,7 @@ _TEMPLATES.filters["rounded"] = rounded
 
 
 def render(template: str, **content: object) -> str:
-    """Return the page that a template makes of its content."""
+    """Return the page of a template with its content."""
     return _TEMPLATES.get_template(template).render(content)
 
 

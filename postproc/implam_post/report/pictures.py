@@ -21,12 +21,12 @@ from implam_post.plot.plan import delamination_figure, failures_figure, projecte
 from implam_post.plot.plan_frame import draw_plate
 from implam_post.plot.style import PictureStyle
 
-_SPACE = 0.12  # free part of the picture beside the plies
-_ENTRY = 0.22  # inches that a small line of a legend takes
+_SPACE = 0.12  # part of the picture width to the right of the plies
+_ENTRY = 0.22  # height of a line of a small legend, inches
 
 
 def layup_figure(summary: Mapping[str, Any]) -> Figure:
-    """Draw the plies from the struck face, fibres as lines of their angle, interfaces that may delaminate in red."""
+    """Draw the plies from the struck face, with lines at the fibre angle; interfaces that may delaminate are red."""
     plies = summary["plies"]
     total = sum(ply["thickness"] for ply in plies)
     figure = Figure(figsize=(7, min(max(1.6, 0.34 * len(plies)), 9)), layout="constrained")
@@ -53,14 +53,14 @@ def layup_figure(summary: Mapping[str, Any]) -> Figure:
 
 
 def _fibre(axes: Any, angle: float, height: float, depth: float) -> None:
-    """Draw the direction of the fibres at the left of a ply, x to the right and y up as in the maps."""
+    """Draw the fibre direction at the left of a ply, with x to the right and y up as in the maps."""
     turned, length = np.radians(angle), 0.4 * depth
     axes.plot(np.array([-1, 1]) * 0.03 * np.cos(turned) - _SPACE / 2,
               height + np.array([-1, 1]) * length * np.sin(turned), color="black", linewidth=1)
 
 
 def plan_figure(summary: Mapping[str, Any], style: PictureStyle) -> Figure:
-    """Draw the plate in plan with the rectangle around the failed points of each interface, all to scale."""
+    """Draw the plate in plan, to scale, with the rectangle around the failed points of each interface."""
     along, across = summary["plate_size"]
     figure = Figure(figsize=(7, min(max(4.4 * across / along, 1.5), 8) + 0.8), layout="constrained")
     axes = figure.subplots()
@@ -81,16 +81,16 @@ def plan_figure(summary: Mapping[str, Any], style: PictureStyle) -> Figure:
         length = style.axis(name, "length", [along / 2])
         side.set_label_text(length.label)
         side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
-    figure.legend(fontsize="small", title="extents of what failed" if interfaces else None, loc="outside right center")
+    figure.legend(fontsize="small", title="extent of failed points" if interfaces else None, loc="outside right center")
     return figure
 
 
 def history_pictures(history: History, style: PictureStyle, threshold: tuple[float, float] | None = None,
                      compression: tuple[str, float | None] = ("", None)) -> Iterator[tuple[str, Figure]]:
-    """Give the curves of a history: force, force against displacements, deflection, areas and energies.
+    """Yield the curves of a history: force, force against displacements, deflection, areas and energies.
 
-    Time and force of a threshold are marked on the curve of the force. Of a compression there may be a remark and the
-    strength of the undamaged plate.
+    Time and force of a threshold are marked on the force curve. For a compression, a remark and the strength of the
+    undamaged plate may be given.
     """
     clock = "load factor" if history.by_load_steps else "time"
     if np.any(history["force"]):
@@ -116,7 +116,7 @@ def history_pictures(history: History, style: PictureStyle, threshold: tuple[flo
 
 def _curve(history: History, against: str, column: str, style: PictureStyle,
            mark: tuple[float, float] | None = None) -> Figure:
-    """Draw one column; steps in which delaminations grew are marked on the force, and a threshold if there is one."""
+    """Draw one column; delamination growth, and the threshold if there is one, are marked on the force."""
     figure = Figure(figsize=(7, 3.4), layout="constrained")
     axes = figure.subplots()
     along, up = (axis_of_column(name, history[name], history, style) for name in (against, column))
@@ -126,7 +126,7 @@ def _curve(history: History, against: str, column: str, style: PictureStyle,
         axes.plot(along.factor * history[against][grown], up.factor * history[column][grown], "o", markersize=3,
                   label="delamination grows")
     if mark is not None:
-        axes.plot(along.factor * mark[0], up.factor * mark[1], "kx", label="threshold behind the low pass")
+        axes.plot(along.factor * mark[0], up.factor * mark[1], "kx", label="threshold of the filtered force")
     if axes.get_legend_handles_labels()[0]:
         axes.legend()
     axes.set(xlabel=along.label, ylabel=up.label)
@@ -135,7 +135,7 @@ def _curve(history: History, against: str, column: str, style: PictureStyle,
 
 
 def _curves(history: History, columns: Mapping[str, str], label: str, dimension: str, style: PictureStyle) -> Figure:
-    """Draw several columns, each with its name, against time or load factor."""
+    """Draw several columns against time or load factor, with their names in a legend."""
     figure = Figure(figsize=(7, max(3.4, _ENTRY * (len(columns) + 2))), layout="constrained")
     axes = figure.subplots()
     along = style.clock(history.time, [history.by_load_steps])
@@ -151,10 +151,10 @@ def _curves(history: History, columns: Mapping[str, str], label: str, dimension:
 
 
 def map_pictures(fields: Fields, style: PictureStyle) -> Iterator[tuple[str, Figure]]:
-    """Give the maps of interfaces and plies, in plan."""
+    """Yield the maps of interfaces and plies in plan."""
     last = fields.snapshots[-1]
     if last.mesh.interfaces:
         yield "delamination of each interface", delamination_figure(fields, style)
-        yield "all interfaces seen through the plate", projected_figure(fields, style)
+        yield "projected delamination of all interfaces", projected_figure(fields, style)
     if last.failures and any(np.any(failed) for failed in last.failures.values()):
         yield "failures of each ply", failures_figure(fields, style=style)

@@ -1,4 +1,4 @@
-"""The page of a sweep whose runs have random inputs: means with their scatter instead of single runs."""
+"""The page of a sweep with random inputs: means and their scatter instead of single runs."""
 
 import json
 import math
@@ -30,14 +30,14 @@ _MEASURED = {"group": str, "figure": str, "measured": _FIGURE, "aim": _FIGURE, "
 
 
 def write_page(folder: Path, output: Path | None) -> Path:
-    """Write the page of a sweep into its folder or another one, and return its path."""
+    """Write the page of a sweep to its folder or another one, and return its path."""
     path = folder / STATISTICS
     try:
         content = json.loads(read_text(path, "the statistics"))
     except ValueError as error:
-        raise FileError(f"{path} is not written by implam-sweep, or is damaged ({error}).") from None
+        raise FileError(f"{path} was not written by implam-sweep, or is damaged ({error}).") from None
     if wrong := misshapen(content, _STATISTICS, "") or _misshapen_tables(content):
-        raise FileError(f"{path} is not written by implam-sweep, or is damaged ({wrong.removeprefix('.')}).")
+        raise FileError(f"{path} was not written by implam-sweep, or is damaged ({wrong.removeprefix('.')}).")
     try:
         text = _page(content, folder)
     except OSError as error:
@@ -48,7 +48,7 @@ def write_page(folder: Path, output: Path | None) -> Path:
 
 
 def _misshapen_tables(content: Mapping[str, Any]) -> str:
-    """Return where tables that not every sweep has are not of their kind; empty if they are."""
+    """Return an optional table of the wrong kind; empty if there is none."""
     if not content["groups"]:
         return "groups"
     return (misshapen(content.get("differences", []), [_DIFFERENCE], "differences")
@@ -61,7 +61,7 @@ def _page(content: Mapping[str, Any], folder: Path) -> str:
     runs = ", ".join(f"{group['ended']} of {group['runs']} runs{_of(group['name'])} in {group['seconds']:.4g} s of the "
                      "processor" for group in content["groups"])
     pictures = [(text, image_of(folder / name)) for name, text in (
-        (BAND, "Force history"), (SHARE, "Share of the runs in which a place has delaminated"))
+        (BAND, "Force history"), (SHARE, "Fraction of runs with delamination"))
         if (folder / name).exists()]
     differences = [] if not content.get("differences") else [
         (group["name"], _differences(_rows_of(content["differences"], group), statistics, style))
@@ -87,12 +87,12 @@ def _rows_of(rows: Iterable[Mapping[str, Any]], group: Mapping[str, Any]) -> lis
 
 
 def _of(name: str) -> str:
-    """Return words that name a group."""
+    """Return ' of NAME' for a group with a name."""
     return f" of {name}" if name else ""
 
 
 def _number(value: float | None) -> float:
-    """Return a number, NaN for none."""
+    """Return a number; NaN for None."""
     return math.nan if value is None else value
 
 

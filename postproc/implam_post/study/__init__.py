@@ -1,2 +1,2 @@
-"""Error against processor time over a grid of methods (meshes, steps, integrators), with the Pareto front.
+"""Errors and processor times of a grid of methods (meshes, steps, integrators), with the Pareto front.
 Command: `implam-study`."""

@@ -17,20 +17,20 @@ from implam_post.sweep.case_run import remove_results
 from implam_post.sweep.command import check_decks, print_outcomes
 from implam_post.sweep.runs import Sweep, run_cases
 
-_TABLE_EVERY = 10.0  # seconds between tables written on the way
+_TABLE_EVERY = 10.0  # seconds between intermediate tables
 
 
 class _Tables:
-    """Writes tables and plot, on the way too."""
+    """Writer of tables and plot, final and intermediate ones."""
 
     def __init__(self, sweep: Sweep, study: Study, kind: str) -> None:
-        """Nothing is written yet; `kind` is that of the plot's file."""
+        """Store the plan; `kind` is the file format of the plot."""
         from implam_post.study.references import References
         self._sweep, self._study, self._kind, self._written = sweep, study, kind, time.monotonic()
         self._references = References(sweep)
 
     def write_now_and_then(self) -> None:
-        """Write the table as it is if the last one is old."""
+        """Write an intermediate table if the last one is old."""
         if time.monotonic() - self._written > _TABLE_EVERY:
             self._rows()
 
@@ -43,14 +43,14 @@ class _Tables:
         return rows
 
     def write(self) -> int:
-        """Write tables and plot, print the tables, and return how many trials have no errors as a file is faulty."""
+        """Write tables and plot, print the tables, and return the number of trials with damaged files."""
         from implam_post.study.plots import plot_study
         from implam_post.study.table import means, text_means, text_table
         rows, output = self._rows(), self._study.output
         found = means(rows, self._study) if len(self._study.problems) > 1 else []
         text = text_table(rows, self._study)
         if found:
-            text += f"\nGeometric means over {len(self._study.problems)} problems, and the worst:\n\n"
+            text += f"\nGeometric means over {len(self._study.problems)} problems, and the largest errors:\n\n"
             text += text_means(found, self._study)
         write_text(output / "table.txt", text)
         print(text)
@@ -62,7 +62,7 @@ class _Tables:
 
 
 def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
-    """Write and check the decks, run what has not ended, and write what there is."""
+    """Write and check the decks, run those that have not ended, and write tables and plot."""
     sweep.write_decks()
     for case in study.cases if options.retry else ():
         remove_results(sweep.folder(case))
@@ -70,19 +70,19 @@ def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
     if not options.table:
         check_decks(sweep, list({case.deck: case for case in reversed(runs)}.values()), options.jobs)
         print(f"{counted(len(study.trials), 'trial')} of {counted(len(study.problems), 'problem')}, "
-              f"{counted(len(runs), 'run')} to do", flush=True)
+              f"{counted(len(runs), 'run')} remaining", flush=True)
         finished = run_cases(sweep, runs, options.jobs, tables.write_now_and_then)
     unread = tables.write()
     code = print_outcomes(sweep)
     if unread:
-        print(f"{unread} of {counted(len(study.trials), 'trial')} cannot be evaluated, as the notes say.",
+        print(f"{unread} of {counted(len(study.trials), 'trial')} cannot be evaluated; see the notes.",
               file=sys.stderr)
         code = EXIT_USAGE
     return code if finished or code == EXIT_USAGE else EXIT_STOPPED
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Read the study and work on it, alone in its folder."""
+    """Read the study and run it, with its folder locked."""
     study = read_study(options.study, options.output)
     if options.error:
         study = Study(**{**study.__dict__, "error": options.error})
@@ -90,10 +90,10 @@ def _command(options: argparse.Namespace) -> int:
     try:
         study.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"the folder {study.output} cannot be made ({reason(error)}).") from None
+        raise FileError(f"the folder {study.output} cannot be created ({reason(error)}).") from None
     lock = try_lock(study.output / "lock")
     if lock is None:
-        raise FileError(f"another implam-study works in {study.output}.")
+        raise FileError(f"another implam-study is running in {study.output}.")
     try:
         return _work(sweep, study, options)
     finally:
@@ -104,18 +104,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 1 if a run failed or cannot be evaluated, 75 if the study was stopped."""
     parser = CommandParser(
         "implam-study", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
-        description="Run problems by several methods (meshes, steps, integrators, rules ...), compare each with a\n"
+        description="Run problems with several methods (meshes, steps, integrators ...), compare each with a\n"
         "reference, and print errors and processor times in one table and one plot, with the Pareto front.\n"
-        "Repeated, the command continues a stopped or killed study; completed runs are not repeated.")
+        "The same command continues a stopped or killed study; completed runs are not repeated.")
     parser.add_argument("study", type=Path, metavar="STUDY.toml", help="file of the study; the format is given below")
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of runs and table, instead of the file's")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of runs and table (default: from the file)")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=1, metavar="N",
-                        help="runs at a time (default: 1, since parallel runs falsify times)")
-    parser.add_argument("--error", choices=ERRORS, help="error of the plot and of the front, instead of the file's")
-    parser.add_argument("--format", choices=FORMATS, default="png", help="kind of the plot's file (default: png)")
-    parser.add_argument("--table", action="store_true", help="run nothing; write tables and plot of existing results")
-    parser.add_argument("--retry", action="store_true", help="repeat runs without convergence, too, from their start")
+                        help="simultaneous runs (default: 1, since simultaneous runs distort processor times)")
+    parser.add_argument("--error", choices=ERRORS, help="error of the plot and of the front (default: from the file)")
+    parser.add_argument("--format", choices=FORMATS, default="png", help="file format of the plot (default: png)")
+    parser.add_argument("--table", action="store_true", help="do not run decks; evaluate existing results")
+    parser.add_argument("--retry", action="store_true", help="also repeat, from the start, runs without convergence")
     return run(_command, parser, arguments)
 
 

@@ -1,4 +1,4 @@
-"""The plan of a study: problems, methods to compute them by, the reference of each problem, and repeats."""
+"""The plan of a study: problems, methods, the reference of each problem, and repeated runs."""
 
 import tomllib
 from collections import Counter
@@ -15,34 +15,34 @@ from implam_post.sweep.plan import Case, CaseMaker, Plan, check_names, combinati
 FORMAT = """
 The file of a study:
 
-    deck = "sun_chen.nml"                     # the deck of all problems, beside this file, unless [problems] names them
+    deck = "sun_chen.nml"                     # the deck of all problems, in the folder of this file; or in [problems]
     output = "results"                        # folder of runs and table; default: the name of this file
-    repeats = 3                               # runs of each case, for its processor time; default 1
+    repeats = 3                               # runs of each case, for the least processor time; default 1
     error = "force_history"                   # error of the plot and of the front; default force_history
 
-    [problems]                                  # side by side; a single value holds for all problems
+    [problems]                                  # n-th value: n-th problem; a single value is for all problems
     deck = ["sun_chen.nml", "karas.nml"]
-    problem = ["Sun and Chen", "Karas"]         # their names; default: those of the decks
-    coarse = [8e-6, 4e-6]                     # a name without a group is there for [derived]
+    problem = ["Sun and Chen", "Karas"]         # names; default: those of the decks
+    coarse = [8e-6, 4e-6]                     # a name without a group is for formulas of [derived]
     "time.end" = "1e-3"
-    reference = "semi-analytic"               # or a history (CSV) beside this file, as one that was measured
+    reference = "semi-analytic"               # or a history (CSV) in the folder of this file, e.g. a measured one
 
     [grid]                                    # methods: every combination, as in a sweep
     "mesh.elements" = [[8, 8], [12, 12]]
     part = [1, 2, 4]
 
-    [list]                                    # methods: side by side
+    [list]                                    # methods: n-th values together
     method = ["Gear", "trapezoidal rule"]     # names in table and plot, optional
     "impactor.integrator" = ["gear4", "trapezoidal"]
 
-    [derived]                                 # in this order, from names, keys of the case's deck, and numbers
+    [derived]                                 # formulas of names, keys of the deck, and numbers, in this order
     "time.step" = "coarse/part"
 
-    [reference]                               # the method that is the reference of problems without another one
+    [reference]                               # the method of the reference run of problems without another reference
     "mesh.elements" = [32, 32]
     part = 32
 
-    [figures]                                 # columns of the history besides: their last value
+    [figures]                                 # further columns of the history: last value
     energy_algorithmic = "final"              # or "max", "min", "max_abs"
 
 Errors: peak_force, peak_force_time, contact_duration, max_deflection, rebound_velocity, force_history (relative L2),
@@ -58,7 +58,7 @@ _MAX_REPEATS = 100
 
 @dataclass(frozen=True)
 class Problem:
-    """A problem: its name, and its reference, which is a case, a history's path, or the word semi-analytic."""
+    """A problem: its name, and its reference, which is a case, the path of a history, or the word semi-analytic."""
 
     name: str
     reference: Case | Path | str
@@ -66,7 +66,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class Trial:
-    """A problem computed by a method: the values that the method sets, and its runs, which repeat each other."""
+    """A problem computed with a method: the values of the method, and the repeated runs."""
 
     problem: Problem
     method: dict[str, object]
@@ -75,10 +75,10 @@ class Trial:
 
 @dataclass(frozen=True)
 class Study(Plan):
-    """The plan of all runs, and what they are for.
+    """The plan of all runs with their problems and methods.
 
-    `methods` names what methods set, `shown` those of it by which they differ for readers. `figures` are columns of the
-    history and how they are measured.
+    `methods` are the names that methods set, `shown` those of them that are shown in tables. `figures` are columns of
+    the history and how they are evaluated.
     """
 
     problems: list[Problem]
@@ -91,7 +91,7 @@ class Study(Plan):
 
 
 def read_study(path: Path, output: Path | None = None) -> Study:
-    """Read the file of a study and make the decks of its runs."""
+    """Read the file of a study and create the decks of its runs."""
     text = read_text(path, "the study")
     try:
         content = tomllib.loads(text)
@@ -104,7 +104,7 @@ def read_study(path: Path, output: Path | None = None) -> Study:
         words = {name: content.pop(name, default) for name, default in
                  (("deck", ""), ("output", path.stem), ("units", ""), ("error", "force_history"), ("repeats", 1))}
         if content:
-            raise DeckError(f"'{next(iter(content))}' is none of {', '.join((*words, *_TABLES, 'figures'))}.")
+            raise DeckError(f"'{next(iter(content))}' is not one of {', '.join((*words, *_TABLES, 'figures'))}.")
         _check_words(words, figures)
         problems, trials, runs = _Maker(path.parent, str(words["deck"]), tables).make(int(words["repeats"]))
     except (tomllib.TOMLDecodeError, DeckError) as error:
@@ -117,23 +117,23 @@ def read_study(path: Path, output: Path | None = None) -> Study:
 
 
 def _check_words(words: Mapping[str, object], figures: object) -> None:
-    """Refuse what none of the words outside the tables can be."""
+    """Refuse invalid values of words outside of the tables."""
     if not all(isinstance(words[name], str) for name in ("deck", "output")) or words["units"] not in ("", *SYSTEMS):
-        raise DeckError(f"deck and output are text, and units one of {', '.join(SYSTEMS)}.")
+        raise DeckError(f"deck and output must be text, and units one of {', '.join(SYSTEMS)}.")
     if words["error"] not in ERRORS:
-        raise DeckError(f"error is one of {', '.join(ERRORS)}.")
+        raise DeckError(f"error must be one of {', '.join(ERRORS)}.")
     repeats = words["repeats"]
     if not isinstance(repeats, int) or isinstance(repeats, bool) or not 1 <= repeats <= _MAX_REPEATS:
-        raise DeckError(f"repeats is an integer from 1 to {_MAX_REPEATS}.")
+        raise DeckError(f"repeats must be an integer from 1 to {_MAX_REPEATS}.")
     if not isinstance(figures, dict) or not all(way in _WAYS for way in figures.values()):
-        raise DeckError(f"[figures] gives for each column of the history one of {', '.join(_WAYS)}.")
+        raise DeckError(f"[figures] must give for each column of the history one of {', '.join(_WAYS)}.")
 
 
 class _Maker:
-    """Makes problems, trials and runs out of the tables."""
+    """Creates problems, trials and runs from the tables."""
 
     def __init__(self, folder: Path, base: str, tables: dict[str, dict[str, object]]) -> None:
-        """Decks and references lie in `folder`; `base` is the deck of all problems where they name none."""
+        """Decks and references are in `folder`; `base` is the deck of all problems that do not have their own."""
         self._folder, self._tables = folder, tables
         self._given = {name: tables["problems"].pop(name, "") for name in ("problem", "reference")}
         check_names({name: table for name, table in tables.items() if name != "reference"})
@@ -163,14 +163,14 @@ class _Maker:
         table = {**self._tables["problems"], **{name: given for name, given in self._given.items() if given}}
         lengths = {name: len(values) for name, values in table.items() if isinstance(values, list)}
         if len(set(lengths.values())) > 1 or 0 in lengths.values():
-            raise DeckError("[problems] needs lists of one length, or single values, not " +
+            raise DeckError("[problems] needs lists of equal length, or single values, not " +
                             ", ".join(f"{name} with {length}" for name, length in lengths.items()) + ".")
         for place in range(next(iter(lengths.values()), 1)):
             yield {name: values[place] if isinstance(values, list) else values
                    for name, values in self._tables["problems"].items()}
 
     def _names(self, rows: list[dict[str, object]]) -> list[str]:
-        """Return the names of the problems: those given, else the decks' with their differences."""
+        """Return the names of the problems; the default is the name of the deck with the values that differ."""
         if self._given["problem"]:
             names = [str(self._at("problem", place)) for place in range(len(rows))]
         else:
@@ -182,11 +182,11 @@ class _Maker:
                          for name, row in zip(names, rows, strict=True)]
         twice = [name for name, times in Counter(names).items() if times > 1]
         if twice:
-            raise DeckError(f"[problems] several are called '{twice[0]}'.")
+            raise DeckError(f"[problems] several have the name '{twice[0]}'.")
         return names
 
     def _at(self, name: str, place: int) -> object:
-        """Return what [problems] has for a problem under problem or reference."""
+        """Return the name or reference of a problem in [problems]."""
         given = self._given[name]
         return given[place] if isinstance(given, list) else given
 
@@ -199,14 +199,14 @@ class _Maker:
             path = self._folder / str(given)
             if not path.is_file():
                 raise DeckError(f"[problems] reference: there is no history {path}; it is '{SEMI_ANALYTIC}', or a "
-                                "history (CSV) beside this file.")
+                                "history (CSV) in the folder of this file.")
             return path
         if not self._tables["reference"]:
-            raise DeckError("a reference is missing: the table [reference], or reference in [problems].")
+            raise DeckError("a reference is required: the table [reference], or reference in [problems].")
         for word in self._tables["reference"]:
             names = [name for table in ("problems", "grid", "list") for name in self._tables[table]]
             if key_path(word) is None and word not in names:
-                raise DeckError(f"[reference] '{word}' is neither a key of the deck, as group.key, nor a name of "
+                raise DeckError(f"[reference] '{word}' is not a key of the deck, such as group.key, or a name of "
                                 "[problems], [grid] or [list].")
         made = self._cases.make(0, row | self._tables["reference"])
         return replace(made, values={"problem": name, "reference": "run"})

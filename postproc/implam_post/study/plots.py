@@ -1,4 +1,4 @@
-"""Plots of a study: error against processor time of every trial, with the front of those that no other beats."""
+"""Plots of a study: error against processor time of every trial, with the Pareto front."""
 
 import math
 from pathlib import Path
@@ -14,16 +14,16 @@ from implam_post.study.table import LEAST, Mean, Row
 
 _MAX_PROBLEMS, _COLUMNS, _MAX_NAMED = 12, 4, 24
 _MARKS = "osD^v<>ph*XP"
-_NARROWEST = 5.0  # last over first value of an axis, so that 1, 2 and 5 mark it
-_WIDE = 1e3  # from here on powers of ten are marks enough
-_WORDS = {"peak_force": "error of peak force", "peak_force_time": "error of its time",
+_NARROWEST = 5.0  # up to this ratio of last to first value of an axis, ticks are at 1, 2 and 5
+_WIDE = 1e3  # from this ratio on, ticks are at powers of ten only
+_WORDS = {"peak_force": "error of peak force", "peak_force_time": "error of time of peak force",
           "contact_duration": "error of contact duration", "max_deflection": "error of largest deflection",
           "rebound_velocity": "error of rebound velocity", "force_history": "error of force history (L2)",
           "delaminated_area": "error of delaminated area"}
 
 
 def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> Path | None:
-    """Draw a panel for each problem, and one of the means over all of them; nothing if no trial has an error yet."""
+    """Draw a panel for each problem, and one of the means over all problems; None if no trial has an error yet."""
     panels = [(problem.name, [(row.trial.method, abs(row.errors.get(study.error, math.nan)), row.time, row.on_front)
                               for row in rows if row.trial.problem is problem])
               for problem in study.problems[:_MAX_PROBLEMS]]
@@ -54,7 +54,7 @@ def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> 
 
 
 def series_of(study: Study) -> tuple[list[str], list[str]]:
-    """Return the names by which curves differ, which are words, and those that run along a curve, which are numbers."""
+    """Return the names with text values, which distinguish curves, and those with numbers, which vary along a curve."""
     words = [name for name in study.shown if any(isinstance(trial.method[name], str) for trial in study.trials)]
     numbers = [name for name in study.shown if name not in words]
     if not words and len(numbers) > 1:

@@ -1,4 +1,4 @@
-"""References of the problems of a study: a run, a history beside its file, or a semi-analytic solution."""
+"""References of the problems of a study: a run, a history, or a semi-analytic solution."""
 
 import hashlib
 import json
@@ -18,13 +18,13 @@ from implam_post.study.plan import Trial
 from implam_post.sweep.plan import Case
 from implam_post.sweep.runs import Sweep
 
-# Groups that a semi-analytic solution depends on with all their keys; of others it takes the patch and the end.
+# Groups on which a semi-analytic solution depends; of other groups it depends on the patch and the end time.
 _PHYSICS = ("plate", "material", "laminate", "impactor", "indentation", "pressure", "static")
 _COLUMNS = ("time", "force", "impactor_velocity", "deflection")
 
 
 class References:
-    """Finds the reference of a trial and stores it: semi-analytic solutions also on the disk."""
+    """Cache of references; semi-analytic solutions are stored on disk, too."""
 
     def __init__(self, sweep: Sweep) -> None:
         """Solutions are stored in the folder of the runs."""
@@ -32,7 +32,7 @@ class References:
         self._known: dict[str, History] = {}
 
     def of(self, trial: Trial) -> History | None:
-        """Return the reference of a trial whose first run has ended; nothing if it is a run that has not."""
+        """Return the reference of a trial whose first run has ended; None if the reference run has not ended."""
         reference = trial.problem.reference
         if isinstance(reference, Case):
             return None if self._sweep.failure(reference) else self._read(_history(self._sweep.folder(reference)))
@@ -41,13 +41,13 @@ class References:
         return self._solution(trial.runs[0])
 
     def _read(self, path: Path) -> History:
-        """Return a history, read once."""
+        """Return a history, which is read once."""
         if str(path) not in self._known:
             self._known[str(path)] = read_history(path)
         return self._known[str(path)]
 
     def _solution(self, run: Case) -> History:
-        """Return the semi-analytic solution for the patch and up to the end that a run really had."""
+        """Return the semi-analytic solution with the actual patch and end time of a run."""
         log = next(iter(sorted(self._sweep.folder(run).glob("*.log"))))
         text = log.read_text(encoding="utf-8", errors="replace")
         patch, end = _in_effect(text, "mesh", "patch"), _rounded_up(_in_effect(text, "time", "end"))
@@ -68,7 +68,7 @@ def _history(folder: Path) -> Path:
 
 
 def _in_effect(log: str, group: str, key: str) -> float:
-    """Return the number that a key had in a run, by its log."""
+    """Return the value of a key in a run, from its log."""
     found = re.search(rf"^&{group} {key} = (\S+) \[", log, re.MULTILINE)
     if found is None:
         raise DeckError(f"the log has no {key} of &{group}.")
@@ -76,7 +76,7 @@ def _in_effect(log: str, group: str, key: str) -> float:
 
 
 def _rounded_up(end: float) -> float:
-    """Return a time not much later, to two digits: runs that end nearly together then share a solution."""
+    """Return a time rounded up to two digits, so that runs with nearly equal end times share a solution."""
     unit = 10.0**(math.floor(math.log10(end)) - 1)
     return float(f"{math.ceil(end / unit * (1 - 1e-9)) * unit:.6g}")
 

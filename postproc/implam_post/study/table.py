@@ -1,7 +1,7 @@
-"""The table of a study: a row for each trial, with errors against its reference, cost, and place on the front.
+"""The table of a study: a row for each trial, with errors against its reference, cost, and whether it is on the front.
 
-Errors are parts of the reference's figure, with their sign, over the time that both last; that of the force history is
-a relative L2 norm.
+Errors are relative to the reference, with sign, over the time of both histories; that of the force history is a
+relative L2 norm.
 """
 
 import math
@@ -26,18 +26,18 @@ from implam_post.sweep.plan import Case
 from implam_post.sweep.runs import Sweep
 from implam_post.sweep.table import FIGURES
 
-LEAST = 1e-6  # what is less has no error
+LEAST = 1e-6  # smaller errors count as this one
 _FIGURES = tuple(name for name in ERRORS if name != "force_history")
 _COSTS = {"unknowns": "unknowns", "steps": "", "solves": "solves", "factorizations": "refactorisations"}
 # Column heads of the text, errors in %.
-_HEADS = {"peak_force": "peak force, %", "peak_force_time": "its time, %", "contact_duration": "contact, %",
+_HEADS = {"peak_force": "peak force, %", "peak_force_time": "peak time, %", "contact_duration": "contact, %",
           "max_deflection": "deflection, %", "rebound_velocity": "rebound, %", "force_history": "force history, %",
           "delaminated_area": "area, %"}
 
 
 @dataclass
 class Row:
-    """A trial's figures, errors and costs by name; NaN where there is none. `end` is empty, or why it has none."""
+    """Figures, errors and costs of a trial by name, NaN if missing. `end` is the reason for missing ones, or empty."""
 
     trial: Trial
     end: str
@@ -55,7 +55,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Mean:
-    """A method over all problems: geometric means of errors and time, the worst error, and on how many fronts it is."""
+    """A method over all problems: geometric means of errors and time, largest errors, number of fronts it is on."""
 
     method: dict[str, object]
     errors: dict[str, float]
@@ -77,13 +77,13 @@ def make_rows(sweep: Sweep, study: Study, references: References) -> list[Row]:
 
 
 def _size(row: Row, error: str) -> float:
-    """Return the size of an error, at least the least that counts; NaN if there is none."""
+    """Return the absolute error, but at least LEAST; NaN if there is none."""
     size = abs(row.errors.get(error, math.nan))
     return max(size, LEAST) if math.isfinite(size) else size
 
 
 def front(points: Iterable[tuple[float, float]]) -> list[bool]:
-    """Return for each point whether no other is at least as good in both numbers and lower in one; NaN never is."""
+    """Return for each point whether it is on the Pareto front of two numbers to be minimized; NaN is not."""
     points = list(points)
     known_points = [all(map(math.isfinite, point)) for point in points]
     return [known and not any(other_known and other[0] <= point[0] and other[1] <= point[1] and other != point
@@ -92,9 +92,9 @@ def front(points: Iterable[tuple[float, float]]) -> list[bool]:
 
 
 def force_history_error(history: History, reference: History) -> float:
-    """Return the L2 norm of the difference of forces over that of the reference, over the time that both have.
+    """Return the L2 norm of the difference of forces over that of the reference, in the common time.
 
-    Before its first row a history has no force. NaN if the reference has none in that time.
+    Before the first row of a history the force is zero. NaN if the reference has no force in that time.
     """
     last = min(history.time[-1], reference.time[-1])
     grid = reference.time[reference.time <= last * (1 + 1e-9)]
@@ -108,7 +108,7 @@ def force_history_error(history: History, reference: History) -> float:
 
 
 def _row(sweep: Sweep, study: Study, trial: Trial, references: References) -> Row:
-    """Return the row of a trial: figures of its first run, time of all that have ended."""
+    """Return the row of a trial: figures of its first run, times of all runs that have ended."""
     first = trial.runs[0]
     row = Row(trial, sweep.failure(first))
     if row.end:
@@ -131,23 +131,23 @@ def _row(sweep: Sweep, study: Study, trial: Trial, references: References) -> Ro
 
 
 def _error(value: float, true: float) -> float:
-    """Return a relative error with its sign; NaN where the true value is nil."""
+    """Return a relative error with its sign; NaN if the true value is zero."""
     return value / true - 1 if true else math.nan
 
 
 def _figures(history: History) -> dict[str, float]:
-    """Return the figures that a history has columns for."""
+    """Return the figures of a history; NaN if it does not have the columns."""
     found = {}
     for name in _FIGURES:
         try:
             found[name] = float(FIGURES[name].measure(history))
-        except FileError:  # a measured history may have no such column
+        except FileError:  # a measured history may not have the column
             found[name] = math.nan
     return found
 
 
 def _costs(sweep: Sweep, runs: list[Case], folder: Path) -> dict[str, float]:
-    """Return the costs of a trial: processor time of all its runs, and what the first one's summary counts."""
+    """Return the costs of a trial: processor times of all its runs, and the counts in the summary of the first one."""
     records = [read_record(sweep.folder(run)) for run in runs]
     times = [record.cpu_time for record in records if record is not None and record.exit_code == 0]
     costs = {"cpu_time_min": min(times), "cpu_time_median": float(np.median(times)), "repeats": len(times)}
@@ -160,7 +160,7 @@ def _costs(sweep: Sweep, runs: list[Case], folder: Path) -> dict[str, float]:
 
 
 def means(rows: list[Row], study: Study) -> list[Mean]:
-    """Return each method over all problems; only methods that every problem has a result of are listed."""
+    """Return the means of methods over all problems; methods without a result of some problem are omitted."""
     found = []
     for method in {str(row.trial.method): row.trial.method for row in rows}.values():
         mine = [row for row in rows if row.trial.method == method]
@@ -181,7 +181,7 @@ def _geometric(values: np.ndarray) -> float:
 
 
 def write_csv(rows: list[Row], sweep: Sweep, study: Study, path: Path) -> None:
-    """Write the table as CSV, everything in the deck's units, errors as parts; cells without a value are empty."""
+    """Write the table as CSV in the deck's units, errors as fractions; cells without a value are empty."""
     costs = ("cpu_time_min", "cpu_time_median", "repeats", *_COSTS)
     table = []
     for row in rows:
@@ -198,7 +198,7 @@ def write_csv(rows: list[Row], sweep: Sweep, study: Study, path: Path) -> None:
 
 
 def text_table(rows: list[Row], study: Study) -> str:
-    """Return the table for readers, errors in %; `*` marks the front, and columns that nobody has are left out."""
+    """Return the table as text, errors in %; `*` marks the front, and empty columns are omitted."""
     errors = [name for name in ERRORS if any(math.isfinite(row.errors.get(name, math.nan)) for row in rows)]
     several = len(study.problems) > 1
     head = [*(["problem"] if several else []), *study.shown, *(_HEADS[name] for name in errors), *study.figures,
@@ -230,19 +230,19 @@ def text_means(found: list[Mean], study: Study) -> str:
 
 
 def _shown(value: object) -> str:
-    """Return a value of a method as readers see it."""
+    """Return a value of a method as text."""
     if isinstance(value, str):
         return value or "-"
     return f"{value:.4g}" if isinstance(value, float) else deck_value(value)
 
 
 def _small(error: float) -> str:
-    """Return a size in %, to two digits; what is below a ten-thousandth is nil."""
+    """Return an absolute error in % to two digits; errors up to LEAST are 0."""
     return "" if math.isnan(error) else f"{100 * error:.2g}" if error > 1.001 * LEAST else "0"
 
 
 def _percent(error: float, name: str) -> str:
-    """Return an error in %, to its digits that count; that of the history has no sign."""
+    """Return an error in %, rounded by its size; that of the force history has no sign."""
     if math.isnan(error):
         return ""
     digits = 2 if abs(error) < 0.1 else 1 if abs(error) < 1 else 0
@@ -250,7 +250,7 @@ def _percent(error: float, name: str) -> str:
 
 
 def _lined_up(lines: list[list[str]]) -> str:
-    """Return a table in Markdown with its columns lined up."""
+    """Return a table in Markdown with aligned columns."""
     widths = [max(len(line[place]) for line in lines) for place in range(len(lines[0]))]
     lines.insert(1, ["-" * width for width in widths])
     return "".join("| " + " | ".join(word.ljust(width) for word, width in zip(line, widths, strict=True)) + " |\n"

@@ -1,2 +1,2 @@
-"""Many runs of one deck with different keys: the plan of the cases, runs that survive a stopped sweep or job, the table
-of their figures, random inputs and statistics over them. Command: `implam-sweep`."""
+"""Many runs of a deck with different keys: plan of the cases, runs that can be continued after a stop of the sweep or
+job, table of their figures, random inputs and their statistics. Command: `implam-sweep`."""

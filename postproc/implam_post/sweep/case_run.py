@@ -1,7 +1,7 @@
 """One case of a sweep: runs its deck, or resumes it from its checkpoint, and records how the run ended.
 
-A process of its own watches over each run (`python -m implam_post.sweep.case_run FOLDER --program "implam"`), so that a
-killed sweep or job loses nothing. It imports little, as it starts once a case.
+A separate process supervises each run (`python -m implam_post.sweep.case_run FOLDER --program "implam"`), so that a
+killed sweep or job loses no result. It imports few modules, as it is started for each case.
 """
 
 import argparse
@@ -34,16 +34,16 @@ from implam_post.io.program import (
 
 MODULE = "implam_post.sweep.case_run"
 _RECORD, _LOCK, OUTPUT = "run.json", "lock", "output.txt"
-# Runs that ended so would end so again.
+# Exit codes of runs that would end in the same way if repeated.
 FINAL = (EXIT_DONE, EXIT_CONVERGENCE)
 _STOP_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU)
 _PAUSE = 0.05  # seconds between checks of the run
-_STOPPING = f"stopped, to go on from a checkpoint if there is one ({EXIT_STOPPED})"
+_STOPPING = f"stopped, continues from a checkpoint if there is one ({EXIT_STOPPED})"
 
 
 @dataclass(frozen=True)
 class Record:
-    """How the last part of a run ended; times are those of all parts, in seconds."""
+    """Exit code of the last part of a run; times are totals of all parts, in seconds."""
 
     exit_code: int
     cpu_time: float = 0.0
@@ -52,7 +52,7 @@ class Record:
 
     @property
     def final(self) -> bool:
-        """Return whether running again would change nothing."""
+        """Whether a repeated run would end in the same way."""
         return self.exit_code in FINAL
 
 
@@ -66,12 +66,12 @@ def read_record(folder: Path) -> Record | None:
         if not all(isinstance(value, (int, float)) for value in asdict(record).values()):
             raise ValueError
     except (ValueError, TypeError, RecursionError):
-        raise FileError(f"the record {path} is damaged: delete it, and the case is run again.") from None
+        raise FileError(f"the record {path} is damaged: delete it to run the case again.") from None
     return None if record.exit_code == EXIT_DONE and _is_lost(folder) else record
 
 
 def _is_lost(folder: Path) -> bool:
-    """Return whether the history of a run that has ended is missing, empty, or has no row."""
+    """Return whether the history of a completed run is missing, empty, or has no row."""
     path = history_in(folder)
     if path is None:
         return True
@@ -80,7 +80,7 @@ def _is_lost(folder: Path) -> bool:
 
 
 def remove_results(folder: Path) -> None:
-    """Remove record and checkpoint of a failed case, so that it starts again; a case that is running keeps them."""
+    """Remove record and checkpoint of a failed case that is not running, so that it starts again."""
     record = read_record(folder)
     if record is None or record.exit_code == EXIT_DONE:
         return
@@ -92,7 +92,7 @@ def remove_results(folder: Path) -> None:
 
 
 def drop_checkpoint(folder: Path) -> None:
-    """Take the checkpoint of a case away, if there is one."""
+    """Remove the checkpoint of a case, if there is one."""
     path = checkpoint_in(folder)
     if path is not None:
         path.unlink(missing_ok=True)
@@ -104,7 +104,7 @@ def case_command(folder: Path, program: Sequence[str]) -> list[str]:
 
 
 class _Stop:
-    """Return whether the run is to stop: by a signal, or because the sweep that started it has ended."""
+    """True once the run is to stop: by a signal, or because the sweep that started it has ended."""
 
     def __init__(self, lifeline: int | None) -> None:
         """Catch the signals; `lifeline` is a pipe that closes when the sweep ends."""
@@ -123,7 +123,7 @@ class _Stop:
 
 
 def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> int:
-    """Run a case to its end, unless it has been; return the exit code of the program."""
+    """Run a case to its end, unless it has already ended; return the exit code of the program."""
     while (lock := try_lock(folder / _LOCK)) is None:
         if stop:
             return EXIT_STOPPED
@@ -131,7 +131,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
     try:
         record = read_record(folder)
         if record is None and (folder / _RECORD).exists():
-            drop_checkpoint(folder)  # of a run whose history is missing: it has to begin at the start
+            drop_checkpoint(folder)  # the history of the run is missing: it has to begin at the start
         record = record or Record(EXIT_STOPPED)
         while not record.final and not stop:
             checkpoint = checkpoint_in(folder)
@@ -146,18 +146,18 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
 
 
 def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lock: int, before: Record) -> Record:
-    """Run from a deck or a checkpoint until the program ends; return the record of all parts together."""
+    """Run from a deck or a checkpoint until the program ends; return the record of all parts."""
     from_deck = start.suffix == ".nml"
     words = ["run", str(start), "--output", str(folder)] if from_deck else ["restart", str(start)]
     began, cpu_before = time.monotonic(), _children_time()
     with (folder / OUTPUT).open("wb" if from_deck else "ab") as output:
-        # The program holds the lock too: while it lives, nobody else runs this case.
+        # The program inherits the lock: as long as it is running, no other process runs this case.
         process = subprocess.Popen([*program, *words], stdin=subprocess.DEVNULL, stdout=output,
                                    stderr=subprocess.STDOUT, pass_fds=[lock], env=environment())
         signalled = False
         while (code := process.poll()) is None:
             if stop and not signalled:
-                process.send_signal(signal.SIGUSR1)  # mpirun passes this one on, and ends at others
+                process.send_signal(signal.SIGUSR1)  # mpirun forwards this signal, and ends at others
                 signalled = True
             time.sleep(_PAUSE)
     return Record(shell_code(code), before.cpu_time + _children_time() - cpu_before,
@@ -165,7 +165,7 @@ def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lo
 
 
 def _is_useless(checkpoint: Path, folder: Path) -> bool:
-    """Return whether a restart ended because its checkpoint cannot be read, rather than a file not be written."""
+    """Return whether a restart failed because its checkpoint cannot be read, not because a file cannot be written."""
     printed = last_words(read_text(folder / OUTPUT, "the output"))
     return checkpoint.name in printed and not printed.startswith(("Cannot write", "Cannot complete"))
 
@@ -180,7 +180,7 @@ def _command(options: argparse.Namespace) -> int:
     """Run the case."""
     decks = sorted(options.folder.glob("*.nml"))
     if len(decks) != 1:
-        raise FileError(f"{options.folder} is not the folder of a case, with its deck.")
+        raise FileError(f"{options.folder} is not the folder of a case with one deck.")
     stop = _Stop(options.lifeline)
     code = run_case(options.folder, decks[0], find_program(options.program), stop)
     print(f"{decks[0]}: {_STOPPING if code == EXIT_STOPPED else f'ended with {code}'}")
@@ -189,8 +189,8 @@ def _command(options: argparse.Namespace) -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; its exit code is that of the program."""
-    parser = CommandParser(f"python -m {MODULE}", description="Run one case of a sweep, unless its run has "
-                           "ended before, or go on from its checkpoint.")
+    parser = CommandParser(f"python -m {MODULE}", description="Run one case of a sweep, unless its run has already "
+                           "ended, or continue from its checkpoint.")
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder of the case, with its deck")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--lifeline", type=int, help=argparse.SUPPRESS)

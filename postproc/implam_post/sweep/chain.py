@@ -1,4 +1,4 @@
-"""The second deck of a sweep, `then`: a run for each case that begins from the end of the case's first run."""
+"""The second deck of a sweep, `then`: a run for each case that begins with the final state of its first run."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -18,14 +18,14 @@ from implam_post.sweep.plan import Case
 from implam_post.sweep.runs import Sweep
 from implam_post.sweep.table import Table, no_figures
 
-# Groups that both decks have alike, as the damage depends on them: the second run has those of the first.
+# Groups of the first deck that are copied to the second one, as the damage depends on them.
 SHARED = ("material", "laminate", "ply_damage", "delamination", "thermal")
-# Groups whose swept keys are set in the second deck too, since both runs have one mesh and one plate.
+# Groups whose swept keys are also set in the second deck, since mesh and plate are those of the first run.
 _SET_TOO = ("mesh", "plate")
 _OWN_KEYS = ("lines_x", "lines_y", "symmetry")
-# Figures of both runs by the name of their column: of which run (0 or 1), dimension, label.
+# Figures of both runs by the name of their column: run (0 or 1), dimension, label.
 FIGURES = {
-    "dent_depth": (0, "length", "depth of the dent"),
+    "dent_depth": (0, "length", "dent depth"),
     "projected_area": (0, "area", "projected delaminated area"),
     "residual_strength": (1, "stress", "residual strength"),
     "shortening_at_strength": (1, "length", "shortening at the strength"),
@@ -46,9 +46,9 @@ def following(sweep: Sweep) -> Sweep | None:
 
 
 def foreseen(sweep: Sweep, then: Path, cases: Sequence[Case]) -> Sweep:
-    """Return the second runs of cases before their first ones, in a folder of their own, so that decks can be checked.
+    """Return the second runs of cases, in a separate folder, to check their decks before the first runs.
 
-    They begin from checkpoints that do not exist, with which the program does not compare them.
+    Their checkpoints do not exist yet, so that the program does not check that the decks agree with them.
     """
     text = read_text(then, "the deck")
     seconds = [_second(case, sweep.folder(case) / "pending_restart.h5", then, text) for case in cases]
@@ -57,7 +57,7 @@ def foreseen(sweep: Sweep, then: Path, cases: Sequence[Case]) -> Sweep:
 
 
 def _has_ended(sweep: Sweep, case: Case) -> bool:
-    """Return whether the first run of a case has left its end."""
+    """Return whether the first run of a case has ended with a checkpoint."""
     record = read_record(sweep.folder(case))
     return record is not None and record.exit_code == EXIT_DONE and checkpoint_in(sweep.folder(case)) is not None
 
@@ -79,7 +79,7 @@ def _second(case: Case, checkpoint: Path, then: Path, text: str) -> Case:
 def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
     """Add the columns of both runs to the table of the first; cells without a value are NaN or empty.
 
-    Summaries that cannot be read are named in the notes.
+    The notes name summaries that cannot be read.
     """
     by_number = {case.number: case for case in second.plan.cases}
     rows = []
@@ -105,7 +105,7 @@ def lower_bounds(table: Table) -> np.ndarray:
 
 
 def remark_of_bounds(table: Table) -> str:
-    """Return the note on runs that end before the plate fails; empty if there are none."""
+    """Return the warning about runs that end before the plate fails; empty if there are none."""
     count = int(np.count_nonzero(lower_bounds(table)))
     return "" if count == 0 else (
         f"warning: in {counted(count, 'run')} of {len(table.columns['has_failed'])} the plate has not failed: the "
@@ -113,7 +113,7 @@ def remark_of_bounds(table: Table) -> str:
 
 
 def _summary(sweep: Sweep, case: Case, table: Table) -> Mapping[str, object]:
-    """Return the summary of a run that has a result; empty if there is none, with a note if it cannot be read."""
+    """Return the summary of a run; empty without a result, with a note if it cannot be read."""
     if sweep.failure(case):
         return {}
     try:

@@ -1,4 +1,4 @@
-"""Pictures of a sweep with a second deck: the strength that is left against impact energy, dent and area."""
+"""Pictures of a sweep with a second deck: residual strength against impact energy, dent depth and projected area."""
 
 from pathlib import Path
 
@@ -15,14 +15,14 @@ from implam_post.sweep.table import Table
 
 STRENGTH = "residual_strength"
 _AGAINST = ("impact_energy", "dent_depth", "projected_area")
-# Energies that differ by less are those of one impact with other random inputs.
+# Energies that differ by less belong to the same impact with other random inputs.
 _DIGITS = 6
 
 
 def plot_strength(table: Table, path: Path) -> Path | None:
-    """Draw the strength against energy, dent and area, each run a point; None if no run has a strength.
+    """Draw the strength of each run against energy, dent depth and area; None if no run has a strength.
 
-    Runs of one energy and one series are joined by their mean with the standard deviation of a single run.
+    Runs of the same energy and series have a mean with the standard deviation of a single run.
     """
     strength = table.numbers(STRENGTH)
     if strength is None or not np.any(np.isfinite(strength)):
@@ -53,14 +53,14 @@ def plot_strength(table: Table, path: Path) -> Path | None:
 
 
 def groups(energies: np.ndarray) -> list[np.ndarray]:
-    """Return the places of each energy, in ascending order of the energies."""
+    """Return the indices of the runs of each energy, in ascending order of the energies."""
     rounded = np.array([float(f"{energy:.{_DIGITS}g}") for energy in energies])
     return [np.flatnonzero(rounded == energy) for energy in np.unique(rounded)]
 
 
 def _draw(axes: Axes, x: np.ndarray, y: np.ndarray, bounds: np.ndarray, together: list[np.ndarray], colour: str,
           title: str) -> None:
-    """Draw the points of a series, and means with standard deviations where several runs have one energy."""
+    """Draw the points of a series, and means with standard deviations if several runs have the same energy."""
     axes.plot(x[~bounds], y[~bounds], "o", color=colour, markersize=4, alpha=0.6)
     if np.any(bounds):
         named = "lower bound: not failed"

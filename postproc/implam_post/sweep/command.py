@@ -22,16 +22,16 @@ from implam_post.sweep.case_run import case_command, remove_results
 from implam_post.sweep.plan import FORMAT, Case, is_random, only, read_plan
 from implam_post.sweep.runs import NOT_RUN, STOPPED, Sweep, run_cases
 
-if TYPE_CHECKING:  # it takes numpy, which a faulty sweep need not wait for
+if TYPE_CHECKING:  # it imports numpy, which an invalid sweep does not need
     from implam_post.sweep.table import Table
 
-_TABLE_EVERY = 10.0  # seconds between tables written on the way
-_SHOWN = 20  # faulty decks reported one by one
+_TABLE_EVERY = 10.0  # seconds between intermediate tables
+_SHOWN = 20  # number of faulty decks that are listed
 _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
 def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int, *, warns: bool = True) -> None:
-    """Let the program check every deck, and report all errors, and warnings too, before one is run."""
+    """Check all decks with the program, and report errors and warnings, before the first run."""
     with ThreadPoolExecutor(jobs) as pool:
         verdicts = list(pool.map(lambda case: check_deck(sweep.program, sweep.deck(case)), cases))
     faulty = [(case, printed) for case, (sound, printed) in zip(cases, verdicts, strict=True) if not sound]
@@ -39,12 +39,12 @@ def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int, *, warns: bool =
         print(f"case {case.number}: {case.label}", *printed, sep="\n  ", file=sys.stderr)
     if faulty:
         more = f" (the first {_SHOWN} are listed)" if len(faulty) > _SHOWN else ""
-        raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; nothing was run.")
+        raise DeckError(f"{len(faulty)} of {len(sweep.plan.cases)} decks are faulty{more}; no deck was run.")
     if not warns:
         return
     warnings = [[found[1] for line in printed if (found := re.match(r".*?: warning: (.*)", line))]
                 for _, printed in verdicts]
-    # Warnings that differ in numbers alone are alike: the first one's words stand for all.
+    # Of warnings that differ only in numbers, the first one is printed.
     first: dict[str, str] = {}
     for warning in itertools.chain(*warnings):
         first.setdefault(_NUMBER.sub("#", warning), warning)
@@ -54,14 +54,14 @@ def check_decks(sweep: Sweep, cases: Sequence[Case], jobs: int, *, warns: bool =
 
 
 class _Tables:
-    """Writes the table, on the way too."""
+    """Writer of the table, final and intermediate ones."""
 
     def __init__(self, sweep: Sweep) -> None:
-        """Nothing is written yet."""
+        """Store the sweep."""
         self._sweep, self._written, self._figures = sweep, time.monotonic(), {}
 
     def write_now_and_then(self) -> None:
-        """Write the table as it is if the last one is old."""
+        """Write an intermediate table if the last one is old."""
         if time.monotonic() - self._written > _TABLE_EVERY:
             self.write()
 
@@ -75,11 +75,11 @@ class _Tables:
 
 
 def _write_array(sweep: Sweep, cases: Sequence[Case]) -> int:
-    """Write the decks still to run, and the commands that run them, one on each line."""
+    """Write the remaining decks, and the commands that run them, one per line."""
     decks, commands = sweep.plan.output / "decks.txt", sweep.plan.output / "array.txt"
     write_text(decks, "".join(f"{sweep.deck(case).absolute()}\n" for case in cases))
     write_text(commands, "".join(shlex.join(case_command(sweep.folder(case), sweep.program)) + "\n" for case in cases))
-    print(f"Decks to run: {len(cases)}, listed in {decks}, the command for each in {commands}.")
+    print(f"Decks to run: {len(cases)}, listed in {decks}, their commands in {commands}.")
     return EXIT_DONE
 
 
@@ -90,7 +90,7 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
     output = sweep.plan.output
     table = tables.write()
     write_hdf5(table, output / "table.h5")
-    # Where inputs scatter, a figure against one of them is a cloud: their statistics have pictures of their own.
+    # Random inputs are not used as axes; their statistics have their own pictures.
     plots = [] if sweep.plan.scatter else plot_table(table, output)
     print(output / "table.csv", output / "table.h5", *plots, sep="\n")
     if is_random(sweep.plan):
@@ -101,7 +101,7 @@ def _gather(sweep: Sweep, tables: _Tables) -> int:
 
 
 def exit_code(sweep: Sweep, table: "Table") -> int:
-    """List failed and remaining cases, and return the exit code; results that cannot be read are none."""
+    """List failed and remaining cases, and return the exit code; results that cannot be read count as failed."""
     code = print_outcomes(sweep)
     return code if table.is_readable else EXIT_USAGE
 
@@ -139,7 +139,7 @@ def print_outcomes(sweep: Sweep) -> int:
 
 
 def _check_second(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
-    """Check the decks of second runs before hours of first ones; their folder is kept if one is faulty."""
+    """Check the decks of second runs before the first runs; their folder is kept if one is faulty."""
     if sweep.plan.then is None or not cases:
         return
     from implam_post.sweep.chain import foreseen
@@ -160,7 +160,7 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     check_decks(sweep, cases, options.jobs)
     _check_second(sweep, cases, options.jobs)
     if options.array:
-        # In a queue the second runs follow once the first ones have ended.
+        # In a queue the second runs are listed after the first ones have ended.
         is_first = bool(cases) or sweep.plan.then is None
         return _write_array(sweep, cases) if is_first else _work_on_second(sweep, options, tables)
     for note in sweep.plan.notes:
@@ -174,7 +174,7 @@ def _work(sweep: Sweep, options: argparse.Namespace) -> int:
 
 
 def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) -> int:
-    """Run the second deck of each case, or list it for a queue, and write the table with the figures of both runs."""
+    """Run the second decks, or list them for a queue, and write the table with the figures of both runs."""
     from implam_post.sweep.chain import following
     second = following(sweep)
     if second is None:
@@ -188,7 +188,7 @@ def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) 
     check_decks(second, cases, options.jobs)
     if options.array:
         return _write_array(second, cases)
-    print(f"{counted(len(second.plan.cases), 'run')} that begin from them, {counted(len(cases), 'deck')} to run",
+    print(f"{counted(len(second.plan.cases), 'run')} from their final states, {counted(len(cases), 'deck')} to run",
           flush=True)
     finished = run_cases(second, cases, options.jobs, lambda: None)
     code = _gather_second(sweep, second, tables)
@@ -215,21 +215,21 @@ def _gather_second(sweep: Sweep, second: Sweep, tables: _Tables) -> int:
 
 
 def _command(options: argparse.Namespace) -> int:
-    """Read the sweep and work on it, alone in its folder."""
+    """Read the sweep and run it, with its folder locked."""
     program = find_program(options.program)
     plan = read_plan(options.sweep, options.output, program)
     if plan.measured is not None:
-        # Before hours of runs, after which the curve is drawn.
+        # Read before the runs, so that an error is reported before them.
         from implam_post.sweep.scatter_results import curves_of
         curves_of(plan.measured)
     sweep = Sweep(only(plan, options.only) if options.only else plan, program)
     try:
         sweep.plan.output.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"the folder {sweep.plan.output} cannot be made ({reason(error)}).") from None
+        raise FileError(f"the folder {sweep.plan.output} cannot be created ({reason(error)}).") from None
     lock = try_lock(sweep.plan.output / "lock")
     if lock is None:
-        raise FileError(f"another implam-sweep works in {sweep.plan.output}.")
+        raise FileError(f"another implam-sweep is running in {sweep.plan.output}.")
     try:
         return _work(sweep, options)
     finally:
@@ -240,20 +240,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; the exit code is 1 if a case failed, 75 if the sweep was stopped."""
     parser = CommandParser(
         "implam-sweep", formatter_class=argparse.RawDescriptionHelpFormatter, epilog=FORMAT,
-        description="Run a deck over lists, grids or samples of its keys. All decks are checked before one is run.\n"
-        "Repeated, the command continues a stopped or killed sweep; completed cases are not repeated.")
+        description="Run a deck over lists, grids or samples of its keys. All decks are checked before the first run.\n"
+        "The same command continues a stopped or killed sweep; completed cases are not repeated.")
     parser.add_argument("sweep", type=Path, metavar="SWEEP.toml", help="file of the sweep; the format is given below")
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of cases and table, instead of the file's")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder of cases and table (default: from the file)")
     parser.add_argument("--program", metavar="WORDS", help=PROGRAM_HELP)
     parser.add_argument("--jobs", type=count, default=processors(), metavar="N",
-                        help="runs at a time (default: the number of processors)")
+                        help="simultaneous runs (default: the number of processors)")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--array", action="store_true",
-                      help="run nothing; list decks (decks.txt) and commands (array.txt) for a queue's job array")
-    what.add_argument("--table", action="store_true", help="run nothing; write table and plots of existing results")
+                      help="do not run decks; list decks (decks.txt) and commands (array.txt) for a job array")
+    what.add_argument("--table", action="store_true", help="do not run decks; evaluate existing results")
     parser.add_argument("--only", nargs="+", metavar="VARIANT",
-                        help="of [variants] only these, and the first one, which others are compared with")
-    parser.add_argument("--retry", action="store_true", help="repeat cases without convergence, too, from their start")
+                        help="only these of [variants], and the first one, with which others are compared")
+    parser.add_argument("--retry", action="store_true", help="also repeat, from the start, cases without convergence")
     return run(_command, parser, arguments)
 
 

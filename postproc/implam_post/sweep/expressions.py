@@ -1,4 +1,4 @@
-"""Formulas on names and numbers, such as sqrt(2*energy/impactor.mass); nothing else in them is carried out."""
+"""Formulas of names and numbers, such as sqrt(2*energy/impactor.mass); other expressions are refused."""
 
 import ast
 import math
@@ -22,9 +22,9 @@ LONGEST = 1000
 
 
 def evaluate(formula: str, lookup: Lookup) -> Number | list[Number]:
-    """Return the number, or the list of numbers, that a formula gives.
+    """Return the value of a formula, a number or a list of numbers.
 
-    `lookup` returns what a name, or group.key or group[2].key, stands for; it raises DeckError for unknown ones.
+    `lookup` returns the value of a name, of group.key or of group[2].key; it raises DeckError for unknown ones.
     """
     try:
         if len(formula) > LONGEST:
@@ -36,18 +36,18 @@ def evaluate(formula: str, lookup: Lookup) -> Number | list[Number]:
     except DeckError as error:
         raise DeckError(f"the formula {formula!r}: {error}") from None
     except (SyntaxError, ValueError, ArithmeticError, TypeError, RecursionError, MemoryError) as error:
-        raise DeckError(f"the formula {formula!r} cannot be worked out ({error}).") from None
+        raise DeckError(f"the formula {formula!r} cannot be evaluated ({error}).") from None
 
 
 def _value(node: ast.expr, lookup: Lookup) -> Number:
-    """Return the number that a part of a formula gives."""
+    """Return the value of a part of a formula."""
     if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
         return _finite(_OPERATORS[type(node.op)](_value(node.left, lookup), _value(node.right, lookup)))
     if isinstance(node, ast.UnaryOp) and type(node.op) in _OPERATORS:
         return _OPERATORS[type(node.op)](_value(node.operand, lookup))
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         if node.func.id not in FUNCTIONS:
-            raise DeckError(f"'{node.func.id}' is none of the functions {', '.join(FUNCTIONS)}.")
+            raise DeckError(f"'{node.func.id}' is not one of the functions {', '.join(FUNCTIONS)}.")
         return _finite(FUNCTIONS[node.func.id](*(_value(argument, lookup) for argument in node.args)))
     if isinstance(node, ast.Constant):
         return _number(node.value, ast.unparse(node))
@@ -55,12 +55,12 @@ def _value(node: ast.expr, lookup: Lookup) -> Number:
         return CONSTANTS[node.id] if node.id in CONSTANTS else _number(lookup(node.id), node.id)
     path = _path(node)
     if path is None:
-        raise DeckError(f"'{ast.unparse(node)}' has no place in a formula.")
+        raise DeckError(f"'{ast.unparse(node)}' is not allowed in a formula.")
     return _number(lookup(path), path)
 
 
 def _path(node: ast.expr) -> str | None:
-    """Return group.key or group[2].key if a part of a formula is one."""
+    """Return a part of a formula as text if it is group.key or group[2].key; otherwise None."""
     if not isinstance(node, ast.Attribute):
         return None
     owner = node.value
@@ -78,5 +78,5 @@ def _number(value: object, what: str) -> Number:
 def _finite(value: Number) -> Number:
     """Return `value` if it is finite and real."""
     if isinstance(value, complex) or not math.isfinite(value):
-        raise DeckError("a value on the way is not finite.")
+        raise DeckError("an intermediate value is not finite.")
     return value

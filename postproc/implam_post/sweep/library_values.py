@@ -1,4 +1,4 @@
-"""Values of published materials that a deck names, written into it, so that they can scatter like the deck's own."""
+"""Write the values of published materials into a deck, so that they can scatter like values of the deck."""
 
 import re
 import subprocess
@@ -11,7 +11,7 @@ from implam_post.io.errors import DeckError, FileError, reason
 from implam_post.io.program import environment
 from implam_post.io.units import SYSTEMS
 
-# Values by material and key, in SI, each with its unit.
+# Values by material and key, in SI, with their units.
 Library = dict[str, dict[str, tuple[float, str]]]
 # Powers of length, mass and time in the units of the table.
 _UNITS = {"Pa": (-1, 1, -2), "J/m^2": (0, 1, -2), "kg/m^3": (-3, 1, 0), "-": (0, 0, 0)}
@@ -21,21 +21,21 @@ _WAITING = 60.0
 
 
 def asking(program: Sequence[str] | None) -> Callable[[], Library]:
-    """Return a function that requests the table of published materials."""
+    """Return a function that requests the table of published materials from the program."""
     def request() -> Library:
         if program is None:
-            raise FileError("the deck names a published material, whose values are the program's: give --program.")
+            raise FileError("the deck has a published material, whose values only the program has: give --program.")
         try:
             ended = subprocess.run([program[-1], "explain", "materials"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, timeout=_WAITING, check=False, env=environment())
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise FileError(f"the program {program[-1]} lists no published materials ({reason(error)}).") from None
+            raise FileError(f"the program {program[-1]} does not list published materials ({reason(error)}).") from None
         return read_library(ended.stdout)
     return request
 
 
 def read_library(text: str) -> Library:
-    """Return the table that `implam explain materials` prints; empty if there is none."""
+    """Return the table of `implam explain materials`; empty if there is none."""
     library: Library = {}
     names: list[str] = []
     for key, unit, cells in (match.groups() for match in map(_ROW.match, text.splitlines()) if match):
@@ -52,7 +52,7 @@ def read_library(text: str) -> Library:
 
 
 def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
-    """Return a deck with the values in it that it leaves to published materials; a value that it gives stays."""
+    """Return a deck with the values of its published materials; values given in the deck are kept."""
     deck = Deck(text, Path(name))
     materials = deck.groups.get("material", [])
     named = {place: str(group["library"][0]) for place, group in enumerate(materials, start=1) if group.get("library")}
@@ -72,11 +72,11 @@ def adopt(text: str, name: str, request: Callable[[], Library]) -> str:
 
     for place, published in named.items():
         if published.lower() not in library:
-            raise DeckError(f"{name}: '{published}' is none of the published materials {', '.join(library)}.")
+            raise DeckError(f"{name}: '{published}' is not one of the published materials {', '.join(library)}.")
         for key in library[published.lower()]:
             if key not in _TOUGHNESSES:
                 take("material", place, key, library[published.lower()])
-    # Interfaces take the toughness of a material that is the only one of the deck (src/case/deck_library.f90).
+    # Interfaces have the toughness of the material if the deck has only one (src/case/deck_library.f90).
     if len({str(group.get("library", [""])[0]).lower() for group in materials}) == 1:
         for place, group in enumerate(deck.groups.get("delamination", []), start=1):
             for key in () if {"g_c", "g_ic", "g_iic"} & group.keys() else _TOUGHNESSES:

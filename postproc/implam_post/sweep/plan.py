@@ -1,4 +1,4 @@
-"""The plan of a sweep: the cases that its file requires, each with its deck."""
+"""The plan of a sweep: its cases with their decks."""
 
 import hashlib
 import itertools
@@ -22,20 +22,20 @@ from implam_post.sweep.scatter_plan import Scatter, read_scatter
 FORMAT = """
 The file of a sweep:
 
-    deck = "peanut.nml"                       # the deck all cases start from, beside this file
+    deck = "peanut.nml"                       # the base deck of all cases, in the folder of this file
     output = "results"                        # folder of the cases and the table; default: the name of this file
-    then = "compression.nml"                  # a second deck for each case, which begins from the case's end
-    units = "SI"                              # of the plots: SI, mm-t-s, mm-kg-ms, mm-mN-kg-s; default: the deck's
+    then = "compression.nml"                  # a second deck for each case, which begins with its final state
+    units = "SI"                              # or mm-t-s, mm-kg-ms, mm-mN-kg-s; default: system of units of the deck
 
-    [grid]                                    # every combination, the last key changes fastest
-    "laminate.angles" = [[0, 90, 0], "3*0"]   # a list in the list, or text as it stands in a deck
-    energy = [1.0, 2.0]                       # a name without a group is there for [derived]
+    [grid]                                    # all combinations, the last key changes fastest
+    "laminate.angles" = [[0, 90, 0], "3*0"]   # a list in the list, or text as in a deck
+    energy = [1.0, 2.0]                       # a name without a group is for formulas of [derived]
 
-    [list]                                    # side by side: first with first, second with second
-    "material[1].E1" = [120e9, 139e9]         # [1] counts the groups of one name, [*] means all of them
-    "delamination[*].G_c" = [400, ""]         # "" leaves the key out
+    [list]                                    # n-th values together: first with first, second with second
+    "material[1].E1" = [120e9, 139e9]         # [1] is the first group of that name, [*] are all of them
+    "delamination[*].G_c" = [400, ""]         # "" removes the key
 
-    [samples]                                 # at random
+    [samples]                                 # random values
     number = 20
     seed = 1                                  # default 1
     method = "random"                         # or "latin_hypercube"
@@ -43,22 +43,22 @@ The file of a sweep:
     "impactor.mass" = { distribution = "uniform", low = 0.9, high = 1.1 }
     "delamination[*].G_IIc" = { distribution = "lognormal", mean = 790, deviation = 80 }
 
-    [derived]                                 # in this order, from names, keys of the case's deck, and numbers
+    [derived]                                 # formulas of names, keys of the deck, and numbers, in this order
     "impactor.velocity" = "sqrt(2*energy/impactor.mass)"
 
-    [scatter]                                 # runs with inputs drawn within their tolerances
+    [scatter]                                 # runs with random inputs, by default with their usual tolerances
     number = 10
     seed = 1                                  # default 1; method as above
-    strengths = 0.08                          # coefficients of variation instead of the defaults, 0: as in the deck
-    "delamination.G_IIc" = 0.1                # of one key alone
+    strengths = 0.08                          # coefficients of variation other than the defaults, 0: as in the deck
+    "delamination.G_IIc" = 0.1                # of a single key
 
     [variants]                                # decks to be compared, with the same random inputs
     "as it is" = {}
     "no friction" = { "delamination[*].friction" = 0 }
     "no clamps" = { drop = ["support[2]"] }   # without a group
 
-Several tables together are combined: each row of [grid] with each of [list] with each of [samples]. `deck` may be swept
-too. Text that reads as values of a deck stands there as it is; any other is put in quotes.
+Several tables are combined: each row of [grid] with each of [list] and each of [samples]. `deck` may be swept, too.
+Text that is valid as values of a deck is used as it is; other text is put in quotes.
 """
 MAX_CASES = 100_000
 COLUMNS = ("case", "impact_energy", "peak_force", "peak_force_time", "contact_duration", "max_deflection",
@@ -72,7 +72,7 @@ _SAMPLES = {"number": None, "seed": 1, "method": "random"}
 
 @dataclass(frozen=True)
 class Case:
-    """One case: its number from 1, the values in which it differs, its deck, and which of several runs of it."""
+    """One case: number from 1, swept values, deck, and the number of the run if the same deck is repeated."""
 
     number: int
     values: dict[str, object]
@@ -82,13 +82,13 @@ class Case:
 
     @cached_property
     def key(self) -> str:
-        """Return a name of the deck's content: cases of the same deck have the same, but where one is repeated."""
+        """Return a hash of the deck, equal for cases of the same deck that are not repeated runs."""
         name = hashlib.sha256(f"{self.deck_name}\n{self.deck}".encode()).hexdigest()[:12]
         return name if self.repeat == 1 else f"{name}_{self.repeat}"
 
     @property
     def label(self) -> str:
-        """Return the values in one line, to six digits, without those drawn by [scatter]."""
+        """Return the values in one line, to six digits, without the random ones of [scatter]."""
         shown = [f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={deck_value(value)}"
                 for name, value in self.values.items() if " " not in name]
         return "  ".join([*shown, *["random inputs"] * (len(shown) < len(self.values))])
@@ -96,7 +96,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Variant:
-    """A deck that is compared with others: its name, keys that it sets, and groups that it leaves out."""
+    """A variant of the deck: its name, changed keys, and removed groups."""
 
     name: str
     settings: dict[str, object]
@@ -107,9 +107,9 @@ class Variant:
 class Plan:
     """All cases of a sweep, the text of its file, the names of swept and derived values, and the folder of the results.
 
-    `random` names what is drawn at random of what is set. `scatter` is the table [scatter], `measured` a curve beside
-    which histories are drawn, and `notes` say what does not scatter. `then` is the deck of second runs, which begin
-    from the ends of the cases.
+    `random` are the names of random values. `scatter` is the table [scatter], `measured` a measured curve for the
+    pictures, and `notes` are about inputs that do not scatter. `then` is the deck of second runs, which begin with the
+    final states of the cases.
     """
 
     path: Path
@@ -127,7 +127,7 @@ class Plan:
 
 
 def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | None = None) -> Plan:
-    """Read the file of a sweep and make the decks of its cases; the program lists published materials."""
+    """Read the file of a sweep and create the decks of its cases; the program lists published materials."""
     text = read_text(path, "the sweep")
     try:
         content = tomllib.loads(text)
@@ -136,11 +136,11 @@ def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | N
         words = {"deck": "", "output": path.stem, "units": "", "measured": "", "then": ""}
         base, folder, units, measured, then = (content.pop(name, default) for name, default in words.items())
         if content:
-            raise DeckError(f"'{next(iter(content))}' is none of {', '.join(words)}, {', '.join(_TABLES)}, scatter, "
+            raise DeckError(f"'{next(iter(content))}' is not one of {', '.join(words)}, {', '.join(_TABLES)}, scatter, "
                             "variants.")
         given = (base, folder, units, measured, then)
         if not all(isinstance(word, str) for word in given) or units not in ("", *SYSTEMS):
-            raise DeckError(f"deck, output, measured and then are text, and units one of {', '.join(SYSTEMS)}.")
+            raise DeckError(f"deck, output, measured and then must be text, and units one of {', '.join(SYSTEMS)}.")
         check_names(tables)
         cases = CaseMaker(path.parent, base, tables["derived"], scatter, cache(asking(program)))
         made = _cases(cases, tables, variants)
@@ -155,12 +155,12 @@ def read_plan(path: Path, output: Path | None = None, program: Sequence[str] | N
 
 
 def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: Sequence["Variant"]) -> list[Case]:
-    """Return the cases: each variant with each row of swept values, run by run."""
+    """Return the cases: all combinations of variants, rows of swept values and runs."""
     runs = maker.scatter.number if maker.scatter else 1
     swept = any(tables[name] for name in ("grid", "list", "samples"))
     rows = list(combinations(tables)) if swept or not (maker.scatter or variants) else [{}]
     if (count := max(len(variants), 1) * len(rows) * runs) > MAX_CASES:
-        raise DeckError(f"the sweep has {count} cases; {MAX_CASES} are the most.")
+        raise DeckError(f"the sweep has {count} cases; at most {MAX_CASES} are allowed.")
     chosen = itertools.product(variants or [None], rows, range(runs))
     return [maker.make(number, row, variant, run) for number, (variant, row, run) in enumerate(chosen, start=1)]
 
@@ -168,7 +168,7 @@ def _cases(maker: "CaseMaker", tables: dict[str, dict[str, object]], variants: S
 def read_variants(table: object) -> list[Variant]:
     """Return the variants of a sweep, in order."""
     if not isinstance(table, dict) or not all(isinstance(value, dict) for value in table.values()):
-        raise DeckError('variants is a table of tables: [variants] "name" = { "group.key" = value }.')
+        raise DeckError('variants must be a table of tables: [variants] "name" = { "group.key" = value }.')
     return [_variant(name, dict(value)) for name, value in table.items()]
 
 
@@ -176,20 +176,20 @@ def _variant(name: str, table: dict[str, object]) -> Variant:
     """Return one variant."""
     dropped = table.pop("drop", [])
     if not isinstance(dropped, list) or not all(isinstance(word, str) and group_path(word) for word in dropped):
-        raise DeckError(f"[variants] {name}: drop is a list of groups, as [\"support[2]\"].")
+        raise DeckError(f"[variants] {name}: drop must be a list of groups, such as [\"support[2]\"].")
     settings = flat_table(table, f"variants.{name}")
     for key in settings:
         if key != "deck" and key_path(key) is None:
-            raise DeckError(f"[variants] {name}: '{key}' is no key of the deck, as group.key or group[2].key.")
+            raise DeckError(f"[variants] {name}: '{key}' is not a key of the deck, such as group.key or group[2].key.")
     return Variant(name, settings, dropped)
 
 
 def only(plan: Plan, variants: Sequence[str]) -> Plan:
-    """Return the plan with its first variant and some others alone."""
+    """Return the plan with only its first variant and these others."""
     names = list(dict.fromkeys(str(case.values[VARIANT]) for case in plan.cases if VARIANT in case.values))
     for name in variants:
         if name not in names:
-            raise DeckError(f"{plan.path}: '{name}' is none of the variants {', '.join(names) or '(there are none)'}.")
+            raise DeckError(f"{plan.path}: '{name}' is not one of the variants {', '.join(names) or '(none)'}.")
     kept = {names[0], *variants}
     return replace(plan, cases=[case for case in plan.cases if case.values[VARIANT] in kept])
 
@@ -200,21 +200,21 @@ def is_random(plan: Plan) -> bool:
 
 
 def flat_table(table: object, name: str) -> dict[str, object]:
-    """Return a table with dotted names, whether or not they were written in quotes."""
+    """Return a table with dotted names, which may have been given with or without quotes."""
     if not isinstance(table, dict):
-        raise DeckError(f"{name} is a table: [{name}].")
+        raise DeckError(f"{name} must be a table: [{name}].")
     flat: dict[str, object] = {}
     for key, value in table.items():
         is_nested = isinstance(value, dict) and "distribution" not in value
         found = {f"{key}.{rest}": item for rest, item in flat_table(value, name).items()} if is_nested else {key: value}
         for twice in flat.keys() & found:
-            raise DeckError(f"'{twice}' stands in [{name}] twice.")
+            raise DeckError(f"'{twice}' is given twice in [{name}].")
         flat |= found
     return flat
 
 
 def check_names(tables: dict[str, dict[str, object]]) -> None:
-    """Refuse names that are neither keys nor plain names, and those given twice."""
+    """Refuse names that are not keys or plain names, and names given twice."""
     table_of: dict[str, str] = {}
     for table, entries in tables.items():
         for name in entries:
@@ -222,14 +222,14 @@ def check_names(tables: dict[str, dict[str, object]]) -> None:
                 continue
             path = key_path(name)
             if path is None and (not name.isidentifier() or name in FUNCTIONS or name in CONSTANTS):
-                raise DeckError(f"[{table}] '{name}' is neither a key of the deck, as group.key or group[2].key, "
-                                "nor a free name.")
+                raise DeckError(f"[{table}] '{name}' is not a key of the deck, such as group.key or group[2].key, "
+                                "or a free name.")
             if name in (*COLUMNS, VARIANT):
                 raise DeckError(f"[{table}] '{name}' is the name of another column of the table.")
             same = str(replace(path, number=1 if path.number is None else path.number)).lower() if path else name
             if same in table_of:
-                raise DeckError(f"'{name}' stands in both [{table_of[same]}] and [{table}]." if table_of[same] != table
-                                else f"'{name}' stands in [{table}] twice.")
+                raise DeckError(f"'{name}' is given in [{table_of[same]}] and [{table}]." if table_of[same] != table
+                                else f"'{name}' is given twice in [{table}].")
             table_of[same] = table
 
 
@@ -238,19 +238,19 @@ def combinations(tables: dict[str, dict[str, object]]) -> Iterator[dict[str, obj
     for table in ("grid", "list"):
         for name, values in tables[table].items():
             if not isinstance(values, list) or not values:
-                raise DeckError(f"[{table}] {name} needs a list of values, one at least.")
+                raise DeckError(f"[{table}] {name} needs a list of at least one value.")
     grid, side_by_side, samples = tables["grid"], tables["list"], _samples(tables["samples"])
     lengths = {name: len(values) for name, values in side_by_side.items()}
     if len(set(lengths.values())) > 1:
-        raise DeckError("[list] needs lists of one length, not " +
+        raise DeckError("[list] needs lists of equal length, not " +
                         ", ".join(f"{name} with {length}" for name, length in lengths.items()) + ".")
     if not grid and not side_by_side and not samples:
-        raise DeckError("nothing is swept: [grid], [list], [samples], [scatter] or [variants] is needed.")
+        raise DeckError("the sweep has no values: [grid], [list], [samples], [scatter] or [variants] is required.")
     rows = [list(itertools.islice(zip(*table.values(), strict=True), MAX_CASES)) if table else [()]
             for table in (side_by_side, samples)]
     count = math.prod(len(values) for values in grid.values()) * len(rows[0]) * len(rows[1])
     if count > MAX_CASES:
-        raise DeckError(f"the sweep has {count} cases; {MAX_CASES} are the most.")
+        raise DeckError(f"the sweep has {count} cases; at most {MAX_CASES} are allowed.")
     names = [*grid, *side_by_side, *samples]
     for parts in itertools.product(itertools.product(*grid.values()), *rows):
         yield dict(zip(names, itertools.chain(*parts), strict=True))
@@ -264,17 +264,17 @@ def _samples(table: Mapping[str, object]) -> dict[str, list[float]]:
     number, seed, method = (table.get(name, default) for name, default in _SAMPLES.items())
     are_integers = all(isinstance(value, int) and not isinstance(value, bool) for value in (number, seed))
     if not are_integers or not 1 <= number <= MAX_CASES or method not in METHODS or not quantities:
-        raise DeckError(f"[samples] needs a number from 1 to {MAX_CASES}, an integer seed, a method out of "
-                        f"{', '.join(METHODS)}, and a quantity at least.")
+        raise DeckError(f"[samples] needs a number from 1 to {MAX_CASES}, an integer seed, a method, one of "
+                        f"{', '.join(METHODS)}, and at least one quantity.")
     return {name: draw(name, value, number, seed, method) for name, value in quantities.items()}
 
 
 class CaseMaker:
-    """Makes the cases from the base decks, and records the free names used by formulas, and random samples."""
+    """Creates cases from the base decks; records free names that formulas use, and names of random inputs."""
 
     def __init__(self, folder: Path, base: str, derived: dict[str, object], scatter: Scatter | None = None,
                  request: Callable[[], Library] = dict) -> None:
-        """Decks lie in `folder`; `base` is the deck where none is swept; `request` returns published materials."""
+        """Decks are in `folder`; `base` is the deck if `deck` is not swept; `request` returns published materials."""
         self._folder, self._base, self._derived, self.scatter, self._request = folder, base, derived, scatter, request
         self._texts: dict[str, str] = {}
         self._used: set[str] = set()
@@ -282,17 +282,17 @@ class CaseMaker:
         self.notes: list[str] = []
 
     def make(self, number: int, swept: dict[str, object], variant: Variant | None = None, run: int = 0) -> Case:
-        """Return the case of these swept values, of a variant and a run with its random inputs."""
+        """Return the case of swept values, a variant and a run with its random inputs."""
         set_too = variant.settings if variant else {}
         values = ({VARIANT: variant.name} if variant else {}) | {
             name: set_too.get(name, value) for name, value in swept.items()}
         base = set_too.get("deck", values.get("deck", self._base))
         if not isinstance(base, str) or not base:
-            raise DeckError("deck, the deck that all cases start from, is needed.")
+            raise DeckError("deck, the base deck of all cases, is required.")
         settings = {path: deck_value(value) for name, value in (swept | set_too).items() if (path := key_path(name))}
         name = f"{Path(base).stem}.nml"
         text = self._text(base)
-        # A group is counted among those of the deck, so groups are left out first, the last ones before others.
+        # Numbers of groups refer to the base deck, so that groups are removed first, from the last to the first.
         dropped = sorted(map(group_path, variant.dropped if variant else ()), key=lambda found: -(found[1] or 0))
         for group, place in dropped:
             text = drop_group(text, group, place, name)
@@ -306,7 +306,7 @@ class CaseMaker:
         return Case(number, *self._scattered(values, text, name, run))
 
     def _scattered(self, values: dict[str, object], text: str, name: str, run: int) -> tuple[dict, str, str]:
-        """Return the values, the name and the text of a deck with its inputs drawn at random, if they are."""
+        """Return values, name and text of a deck with its random inputs, if there are any."""
         if self.scatter is None:
             return values, name, text
         text = adopt(text, name, self._request)
@@ -318,10 +318,10 @@ class CaseMaker:
         return values | drawn, name, text
 
     def check_use(self, names: Iterator[str]) -> None:
-        """Refuse free names that no formula uses: they would make no difference."""
+        """Refuse free names that no formula uses, as they would have no effect."""
         for name in names:
             if name not in (*_SAMPLES, "deck", *self._used) and key_path(name) is None:
-                raise DeckError(f"no formula of [derived] uses '{name}'; a key of the deck is written group.key.")
+                raise DeckError(f"no formula of [derived] uses '{name}'; a key of the deck is given as group.key.")
 
     def _text(self, base: str) -> str:
         """Return the text of a base deck."""
@@ -330,11 +330,11 @@ class CaseMaker:
         return self._texts[base]
 
     def _resolve(self, word: str, values: dict[str, object], text: str, name: str) -> object:
-        """Return the value of a word of a formula: a free name, or a key of the case's deck."""
+        """Return the value of a name in a formula: a free name, or a key of the deck."""
         path: KeyPath | None = key_path(word)
         if path is not None:
             return number_of(text, path, name)
         if word not in values:
-            raise DeckError(f"'{word}' is neither swept nor derived before.")
+            raise DeckError(f"'{word}' is not swept, and not derived by a preceding formula.")
         self._used.add(word)
         return values[word]

@@ -1,4 +1,4 @@
-"""Plots of a sweep's table: delaminated area and threshold force against energy, and figures against swept values."""
+"""Plots of a sweep: delaminated area and threshold force against energy, and figures against swept values."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from implam_post.sweep.table import FIGURES, Table
 
 _MAX_SERIES, _MAX_COLUMNS, _LONGEST = 10, 6, 40
 _SCATTERED = ("peak_force", "max_deflection", "absorbed_energy", "delaminated_area", "first_growth_force")
-# What free names and keys are measured in, keys alone, and keys of &material: e of &ply_damage is a fraction.
+# Dimensions of free names and keys; of keys only; and of keys of &material (e of &ply_damage is a fraction).
 _WORDS = {"energy": "energy", "velocity": "velocity", "mass": "mass"}
 _DIMENSIONS = {**_WORDS,
                **dict.fromkeys(("radius", "thicknesses", "ply_thickness", "patch", "cell", "starter"), "length"),
@@ -34,9 +34,9 @@ def plot_table(table: Table, folder: Path) -> list[Path]:
 
 
 def series(table: Table) -> dict[str, np.ndarray]:
-    """Return groups of rows that differ in the impact energy alone, in its order, by their common values.
+    """Return groups of rows that differ only in the impact energy, in ascending energy, by their common values.
 
-    All rows are one series without a name if names say nothing: if there are too many, or none has two rows.
+    If there are too many groups, or none has two rows, all rows are one series without a name.
     """
     energy = table.numbers("impact_energy")
     finite = np.isfinite(energy)
@@ -52,7 +52,7 @@ def series(table: Table) -> dict[str, np.ndarray]:
 
 
 def _changes_energy(table: Table, swept: list[str], name: str, energy: np.ndarray) -> bool:
-    """Return whether two rows with the same swept values but of this name differ in energy."""
+    """Return whether two rows that differ only in this swept value have different energies."""
     others = [other for other in swept if other != name]
     energy_of: dict[tuple, float] = {}
     for row in np.flatnonzero(np.isfinite(energy)):
@@ -63,7 +63,7 @@ def _changes_energy(table: Table, swept: list[str], name: str, energy: np.ndarra
 
 
 def _against_energy(table: Table, name: str) -> Drawing | None:
-    """Draw a figure against the impact energy; nothing if no case has it."""
+    """Draw a figure against the impact energy; None if no case has it."""
     x, y = table.numbers("impact_energy"), table.numbers(name)
     if not np.any(np.isfinite(x) & np.isfinite(y)):
         return None
@@ -83,7 +83,7 @@ def _against_energy(table: Table, name: str) -> Drawing | None:
 
 
 def _scatter(table: Table) -> Drawing | None:
-    """Draw figures, row by row, against the swept values, column by column; nothing without values."""
+    """Draw figures (rows) against swept values (columns); None without values."""
     figures = [name for name in _SCATTERED if np.any(np.isfinite(table.numbers(name)))]
     swept = _varied(table)[:_MAX_COLUMNS]
     if not figures or not swept:
@@ -103,7 +103,7 @@ def _scatter(table: Table) -> Drawing | None:
 
 
 def _scatter_one(axes: Axes, table: Table, name: str, values: np.ndarray) -> str:
-    """Draw numbers against a swept value, or beside each other for values without a number; return the axis' label."""
+    """Draw numbers against a swept value, or against categories if it is not a number; return the label of the axis."""
     numbers = table.numbers(name)
     if numbers is not None:
         along = axis_of(name, dimension_of_swept(name), numbers, table.system)
@@ -118,12 +118,12 @@ def _scatter_one(axes: Axes, table: Table, name: str, values: np.ndarray) -> str
 
 
 def _varied(table: Table) -> list[str]:
-    """Return the names whose values differ from case to case."""
+    """Return the names whose values differ between cases."""
     return [name for name in table.swept if len(set(map(str, table.columns[name]))) > 1]
 
 
 def dimension_of_swept(name: str) -> str:
-    """Return the dimension of a swept name, by its last word."""
+    """Return the dimension of a swept name, from its last word."""
     group, _, word = name.lower().rpartition(".")
     if group.partition("[")[0] == "material" and word in _OF_MATERIAL:
         return _OF_MATERIAL[word]

@@ -1,4 +1,4 @@
-"""The cases of a sweep on this machine: folders, outcomes, and runs in progress."""
+"""Cases of a sweep on this machine: folders, results, and runs in progress."""
 
 import os
 import signal
@@ -22,7 +22,7 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal
 
 @dataclass
 class _Job:
-    """A run in progress; closing its lifeline stops it."""
+    """A run in progress; it stops when its pipe `lifeline` is closed."""
 
     case: Case
     process: subprocess.Popen
@@ -31,14 +31,14 @@ class _Job:
 
 @dataclass
 class Sweep:
-    """A plan with the program that runs it."""
+    """A plan and the program that runs it."""
 
     plan: Plan
     program: list[str]
     folders: dict[str, Path] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Name the folder of each case."""
+        """Choose the folder of each case."""
         self.folders = {case.key: self.plan.output / "cases" / case.key for case in self.plan.cases}
 
     def folder(self, case: Case) -> Path:
@@ -50,14 +50,14 @@ class Sweep:
         return self.folder(case) / case.deck_name
 
     def write_decks(self) -> None:
-        """Write the decks that are not there yet."""
+        """Write the decks that do not exist yet."""
         for case in self.plan.cases:
             path = self.deck(case)
             if not path.exists() or read_text(path, "the deck") != case.deck:
                 write_text(path, case.deck)
 
     def open_cases(self) -> list[Case]:
-        """Return the cases whose run has not ended for good, one of each deck."""
+        """Return the cases whose run has to be started or continued, one per deck."""
         first: dict[str, Case] = {}
         for case in self.plan.cases:
             first.setdefault(case.key, case)
@@ -65,7 +65,7 @@ class Sweep:
         return [case for key, case in first.items() if not (records[key] and records[key].final)]
 
     def failure(self, case: Case) -> str:
-        """Return why a case has no result; empty if it has one."""
+        """Return the reason why a case has no result; empty if it has one."""
         record = read_record(self.folder(case))
         if record is None:
             return NOT_RUN
@@ -79,7 +79,7 @@ class Sweep:
 
 
 def _start(sweep: Sweep, case: Case) -> _Job:
-    """Start the run of a case, in a session of its own: it stops when its lifeline closes, and not before."""
+    """Start the run of a case in its own session, so that only closing its pipe `lifeline` stops it."""
     reading, lifeline = os.pipe()
     try:
         process = subprocess.Popen(
@@ -93,7 +93,7 @@ def _start(sweep: Sweep, case: Case) -> _Job:
 
 
 def run_cases(sweep: Sweep, cases: Sequence[Case], jobs: int, now_and_then: Callable[[], None]) -> bool:
-    """Run cases, some at a time; return False if a signal stopped them. `now_and_then` is called on and on."""
+    """Run cases, several simultaneously; return False if a signal stopped them. `now_and_then` is called repeatedly."""
     waiting, running, stopped = list(reversed(cases)), [], []
     handlers = {number: signal.signal(number, lambda *_: stopped.append(True)) for number in _SIGNALS}
     try:
@@ -118,7 +118,7 @@ def run_cases(sweep: Sweep, cases: Sequence[Case], jobs: int, now_and_then: Call
 
 
 def _end(sweep: Sweep, job: _Job, progress: Progress) -> None:
-    """Report how a run ended."""
+    """Report the end of a run."""
     _cut(job)
     printed = job.process.stderr.read().strip()
     job.process.stderr.close()
@@ -128,7 +128,7 @@ def _end(sweep: Sweep, job: _Job, progress: Progress) -> None:
 
 
 def _cut(job: _Job) -> None:
-    """Stop a run by closing its lifeline."""
+    """Stop a run by closing its pipe."""
     if job.lifeline >= 0:
         os.close(job.lifeline)
         job.lifeline = -1

@@ -1,4 +1,4 @@
-"""Random samples of quantities, the same on every machine: each name has its own stream, set by the seed."""
+"""Random samples of quantities, reproducible on every machine; each name has its own stream of random numbers."""
 
 import math
 import random
@@ -15,11 +15,13 @@ _PARAMETERS = {"uniform": ("low", "high"), "normal": ("mean", "deviation"), "log
 def draw(name: str, distribution: object, number: int, seed: int, method: str) -> list[float]:
     """Return `number` samples of a quantity.
 
-    With "random", a larger number begins with the same samples. With "latin_hypercube", each of as many intervals of
-    equal probability as there are samples holds one, in random order.
+    With "random", a larger number begins with the same samples. With "latin_hypercube", each of `number` intervals of
+    equal probability contains one sample, in random order. Streams depend on seed and name only, so that another
+    quantity does not change the samples of this one.
     """
     quantile = _quantile(name, distribution)
-    # The generator's random() alone is promised to give the same numbers in every version of Python.
+    # Of this generator only random() is guaranteed to give the same numbers in every version of Python. numpy's
+    # Generator and scipy.stats.qmc have no such guarantee, but a sweep continues only with the same decks.
     stream = random.Random(f"{seed} {name}")
     shares = [stream.random() for _ in range(number)]
     if method == "latin_hypercube":
@@ -30,16 +32,16 @@ def draw(name: str, distribution: object, number: int, seed: int, method: str) -
 
 
 def _quantile(name: str, distribution: object) -> Quantile:
-    """Return the quantile function of a distribution, from its table in the file."""
+    """Return the quantile function of a distribution given by its table in the file."""
     if not isinstance(distribution, Mapping) or distribution.get("distribution") not in _PARAMETERS:
-        raise DeckError(f"{name}: a distribution is needed, one of {', '.join(_PARAMETERS)}.")
+        raise DeckError(f"{name}: a distribution is required, one of {', '.join(_PARAMETERS)}.")
     kind = distribution["distribution"]
     names = _PARAMETERS[kind]
     values = [distribution.get(parameter) for parameter in names]
     finite = [isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
               for value in values]
     if set(distribution) != {"distribution", *names} or not all(finite):
-        raise DeckError(f"{name}: {kind} takes {' and '.join(names)}, finite numbers, and nothing else.")
+        raise DeckError(f"{name}: {kind} needs {' and '.join(names)}, finite numbers, and no other keys.")
     if kind == "uniform":
         low, high = values
         if low >= high:
@@ -47,7 +49,8 @@ def _quantile(name: str, distribution: object) -> Quantile:
         return lambda share: low + share * (high - low)
     mean, deviation = values
     if deviation <= 0 or (kind == "lognormal" and mean <= 0):
-        raise DeckError(f"{name}: the deviation{' and the mean' if kind == 'lognormal' else ''} must be above zero.")
+        also = " and the mean" if kind == "lognormal" else ""
+        raise DeckError(f"{name}: the deviation{also} must be greater than zero.")
     if kind == "normal":
         return NormalDist(mean, deviation).inv_cdf
     spread = math.log1p((deviation / mean)**2)

@@ -1,4 +1,4 @@
-"""Pictures of runs with random inputs: the band of the force history, and the share of runs that delaminated."""
+"""Pictures of runs with random inputs: band of the force history, and fraction of runs with delamination."""
 
 import itertools
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from implam_post.plot.style import PictureStyle, lay_out
 from implam_post.sweep.scatter_results import Group
 
 BAND, SHARE = "force_band.png", "delaminated_share.png"
-_PIXELS = 240  # of the longer side of the map of shares
+_PIXELS = 240  # number of points along the longer side of the map
 _LEVELS = (0.05, 0.5, 0.95)
 _WIDTH, _WORDS, _CAPTION, _BESIDE, _COLUMNS = 5.6, 2.0, 0.6, 0.9, 3
 
@@ -34,7 +34,7 @@ def plot_scatter(groups: Sequence[Group], curves: Sequence[History], style: Pict
 
 
 def band_figure(groups: Sequence[Group], curves: Sequence[History], style: PictureStyle) -> Figure:
-    """Draw the mean force of each group with the band between the 5 and 95 % points, and its runs as thin lines."""
+    """Draw the mean force of each group, the band from the 5 to the 95 % point, and the runs as thin lines."""
     figure = Figure(figsize=(8, 4.8), layout="constrained")
     axes = figure.subplots()
     bands = [group.band() for group in groups]
@@ -63,7 +63,7 @@ def band_figure(groups: Sequence[Group], curves: Sequence[History], style: Pictu
 
 
 def share_figure(groups: Sequence[Group], style: PictureStyle) -> Figure:
-    """Draw for each group in which share of its runs a place has delaminated, all interfaces seen through the plate."""
+    """Draw for each group the fraction of runs in which a place is delaminated in any interface."""
     regions = [[run.region for run in group.ended if run.region is not None] for group in groups]
     like = groups[0].plate
     reach = np.max([reach_of(cells, like) for cells in itertools.chain(*regions)], axis=0)
@@ -77,18 +77,18 @@ def share_figure(groups: Sequence[Group], style: PictureStyle) -> Figure:
         image = _draw_share(axes, cells)
         axes.set_title(f"{group.name}: {len(cells)} runs" if group.name else f"{len(cells)} runs", fontsize="medium")
         bar = figure.colorbar(image, ax=axes, location="bottom", shrink=0.8,
-                              label="share of the runs in which an interface has delaminated there")
+                              label="fraction of runs with a delaminated interface")
         bar.set_ticks([0, 0.25, 0.5, 0.75, 1])
     for axes in grid[len(groups):]:
         axes.set_visible(False)
     locate(grid[0], like)
-    figure.supxlabel("0° along x; lines at 5, 50 and 95 % of the runs;\nview on the back face (z points at you), "
+    figure.supxlabel("0° along x; lines at 5, 50 and 95 % of the runs;\nview of the back face (z towards the viewer), "
                      "+ struck point of the first run", fontsize="small")
     return figure
 
 
 def _draw_share(axes: Axes, regions: Sequence[np.ndarray]) -> object:
-    """Draw the share of the regions that contain a point, over the area of the axes."""
+    """Draw the fraction of regions that contain a point, over the area of the axes."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     step = max(right - left, high - low) / _PIXELS
     x, y = (np.arange(start + step / 2, stop, step) for start, stop in ((left, right), (low, high)))
@@ -102,7 +102,7 @@ def _draw_share(axes: Axes, regions: Sequence[np.ndarray]) -> object:
 
 
 def inside(cells: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return which points of a grid, (y, x), lie in a region given as polygons that are wound alike."""
+    """Return which points of a grid, (y, x), are in a region, given as polygons of the same orientation."""
     found = np.zeros((len(y), len(x)), dtype=bool)
     edges = outline(cells)
     if not len(edges):

@@ -1,7 +1,7 @@
-"""Results of runs with random inputs: statistics of every figure, variants compared with each other and with a test.
+"""Results of runs with random inputs: statistics of all figures, comparison of variants, and with measured values.
 
-Written beside the table of the sweep: `statistics.csv`, `differences.csv`, `measured.csv`, `force_band.csv`, the runs'
-figures in `figures.csv`, and all of it in `statistics.json`, from which `implam-report` makes a page.
+Files in the folder of the sweep: `statistics.csv`, `differences.csv`, `measured.csv`, `force_band.csv`, the figures of
+all runs in `figures.csv`, and all of these in `statistics.json`, which `implam-report` reads.
 """
 
 import json
@@ -22,7 +22,7 @@ from implam_post.io.history import History, read_history
 from implam_post.io.quantities import AGAINST_QUANTITIES
 from implam_post.io.run import Run, open_run
 from implam_post.io.run_figures import Measured
-from implam_post.regress.compare import compare
+from implam_post.regress.compare import check_expectations
 from implam_post.regress.expectations import Expectation, read_expectations
 from implam_post.sweep.case_run import read_record
 from implam_post.sweep.plan import VARIANT, Case, Plan
@@ -31,13 +31,13 @@ from implam_post.sweep.scatter_plan import KINDS
 from implam_post.sweep.scatter_statistics import HIGH, LOW, Difference, Spread, differences, spread_of, spreads
 
 STATISTICS = "statistics.json"
-_ROWS = 1000  # of the band of the force history
+_ROWS = 1000  # number of times of the band of the force history
 
 
 @dataclass
 class EndedRun:
-    """A run with a result: case, summary and history, figures, processor seconds, and the area of a C-scan at the
-    end, as polygons of the full plate; None without an interface. Fields are not stored."""
+    """A run with a result: case, summary and history, figures, processor time in seconds, and the final projected
+    delamination as polygons on the full plate; None without an interface. Fields are not stored."""
 
     case: Case
     results: Run
@@ -48,9 +48,9 @@ class EndedRun:
 
 @dataclass
 class Group:
-    """Runs that differ in random inputs alone: a variant, or a row of swept values.
+    """Runs that differ only in random inputs: a variant, or a row of swept values.
 
-    `plate` are the fields of its first run with an interface.
+    `plate` are the fields of the first run with an interface.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Group:
 
     @property
     def numbers(self) -> list[dict[str, float]]:
-        """Return the figures run by run, none of those without a result."""
+        """Return the figures of each run; empty for runs without a result."""
         return [{} if run is None else {name: figure.value for name, figure in run.figures.items()}
                 for run in self.runs]
 
@@ -75,9 +75,9 @@ class Group:
         return {name: figure.dimension for run in self.ended for name, figure in run.figures.items()}
 
     def band(self) -> dict[str, np.ndarray] | None:
-        """Return the mean force at even times with the 5 and 95 % points; nothing without a force.
+        """Return the mean force at equally spaced times with the 5 and 95 % points; None without a force.
 
-        A run has no force once its contact has ended, and counts as long as it lasts where it has not.
+        The force is zero after the end of contact; a run that ends in contact counts until its end.
         """
         histories = [run.results.columns for run in self.ended if run.results.columns is not None]
         if not histories or not all(np.any(history["force"]) for history in histories):
@@ -93,19 +93,19 @@ class Group:
 
 @dataclass(frozen=True)
 class ComparedMean:
-    """A measured figure and the mean of the runs."""
+    """A measured value and the mean of the runs."""
 
     expected: Expectation
     found: Spread
 
     @property
     def passed(self) -> bool:
-        """Return whether the mean lies within the tolerance."""
+        """Whether the mean is within the tolerance."""
         return abs(self.found.mean - self.expected.value) <= self.expected.tolerance
 
 
 def groups_of(sweep: Sweep) -> list[Group]:
-    """Return the groups of a sweep in their order, with the results of the runs that have ended."""
+    """Return the groups of a sweep in order, with the results of the runs that have ended."""
     plan = sweep.plan
     found: dict[str, Group] = {}
     distinctive = _distinctive(plan)
@@ -117,12 +117,12 @@ def groups_of(sweep: Sweep) -> list[Group]:
             group.runs.append(None if sweep.failure(case) else _run(sweep, case, group))
         except ImplamError as error:
             group.runs.append(None)
-            group.notes.append(f"case {case.number} is left out of the statistics: {error}")
+            group.notes.append(f"case {case.number} is omitted from the statistics: {error}")
     return list(found.values())
 
 
 def _distinctive(plan: Plan) -> list[str]:
-    """Return the names by which groups differ: the variant, and the swept values that differ within a variant."""
+    """Return the names in which groups differ: the variant, and the swept values that differ within a variant."""
     of_variants: dict[object, list[Case]] = {}
     for case in plan.cases:
         of_variants.setdefault(case.values.get(VARIANT), []).append(case)
@@ -145,7 +145,7 @@ def _run(sweep: Sweep, case: Case, group: Group) -> EndedRun:
 
 
 def against_measured(group: Group, measured: Path) -> list[ComparedMean]:
-    """Return means of a group and measured values, from a file of expectations or a curve of force over time."""
+    """Return means of a group and measured values, from a file of expectations or a measured force history."""
     histories = [run.results.columns for run in group.ended if run.results.columns is not None]
     if not histories:
         return []
@@ -154,21 +154,21 @@ def against_measured(group: Group, measured: Path) -> list[ComparedMean]:
     else:
         wanted = [Expectation("l2_force", 0.0, absolute=1.0, against=measured.name)]
     of_runs = [item for item in wanted if item.quantity not in AGAINST_QUANTITIES]
-    rows = [[row.found for row in compare(history, of_runs, measured.parent)] for history in histories]
+    rows = [[row.found for row in check_expectations(history, of_runs, measured.parent)] for history in histories]
     compared = [ComparedMean(item, spread_of(values))
                 for item, values in zip(of_runs, zip(*rows, strict=True), strict=True)]
-    # A history is that of the means: those of single runs have steps that the mean has not.
+    # Force histories are compared with the mean history.
     band = group.band()
     curves = [item for item in wanted if item.quantity in AGAINST_QUANTITIES]
     if band is not None and curves:
         mean = History({"time": band["time"], "force": band["mean"]}, "the mean of the runs")
         compared += [ComparedMean(row.expected, Spread(len(histories), row.found, *3 * (math.nan,)))
-                 for row in compare(mean, curves, measured.parent)]
+                 for row in check_expectations(mean, curves, measured.parent)]
     return compared
 
 
 def curves_of(measured: Path | None) -> list[History]:
-    """Return the measured curves of force against time."""
+    """Return the files with measured force histories."""
     if measured is None:
         return []
     files = read_expectations(measured).curves if measured.suffix == ".toml" else [measured]
@@ -183,7 +183,7 @@ def _head(path: Path) -> str:
 
 
 def pairs_of(groups: Sequence[Group]) -> list[tuple[Group, dict[str, Difference]]]:
-    """Return the differences of each group from the first, run by run."""
+    """Return the differences of each group from the first, over pairs of runs."""
     if len(groups) < 2:
         return []
     first = groups[0]
@@ -195,7 +195,7 @@ def write_statistics(sweep: Sweep, groups: Sequence[Group], system: str,
                      variants: Sequence[Sequence[str]] = ()) -> list[Path]:
     """Write statistics, differences, measured values, the force band and the figures of all runs.
 
-    `variants` is a table that holds the groups side by side, for the page.
+    `variants` is the table that compares the groups, for the report.
     """
     output, plan = sweep.plan.output, sweep.plan
     found_of = [(group, spreads(group.numbers)) for group in groups]
@@ -252,7 +252,7 @@ def inputs_of(plan: Plan) -> list[dict[str, object]]:
 
 
 def _title(groups: Sequence[Group]) -> str:
-    """Return the title of the deck."""
+    """Return the title in the deck."""
     for group in groups:
         for run in group.ended:
             return run.results.summary["title"] or run.results.summary["case"]

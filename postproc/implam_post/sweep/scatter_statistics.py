@@ -1,4 +1,4 @@
-"""Statistics of runs that differ in random inputs: means with their scatter, and differences of two variants."""
+"""Statistics of runs with random inputs: means with their scatter, and differences of two variants."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,13 +8,13 @@ import numpy as np
 from scipy.special import stdtrit
 
 LOW, HIGH = 0.05, 0.95
-# Probability with which no difference is taken for one, either way.
+# Significance level of the two-sided paired t-test.
 _RISK = 0.05
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Statistics of a figure over runs: their number, mean, standard deviation, and the 5 and 95 % points."""
+    """Statistics of a figure over runs: number, mean, standard deviation, 5 and 95 % points."""
 
     number: int
     mean: float
@@ -24,13 +24,13 @@ class Spread:
 
     @property
     def error(self) -> float:
-        """Return the standard deviation of the mean; NaN of a single run."""
+        """Standard error of the mean; NaN for a single run."""
         return self.deviation / math.sqrt(self.number) if self.number > 1 else math.nan
 
 
 @dataclass(frozen=True)
 class Difference:
-    """How much larger a figure is in a second variant than in the first, over pairs of runs with the same inputs."""
+    """Difference of a figure, second variant minus first, over pairs of runs with the same random inputs."""
 
     number: int
     first: float
@@ -39,20 +39,20 @@ class Difference:
 
     @property
     def least(self) -> float:
-        """Return the least difference that exceeds the scatter of its mean; NaN of fewer than two pairs."""
+        """Smallest significant difference; NaN for fewer than two pairs."""
         return stdtrit(self.number - 1, 1 - _RISK / 2) * self.error if self.number > 1 else math.nan
 
     @property
     def differs(self) -> bool:
-        """Return whether the difference is larger than the scatter of its mean."""
+        """Whether the difference is significant."""
         return self.number > 1 and abs(self.mean) > self.least
 
 
 def spread_of(values: Sequence[float]) -> Spread:
-    """Return mean and scatter of the values that are there.
+    """Return the statistics of the finite values.
 
-    Points of 5 and 95 % are those that are unbiased for the median whatever the distribution; of fewer than 14 runs
-    they are the least and the largest one.
+    The 5 and 95 % points are median-unbiased for any distribution; of fewer than 14 runs they are the smallest and the
+    largest value.
     """
     found = np.array([value for value in values if math.isfinite(value)])
     if not len(found):
@@ -63,7 +63,7 @@ def spread_of(values: Sequence[float]) -> Spread:
 
 
 def difference_of(first: Sequence[float], second: Sequence[float]) -> Difference:
-    """Return the difference of two variants, run by run, where both have the figure."""
+    """Return the difference of two variants over the pairs in which both have the figure."""
     pairs = np.array([pair for pair in zip(first, second, strict=True) if all(map(math.isfinite, pair))])
     if not len(pairs):
         return Difference(0, *3 * (math.nan,))
@@ -73,13 +73,13 @@ def difference_of(first: Sequence[float], second: Sequence[float]) -> Difference
 
 
 def spreads(figures: Sequence[Mapping[str, float]]) -> dict[str, Spread]:
-    """Return the statistics of every figure that a run has, runs without a result left out."""
+    """Return the statistics of all figures; runs without a result are omitted."""
     names = dict.fromkeys(name for run in figures for name in run)
     return {name: spread_of([run.get(name, math.nan) for run in figures]) for name in names}
 
 
 def differences(first: Sequence[Mapping[str, float]], second: Sequence[Mapping[str, float]]) -> dict[str, Difference]:
-    """Return the differences of every figure that both variants have."""
+    """Return the differences of all figures that both variants have."""
     names = [name for name in dict.fromkeys(name for run in first for name in run)
              if any(name in run for run in second)]
     return {name: difference_of(*([run.get(name, math.nan) for run in runs] for runs in (first, second)))

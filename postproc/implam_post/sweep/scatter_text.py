@@ -1,4 +1,4 @@
-"""Statistics of runs with random inputs as text and as rows of tables, in units that are easy to read."""
+"""Statistics of runs with random inputs as text and as rows of tables, in suitable units."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
@@ -7,16 +7,16 @@ from implam_post.sweep.plan import Plan
 from implam_post.sweep.scatter_results import ComparedMean, Group, against_measured, pairs_of
 from implam_post.sweep.scatter_statistics import Difference, Spread, spreads
 
-# Figures that are printed; all are in the files.
+# Figures that are printed; the files contain all figures.
 SHOWN = ("peak_force", "peak_force_at", "threshold_force", "largest_displacement", "largest_deflection",
          "contact_duration", "rebound_velocity", "energy_absorbed", "delaminated_area", "projected_area",
          "damage_diameter", "damage_length", "damage_width")
-# What variants are compared by, side by side.
+# Figures in the table that compares variants.
 COMPARED = ("peak_force", "largest_displacement", "contact_duration", "energy_absorbed", "projected_area",
             "damage_diameter")
 HEAD = ("", "mean", "standard error", "standard deviation", "5 % point", "95 % point", "runs")
-PAIRED = ("", "first", "difference", "scatter of it", "", "pairs")
-MEASURED = ("", "measured", "aim", "mean", "standard error", "off by", "")
+PAIRED = ("", "first", "difference", "smallest significant", "", "pairs")
+MEASURED = ("", "measured", "tolerance", "mean", "standard error", "difference", "")
 
 
 def statistics_text(plan: Plan, groups: Sequence[Group], style: PictureStyle) -> str:
@@ -29,18 +29,18 @@ def statistics_text(plan: Plan, groups: Sequence[Group], style: PictureStyle) ->
         if plan.measured is not None and (rows := against_measured(group, plan.measured)):
             parts += ["", *_lines(MEASURED, measured_rows(rows))]
     if len(groups) > 1:
-        parts += ["\nMeans ± standard errors; * differs from the first by more than the scatter of the difference",
+        parts += ["\nMeans ± standard errors; * marks a significant difference from the first variant (5 % level)",
                   markdown(variants_table(groups, style))]
     for group, found in pairs_of(groups):
-        parts += [f"\n{group.name} against {groups[0].name}, runs with the same inputs",
+        parts += [f"\n{group.name} compared with {groups[0].name}, pairs of runs with the same random inputs",
                   *_lines(PAIRED, difference_rows(found, group.dimensions, style, SHOWN))]
     return "\n".join(parts)
 
 
 def variants_table(groups: Sequence[Group], style: PictureStyle) -> list[tuple[str, ...]]:
-    """Return names, and below them a row for each variant: means and standard errors of the figures compared.
+    """Return a head, and a row for each variant: means and standard errors of the figures compared.
 
-    A star marks a difference from the first variant larger than the scatter of its mean.
+    A star marks a significant difference from the first variant.
     """
     paired = {id(group): found for group, found in pairs_of(groups)}
     found_of = [(group, spreads(group.numbers)) for group in groups]
@@ -62,18 +62,18 @@ def variants_table(groups: Sequence[Group], style: PictureStyle) -> list[tuple[s
 
 
 def _dimension(groups: Sequence[Group], name: str) -> str:
-    """Return the dimension of a figure, of any group that has it."""
+    """Return the dimension of a figure, from any group that has it."""
     return next((group.dimensions[name] for group in groups if name in group.dimensions), "")
 
 
 def markdown(rows: Sequence[Sequence[str]]) -> str:
-    """Return a table as a page of a manual has it."""
+    """Return a table in Markdown."""
     return "\n".join(f"| {' | '.join(row)} |" for row in [rows[0], ["---"] * len(rows[0]), *rows[1:]])
 
 
 def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], style: PictureStyle,
                 names: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Give a row for each figure: mean, its standard error, deviation, 5 and 95 % points, number of runs."""
+    """Yield a row for each figure: mean, standard error, standard deviation, 5 and 95 % points, number of runs."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
@@ -85,7 +85,7 @@ def spread_rows(found: Mapping[str, Spread], dimensions: Mapping[str, str], styl
 
 def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, str], style: PictureStyle,
                     names: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Give a row for each figure: mean of the first, difference, the scatter of it, and whether it is larger."""
+    """Yield a row for each figure: mean of the first variant, difference, smallest significant one, and verdict."""
     for name in names:
         if name in found and found[name].number:
             one = found[name]
@@ -96,7 +96,7 @@ def difference_rows(found: Mapping[str, Difference], dimensions: Mapping[str, st
 
 
 def measured_rows(rows: Sequence[ComparedMean]) -> Iterator[tuple[str, ...]]:
-    """Give a row for each measured figure: its value, the aim, the mean, their difference, and whether it is within."""
+    """Yield a row for each measured value: value, tolerance, mean, standard error, difference, within or beyond."""
     for row in rows:
         expected, found = row.expected, row.found
         aim = f"{100 * expected.relative:.3g} %" if expected.relative is not None else f"{expected.absolute:.3g}"
@@ -106,35 +106,35 @@ def measured_rows(rows: Sequence[ComparedMean]) -> Iterator[tuple[str, ...]]:
 
 
 def words_of(name: str) -> str:
-    """Return a figure's name in words."""
+    """Return the name of a figure with spaces."""
     return name.replace("_", " ")
 
 
 def _formatter(style: PictureStyle, dimension: str, *values: float) -> Callable[..., str]:
-    """Return a function that writes values in the unit that suits the largest of them."""
+    """Return a function that formats values in a unit suitable for the largest of them."""
     axis = style.axis("", dimension, values)
     unit = axis.label.strip(" []") if style.system and dimension else ""
     return lambda value, digits=4: "-" if value != value else f"{_rounded(axis.factor * value, digits)} {unit}".strip()
 
 
 def _rounded(value: float, digits: int) -> str:
-    """Return a number to some digits, a large one as an integer."""
+    """Return a number to some digits, large numbers as integers."""
     text = f"{value:.{digits}g}"
     return f"{value:.0f}" if "e+" in text and abs(value) < 1e6 else text
 
 
 def _percent(part: float, total: float) -> str:
-    """Return a part of a total in per cent, in brackets; nothing where there is no such part."""
+    """Return a part of a total in per cent, in brackets; empty if it is not defined."""
     return "" if part != part or not total else f" ({100 * part / abs(total):.3g} %)"
 
 
 def _number(value: float) -> str:
-    """Return a number to four digits; a dash for none."""
+    """Return a number to four digits; a dash for NaN."""
     return "-" if value != value else f"{value:.4g}"
 
 
 def _lines(head: Sequence[str], rows: Iterator[tuple[str, ...]]) -> list[str]:
-    """Return a table as lines of text, first column on the left."""
+    """Return a table as lines of text, with the first column left-aligned."""
     table = [tuple(head), *rows]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     return ["  ".join(cell.ljust(width) if place == 0 else cell.rjust(width)

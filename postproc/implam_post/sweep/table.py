@@ -1,4 +1,4 @@
-"""The table of a sweep: a row for each case, with its swept values, the figures of its run, and how the run ended."""
+"""The table of a sweep: a row for each case, with swept values, figures and exit code of its run."""
 
 import math
 from collections.abc import Callable, Iterable
@@ -23,7 +23,7 @@ from implam_post.sweep.runs import Sweep
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of a run: how it is measured, its dimension, and its name on an axis."""
+    """A figure of a run: the function that evaluates it, its dimension, and its label on an axis."""
 
     measure: Callable[[History], float]
     dimension: str
@@ -31,7 +31,7 @@ class Figure:
 
 
 def _area(history: History) -> float:
-    """Return the area delaminated at the end, starters included; NaN if the history has none."""
+    """Return the delaminated area at the end, including starters; NaN if the history does not have it."""
     return float(history.columns.get("delaminated_area", [math.nan])[-1])
 
 
@@ -51,10 +51,10 @@ FIGURES = {
 
 @dataclass
 class Table:
-    """Columns by name; numbers are NaN and texts empty where a case has none.
+    """Columns by name; missing numbers are NaN, missing texts are empty.
 
-    `swept` names the columns that the sweep sets, `derived` those of them that formulas do; `is_readable` says whether
-    the results of all runs that ended well could be read.
+    `swept` are the columns set by the sweep, `derived` those of them given by formulas; `is_readable` is whether the
+    results of all completed runs could be read.
     """
 
     columns: dict[str, list] = field(default_factory=dict)
@@ -67,7 +67,7 @@ class Table:
     system: str = ""
 
     def numbers(self, name: str) -> np.ndarray | None:
-        """Return a column as numbers; None if it holds something else."""
+        """Return a column as numbers; None if it has other values."""
         values = self.columns[name]
         if not all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values):
             return None
@@ -75,7 +75,7 @@ class Table:
 
 
 def make_table(sweep: Sweep, known: dict[str, dict[str, object]]) -> Table:
-    """Return the table; `known` keeps the figures of cases that have ended, by deck, from call to call."""
+    """Return the table; `known` caches the figures of completed cases by deck between calls."""
     cases = sweep.plan.cases
     table = Table(swept=sweep.plan.names, derived=sweep.plan.derived, sweep=sweep.plan.text,
                   decks=[case.deck for case in cases])
@@ -102,7 +102,7 @@ def write_csv(table: Table, path: Path) -> None:
 
 
 def write_hdf5(table: Table, path: Path) -> None:
-    """Write the table as HDF5: a data set for each column, with the file of the sweep and the deck of each case."""
+    """Write the table as HDF5: a data set for each column, the file of the sweep and the deck of each case."""
     with replaced(path) as draft, h5py.File(draft, "w") as file:
         columns = file.create_group("table", track_order=True)
         for name, values in table.columns.items():
@@ -118,7 +118,7 @@ def write_hdf5(table: Table, path: Path) -> None:
 
 
 def _row(folder: Path, record: Record | None) -> dict[str, object]:
-    """Return figures and end of one run; a run that failed has no figures."""
+    """Return figures and exit code of one run; a failed run has no figures."""
     row: dict[str, object] = dict.fromkeys(FIGURES, math.nan)
     row |= {"exit_code": math.nan, "cpu_time": math.nan, "version": "", "fault": ""}
     if record is None:
@@ -130,7 +130,7 @@ def _row(folder: Path, record: Record | None) -> dict[str, object]:
         path = history_in(folder)
         history = read_history(folder / "history.csv" if path is None else path)
         for summary in folder.glob(f"*{SUMMARY}"):
-            read_summary(summary)  # whether it is whole: a history takes what it needs of it, and does without
+            read_summary(summary)  # raises an error if it is damaged; reading the history does not
         row |= {name: float(figure.measure(history)) for name, figure in FIGURES.items()}
     except ImplamError as error:
         row["fault"] = str(error)
@@ -140,7 +140,7 @@ def _row(folder: Path, record: Record | None) -> dict[str, object]:
 def _notes(rows: Iterable[dict[str, object]]) -> list[str]:
     """Return the notes below the table."""
     versions = sorted({str(row["version"]) for row in rows if row["version"]})
-    notes = [f"the runs are of several versions of Implam: {', '.join(versions)}."] if len(versions) > 1 else []
+    notes = [f"the runs are by several versions of Implam: {', '.join(versions)}."] if len(versions) > 1 else []
     return notes + [no_figures(row["fault"]) for row in rows if row["fault"]]
 
 
@@ -158,6 +158,6 @@ def _system(text: str) -> str:
 
 
 def _plain(value: object) -> object:
-    """Return a swept value as a cell: numbers as they are, anything else as it stands in the deck."""
+    """Return a swept value as a cell: numbers as they are, other values as text of the deck."""
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
     return value if is_number else deck_value(value)

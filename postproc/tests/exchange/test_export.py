@@ -1,4 +1,4 @@
-"""Tests of implam-to-nastran and implam-to-abaqus: damage, separated grids, cards, and the way back."""
+"""Tests of implam-to-nastran and implam-to-abaqus: damage, separate grids, cards, and re-import."""
 
 import contextlib
 import importlib.util
@@ -43,8 +43,8 @@ WITHOUT_PYNASTRAN = None if importlib.util.find_spec("pyNastran") else "pyNastra
 class ExportTest(unittest.TestCase):
     """Each test has results: a quarter of 3 x 3 cells with lines at 0, 1, 3 and 6.
 
-    At the last time the cells along x are apart below ply 2, ply 3 has cracks in the first two of them and ply 1 has
-    failed in all modes in the cell at the corner of the plate.
+    At the last time the cells along x are delaminated below ply 2, ply 3 has cracks in the first two of them and ply 1
+    has failed in all modes in the cell at the corner of the plate.
     """
 
     def setUp(self) -> None:
@@ -55,7 +55,7 @@ class ExportTest(unittest.TestCase):
         self.keep_deck(DECK)
 
     def keep_deck(self, text: str) -> None:
-        """Put a deck into the results and beside them."""
+        """Store a deck in the results and write it to their folder."""
         (self.folder / "damaged.nml").write_text(text)
         with h5py.File(self.results, "a") as file:
             if "provenance" in file:
@@ -75,10 +75,10 @@ class ExportTest(unittest.TestCase):
 
 
 class DegradationTest(unittest.TestCase):
-    """Table 2."""
+    """Degraded constants by Table 2 of Li et al."""
 
     def test_modes(self) -> None:
-        """Each mode divides what it touches by d, several modes by d each, down to the floor."""
+        """Each mode divides its constants by d, several modes by d each, down to the lower limit."""
         material = Material(1, 1000.0, 100.0, 10.0, 20.0, 30.0, 0.3, strengths=(("XT", 1.0),))
         rule = Degradation(10.0, 0.02)
         for failures, expected in (
@@ -94,7 +94,7 @@ class DegradationTest(unittest.TestCase):
 
 
 class PanelTest(ExportTest):
-    """What is read from results and decks."""
+    """Panels read from results and decks."""
 
     def test_full_plate(self) -> None:
         """The quarter is mirrored: cells by their state at the last time and at the first."""
@@ -109,7 +109,7 @@ class PanelTest(ExportTest):
         self.assertEqual(sum(len(stacks) > 1 for stacks in self.panel(0.5).stacks.values()), 4)
 
     def test_modelled_whole(self) -> None:
-        """Results of a full plate are taken as they are."""
+        """Results of a full plate are not mirrored."""
         write_fields(self.results, part="whole")
         self.keep_deck(DECK)
         self.assertEqual(self.panel().cells, (3, 3))
@@ -118,7 +118,7 @@ class PanelTest(ExportTest):
         self.assertEqual(self.run_command(to_nastran, self.results)[0], 4)
 
     def test_sections(self) -> None:
-        """One for each kind of stack, in its place about the middle of the laminate."""
+        """One section for each kind of stack, at its z from the mid-plane of the laminate."""
         sections = {section.title: section for section in self.panel().sections()}
         self.assertEqual(list(sections), [
             "plies 1 to 3", "plies 1 to 3, 1 fibres and cracked and crushed", "plies 1 to 2", "plies 3 to 3, 3 cracked",
@@ -127,7 +127,7 @@ class PanelTest(ExportTest):
                                    atol=1e-15)
 
     def test_deck(self) -> None:
-        """Equal cells over the full plate, the starter apart: here the cells that touch the struck point."""
+        """Equal cells over the full plate, delaminated in the starter: here the cells that touch the struck point."""
         panel = read_panel(self.folder / "damaged.nml")
         np.testing.assert_allclose(panel.x, np.linspace(-6, 6, 7))
         self.assertEqual({cell for cell, stacks in panel.stacks.items() if len(stacks) > 1},
@@ -139,7 +139,7 @@ class PanelTest(ExportTest):
                          (0.25, True, ["clamped", "clamped", "simple", "simple"]))
 
     def test_several_interfaces_of_a_deck(self) -> None:
-        """Starters of unlike size make stacks of their own."""
+        """Starters of different sizes have different stacks."""
         self.keep_deck(DECK + "&delamination below_ply=1 G_c=1 zone=12,12 starter=8 /")
         panel = read_panel(self.folder / "damaged.nml")
         self.assertEqual(Counter(tuple((stack.first, stack.last) for stack in stacks)
@@ -157,7 +157,7 @@ class PanelTest(ExportTest):
         return Counter(ply for cell in panel.stacks for ply in panel.delaminated(cell))
 
     def test_starters_by_law(self) -> None:
-        """A front has one by default, a cohesive interface only that of its key; strengths make it cohesive."""
+        """A front has a default starter, a cohesive interface only that of its key; strengths make it cohesive."""
         front, cohesive = {2: 4}, {}
         without = (" YT=46", ""), ("S12=105", "")
         for keys, changes, expected in (
@@ -168,7 +168,7 @@ class PanelTest(ExportTest):
                 self.assertEqual(self.apart(f"&delamination below_ply=2 G_c=1 {keys} /", *changes), expected)
 
     def test_places_of_starters(self) -> None:
-        """A circle, a centre beside the struck point, a plate struck aside, and a strip across the zone."""
+        """A circle, a centre away from the struck point, an eccentric impact, and a strip across the zone."""
         start = "&delamination below_ply=2 G_c=1 zone=10,8"
         struck = "&pressure", "&impactor mass=1 velocity=1 radius=1 at=4, 0 /\n&pressure"
         for keys, changes, expected in (
@@ -178,14 +178,14 @@ class PanelTest(ExportTest):
                 self.assertEqual(self.apart(f"{start} {keys} /", *changes), {2: expected})
 
     def test_interfaces_by_word(self) -> None:
-        """Interfaces lie where the angle or the material changes."""
+        """Interfaces are where the angle or the material changes."""
         delamination = "&delamination below_ply='all' G_c=1 zone=12,12 starter=2 /"
         angles = "angles=45, 0, 90", "angles=90, 90, -90"
         self.assertEqual(self.apart(delamination, angles), {1: 4, 2: 4})
         self.assertEqual(self.apart(delamination, angles, ("'metal', ", "'carbon/a', ")), {})
 
     def test_unwritten_groups(self) -> None:
-        """Frames and lines of the deck are named, as they have no cards."""
+        """Frames and lines of the deck are listed in notes, as they are not exported."""
         self.keep_deck(DECK + "&support window=10, 10 /\n&line at=0 displacement=0 /")
         code, text = self.run_command(to_nastran, self.results)
         self.assertEqual(code, 0, text)
@@ -193,7 +193,7 @@ class PanelTest(ExportTest):
         self.assertIn("note: &line is not written", text)
 
     def test_refused(self) -> None:
-        """Results without the state of what the deck models, times outside, what is not in the deck."""
+        """Results without the state of a model of the deck, times out of range, and invalid decks are refused."""
         with h5py.File(self.results, "a") as file:
             for group in file["times"].values():
                 del group["cells/ply_1_failure"]
@@ -204,7 +204,7 @@ class PanelTest(ExportTest):
         self.assertEqual(self.run_command(to_nastran, self.folder / "damaged.nml", "--time", "1")[0], 1)
         self.assertEqual(self.run_command(to_nastran, self.results, "--time", "7")[0], 1)
         for change, key in ((("'clamped','clamped'", "'clamped','glued'"), "edges"),
-                            (("'clamped','clamped'", "'elastic','clamped'"), "cannot be written"),
+                            (("'clamped','clamped'", "'elastic','clamped'"), "cannot be exported"),
                             (("elements=3, 3", "elements=3"),
                             "elements"), (("below_ply=2", "below_ply=3"), "below_ply"), (("d=100", "d=0.5"), "d must")):
             self.keep_deck(DECK.replace(*change))
@@ -221,7 +221,7 @@ class MeshTest(ExportTest):
         return shell_mesh(self.panel(), with_middles)
 
     def test_grids_separate_inside_only(self) -> None:
-        """Two grids at each place whose cells are all apart; at the edge of the delamination one joins all plies."""
+        """Two grids at each place with delaminated cells only; at the border of the delamination one for all plies."""
         mesh = self.mesh()
         places = Counter(map(tuple, mesh.coordinates))
         self.assertEqual(len(places), 13 * 13)
@@ -230,7 +230,7 @@ class MeshTest(ExportTest):
         self.assertEqual(len(self.mesh(False).coordinates), len(mesh.coordinates) - 36 - 12)
 
     def test_elements(self) -> None:
-        """Each layer covers its cells, counter-clockwise; those of the struck face come first."""
+        """Each layer covers its cells, counter-clockwise; elements at the struck face come first."""
         mesh = self.mesh()
         self.assertEqual((len(mesh.elements), mesh.struck), (48, 36))
         area = Counter()
@@ -246,7 +246,7 @@ class MeshTest(ExportTest):
         self.assertAlmostEqual(area[3], 24)
 
     def test_layers_share_no_grid_inside(self) -> None:
-        """The lower layer meets the upper one on the edge of the delamination only."""
+        """The lower and the upper layer share grids only at the border of the delamination."""
         mesh = self.mesh()
         upper, lower = (Counter(grid for element in mesh.elements if (element.stack.first, element.stack.last) == plies
                                 for row in element.grids for grid in row) for plies in ((1, 2), (3, 3)))
@@ -254,7 +254,7 @@ class MeshTest(ExportTest):
         self.assertEqual({abs(y) for _, y, _ in shared}, {1.0})
 
     def test_imperfection(self) -> None:
-        """The initial deflection of the full plate, towards the back, is in the grids; not with linear strains."""
+        """Grids have the initial deflection of the full plate, towards the back; not with linear strains."""
         deck = DECK.replace("symmetry='quarter'", "symmetry='quarter' imperfection=0.5 half_waves=1, 3")
         self.keep_deck(deck)
         x, y, z = self.mesh().coordinates.T
@@ -270,7 +270,7 @@ class MeshTest(ExportTest):
         self.assertEqual(self.run_command(to_nastran, self.results)[0], 2)
 
     def test_supports(self) -> None:
-        """Clamped along x, simple along y, all grids of an edge, corners what both hold; none moves rigidly."""
+        """Clamped and simple edges with all their grids, corners with both constraints; no rigid-body motion."""
         mesh = self.mesh()
         self.assertEqual({held: len(grids) for held, grids in mesh.supports.items()}, {
             "12345": 2 * (13 + 3), "1235": 2 * 11})
@@ -281,10 +281,10 @@ class MeshTest(ExportTest):
 
 
 class NastranTest(ExportTest):
-    """Cards and the way back."""
+    """Cards and re-import."""
 
     def test_numbers(self) -> None:
-        """Fields hold all digits that fit, and the command says whether they do."""
+        """Numbers have all digits, in large fields if necessary."""
         for number, eight, sixteen in ((139e9, "1.39+11", "139000000000.0"), (0.125e-3, "0.000125", "0.000125"),
                                        (1e-7, "1.-7", "1.-7"), (-1 / 3, "-3.333-1", "-3.33333333333-1"),
                                        (0.0, "0.0", "0.0"), (-45.0, "-45.0", "-45.0")):
@@ -297,7 +297,7 @@ class NastranTest(ExportTest):
             "SPC1    1       3       1       2       3       4       5       6", "+       7"])
 
     def test_cards(self) -> None:
-        """As many as there are grids, elements, sections and materials; offsets where stacks lie beside the middle."""
+        """One card per grid, element, section and material; stacks off the mid-plane have offsets."""
         lines = list(nastran_deck(self.panel(), "damaged.h5"))
         names = Counter(re.split(r"[ *]", line)[0] for line in lines)
         self.assertEqual([names[name] for name in ("GRID", "CQUAD4", "PCOMP", "MAT8", "MAT1", "PLOAD2", "ENDDATA")],
@@ -306,12 +306,12 @@ class NastranTest(ExportTest):
         self.assertIn("PLOAD2  1       0.25    1       THRU    144", lines)
         with_z0 = list(nastran_deck(self.panel(), "damaged.h5", with_z0=True))
         self.assertFalse(any(line.startswith("CQUAD4") and len(line) > 64 for line in with_z0))
-        # The first face of each stack beside the middle; that of the full laminate is where Nastran puts it.
+        # Z0 of stacks off the mid-plane; the full laminate has the default of Nastran.
         places = [line[16:24].strip() for line in with_z0 if line.startswith("PCOMP")]
         self.assertEqual(places, ["", "", "-0.3", "0.0", "0.0"])
 
     def test_without_a_pressure(self) -> None:
-        """No load, unless one is asked for."""
+        """No load unless it is requested."""
         self.keep_deck(DECK.replace("&pressure value=0.25 /", ""))
         self.assertFalse([line for line in nastran_deck(self.panel(), "") if "LOAD" in line])
         self.assertEqual(self.run_command(to_nastran, self.results, "--pressure", "3.5")[0], 0)
@@ -319,7 +319,7 @@ class NastranTest(ExportTest):
 
     @unittest.skipIf(WITHOUT_PYNASTRAN, WITHOUT_PYNASTRAN)
     def test_stiffness_that_pynastran_reads(self) -> None:
-        """A, B and D of each element about its grids are those of its failed plies in their places."""
+        """A, B and D of each element about its grids are those of its degraded plies at their z."""
         from pyNastran.bdf.bdf import read_bdf
         panel = self.panel()
         for with_z0 in (False, True):
@@ -338,7 +338,7 @@ class NastranTest(ExportTest):
 
     @unittest.skipIf(WITHOUT_PYNASTRAN, WITHOUT_PYNASTRAN)
     def test_round_trip(self) -> None:
-        """Bulk data to a deck and back: plies, materials, sides and supports come back as they were."""
+        """Export and re-import keeps plies, materials, sides and supports."""
         from implam_post.exchange import from_nastran
         from tests.bulk import MATERIALS, Bulk, large
         laminate = ("PCOMP", 1, *7 * (None,), 1, 0.1333333e-3, 22.5, None, 2, 0.2e-3, -67.25, None, 1, 0.127e-3, 90.0)
@@ -358,7 +358,7 @@ class NastranTest(ExportTest):
 
 
 def _section(panel: Panel, stack: Stack) -> object:
-    """Return A, B and D of a stack about the middle of the laminate, from the deck's constants."""
+    """Return A, B and D of a stack about the mid-plane of the laminate, from the constants of the deck."""
     z = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in panel.plies])])
     plies = [Ply(panel.degradation.degraded(ply.material, failed), ply.angle, ply.thickness)
              for ply, failed in zip(panel.plies[stack.first - 1:stack.last], stack.failures, strict=True)]
@@ -375,7 +375,7 @@ def _about_grids(abd: np.ndarray, offset: float) -> tuple[np.ndarray, np.ndarray
 
 
 def _read_back(path: Path) -> object:
-    """Return what pyNastran reads of lay-up, materials and sides."""
+    """Return lay-up, materials and sides as read by pyNastran."""
     from pyNastran.bdf.bdf import read_bdf
     model = read_bdf(str(path), debug=None, punch=path.name == "first.bdf")
     laminate, = model.properties.values()
@@ -388,10 +388,10 @@ def _read_back(path: Path) -> object:
 
 
 class AbaqusTest(ExportTest):
-    """Words of the input."""
+    """Keywords of the input."""
 
     def test_input(self) -> None:
-        """Nodes without those amid cells, S8R in sets by section, offsets in thicknesses, supports, pressure."""
+        """Nodes without cell centres, S8R in sets by section, offsets over thickness, supports, pressure."""
         lines = list(abaqus_input(self.panel(), "damaged.h5"))
         text = "\n".join(lines)
         start, end = (lines.index(word) for word in ("*NODE, NSET=PANEL", "*ELEMENT, TYPE=S8R, ELSET=ALL_SHELLS"))
@@ -409,7 +409,7 @@ class AbaqusTest(ExportTest):
         self.assertTrue(all(len(line) <= 255 for line in lines))
 
     def test_orientations(self) -> None:
-        """Each layer has axes of its name, also where an angle is minus nought."""
+        """Each layer has an orientation that exists, also for an angle of -0."""
         self.keep_deck(DECK.replace("angles=45, 0, 90", "angles=0, -0, 90"))
         text = "\n".join(abaqus_input(self.panel(), ""))
         defined, used = (set(re.findall(pattern, text)) for pattern in (r"\*ORIENTATION, NAME=(\w+)", r", (AT_\w+)"))
@@ -417,7 +417,7 @@ class AbaqusTest(ExportTest):
         self.assertEqual(used, defined)
 
     def test_command(self) -> None:
-        """It says what it wrote."""
+        """It prints a summary of the panel."""
         code, text = self.run_command(to_abaqus, self.results)
         self.assertEqual(code, 0, text)
         self.assertIn("36 cells, of which 12 are delaminated and 12 have failed plies; 5 sections, 4 materials", text)

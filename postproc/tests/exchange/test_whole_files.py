@@ -1,4 +1,4 @@
-"""Whole files of bulk data as programs and people write them: each becomes a deck or names the card to change."""
+"""Complete files of bulk data in many formats: each is converted or refused with the card to change."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -54,7 +54,7 @@ def large(line: str) -> str:
 
 
 def with_marks(text: str) -> str:
-    """Return small fields whose continuations are named and stand after all other cards, in reverse."""
+    """Return small fields with named continuations, which follow all other cards in reverse order."""
     head, bulk = text.split("BEGIN BULK\n")
     lines = [columns(line) for line in bulk.splitlines()]
     for number in range(1, len(lines)):
@@ -67,7 +67,7 @@ def with_marks(text: str) -> str:
     return f"{head}BEGIN BULK\n" + "\n".join([*lines[:cards], *reversed(lines[cards:])]) + "\n"
 
 
-# What is the same panel.
+# Formats of the same panel.
 SAME = {
     "commas": whole(),
     "no end": whole() + "ENDDATA\nrubbish,,\n",
@@ -80,7 +80,7 @@ SAME = {
     "blanks after commas": re.sub(",", ", ", whole()),
     "blanks before names": in_columns(whole(), lambda line: columns(line if line[0] == "," else f"  {line}")),
     "comments": whole().replace("\n", " $ of the test\n$ another, line\n"),
-    # Half of its Å is the end of a line to some.
+    # The second byte of Å in UTF-8 is a line end for str.splitlines.
     "letters of a comment": whole(laminate=LAMINATE + "$ of the test in Å,1,.25,0.,YES\n"),
     "equation with commas": whole(more="DEQATN  1       F(A,B,C,D,E,G,H)=SUM(A,B,C,D,E,G,H)\n"),
     "begin with a comma": whole(head=HEAD.replace("BEGIN BULK", "BEGIN, BULK")),
@@ -97,26 +97,26 @@ SAME = {
         r"^(CQUAD4,\d),1", r"\1,2", free_elements(), flags=re.MULTILINE)),
     "other cards": whole(more="PARAM,POST,-1\nPLOAD4,2,1,.01,,,,THRU,16\nFORCE,2,13,,100.,0.,0.,1.\nEIGRL,1,,,10\n"),
 }
-# What is refused, and by which words.
+# Files that are refused, with parts of the message.
 REFUSED = {
     "MAT2": (whole(material="MAT2,1,139000.,3000.,0.,9400.,0.,4500.,1.6-9\n"), "8: MAT2", "as a MAT8"),
     "MAT9": (whole(material="MAT9,1,139000.,3000.,3000.\n"), "8: MAT9", "as a MAT8"),
-    "no material": (whole(material=""), "8: PCOMP", "material 1 is not there"),
+    "no material": (whole(material=""), "8: PCOMP", "there is no MAT1 or MAT8 with number 1"),
     "membrane": (whole(material="MAT1,1,7.+4,,.3\n", laminate="PSHELL,1,1,2.\n"), "9: PSHELL", "give MID2 = MID1"),
-    "cylinder": (whole(grids="CORD2C" + SYSTEM[6:] + free_grids(system="7")), "13: CORD2C", "needs to be a CORD2R"),
+    "cylinder": (whole(grids="CORD2C" + SYSTEM[6:] + free_grids(system="7")), "13: CORD2C", "must be a CORD2R"),
     "system of grids": (whole(grids="CORD1R,7,1,2,6\n" + free_grids(), elements=free_elements(more=",7")),
-                        "13: CORD1R", "needs to be a CORD2R"),
+                        "13: CORD1R", "must be a CORD2R"),
     "system of itself": (whole(grids="CORD2R,8,7" + SYSTEM[9:] + "CORD2R,7,8" + SYSTEM[9:] + free_grids(system="8")),
-                         "13: CORD2R", "refers to itself by way of system 7"),
+                         "13: CORD2R", "refers to itself through system 7"),
     "system on a line": (whole(grids=SYSTEM.replace(",1.,1.,0.", ",0.,0.,5.") + free_grids(system="7")),
-                         "13: CORD2R", "lie on one line"),
+                         "13: CORD2R", "are collinear"),
     "system on a line of another": (whole(grids="CORD2R,8,7" + SYSTEM[9:].replace(",1.,1.,0.", ",0.,0.,5.") + SYSTEM
-                                          + free_grids(system="8")), "13: CORD2R", "lie on one line"),
+                                          + free_grids(system="8")), "13: CORD2R", "are collinear"),
     "turned": (whole(grids=SYSTEM + free_grids(system="7")), "CQUAD4", "45 degrees", "in the axes of the edges"),
     "hole": (whole(elements=re.sub(r"CQUAD4,6,.*\n", "", free_elements())), "CQUAD4", "no holes"),
     "both sides": (whole(elements=re.sub(r"(CQUAD4,9,1),(\d+),(\d+),(\d+),(\d+)", r"\1,\2,\5,\4,\3", free_elements())),
-                   "46: CQUAD4", "the other way round", "number all alike"),
-    "twice": (whole(more="CQUAD4,1,1,1,2,7,6\n"), "57: CQUAD4", "number 1 is taken", "line 38"),
+                   "46: CQUAD4", "in the opposite sense", "number all in the same sense"),
+    "twice": (whole(more="CQUAD4,1,1,1,2,7,6\n"), "57: CQUAD4", "number 1 is used", "line 38"),
     "symmetry": (whole(supports="SPC1,1,123456,5,10,15,20\nSPC1,1,123456,21,22,23,24,25\nSPC1,1,15,1,6,11,16\n"
                                 "SPC1,1,24,1,2,3,4\n"), "SPC1", "line of symmetry", "both sides"),
     "corner": (whole(supports="SPC1,1,3,6,11,16,21\nSPC1,1,3,22,23,24,25\n"), "SPC1", "corner grid 1"),
@@ -131,7 +131,7 @@ REFUSED = {
     "no plies": (whole(laminate="PCOMP,1\n"), "10: PCOMP", "it has no plies"),
     "lost continuation": (in_columns(whole()).replace("PCOMP   1" + " " * 55 + "SYM     ", "PCOMP   1" + " " * 55
                           + "SYM     +A").replace("        1       .25     45.", "+B      1       .25     45."),
-                          "11: +B", "no card names"),
+                          "11: +B", "no card has this continuation mark"),
     "long number": (whole(more="GRID,99,,-5.5511151231258-17,0.,0.\n"), "57: GRID", "has more than 16 characters"),
     "two temperatures": (whole(more="TEMPD,4,20.\nTEMPD,4,30.\n", material=MATERIAL.replace("0.,0.", "0.,3.-5")),
                          "58: TEMPD", "set 4 has another temperature in line 57"),
@@ -139,15 +139,15 @@ REFUSED = {
     "include": (whole(more="INCLUDE 'more.bdf'\n"), "57: INCLUDE", "into one file"),
     "include above": (whole(head="INCLUDE 'case.txt'\n" + HEAD), "INCLUDE", "into one file"),
     "triangles": (whole(elements=free_elements().replace("CQUAD4,1,1,1,2,7,6", "CTRIA3,1,1,1,2,7\nCTRIA3,99,1,1,7,6")),
-                  "CTRIA3, lines 38-39", "CQUAD4 or CQUAD8 alone"),
+                  "CTRIA3, lines 38-39", "CQUAD4 or CQUAD8 only"),
     "two laminates": (whole(laminate=LAMINATE + LAMINATE.replace("PCOMP,1", "PCOMP,2").replace("45.", "30."),
                             elements=re.sub(r"^(CQUAD4,\d),1", r"\1,2", free_elements(), flags=re.MULTILINE)),
-                      "13: PCOMP", "is not the lay-up"),
+                      "13: PCOMP", "its lay-up differs"),
 }
 
 
 class WholeFilesTest(ImportTest):
-    """A file at a time."""
+    """Each file."""
 
     def groups(self, text: str) -> Iterator[str]:
         """Return the groups of the deck of a file."""
@@ -156,7 +156,7 @@ class WholeFilesTest(ImportTest):
         return (line for line in (self.folder / "panel.nml").read_text().splitlines() if line[0] != "!")
 
     def test_same_panel(self) -> None:
-        """The decks are equal, however the file is written."""
+        """The deck does not depend on the format of the file."""
         expected = list(self.groups(SAME["commas"]))
         self.assertEqual(read_deck(self.folder / "panel.nml").edges(), 4 * ["clamped"])
         for name, text in {**SAME, "named continuations": with_marks(whole())}.items():
@@ -164,13 +164,13 @@ class WholeFilesTest(ImportTest):
                 self.assertEqual(list(self.groups(text)), expected)
 
     def test_no_text(self) -> None:
-        """Results, say, instead of bulk data."""
+        """Binary files, such as results, are refused."""
         code, printed = self.run_command("\0\1" + whole())
         self.assertEqual((code, printed.count("\n")), (4, 1), printed)
-        self.assertIn("is no text", printed)
+        self.assertIn("is not a text file", printed)
 
     def test_refused(self) -> None:
-        """One sentence with the card and what to change."""
+        """The message has the card and what to change."""
         for name, (text, *words) in REFUSED.items():
             with self.subTest(name):
                 code, printed = self.run_command(text)

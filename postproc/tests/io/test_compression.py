@@ -14,10 +14,10 @@ from tests.io.test_summary_shape import SUMMARY
 
 
 class CompressionTest(unittest.TestCase):
-    """Shares and figures."""
+    """Energy ratio, strength and failures."""
 
     def test_kinetic_share_between_a_tenth_and_the_strength(self) -> None:
-        """Neither what rings at the start nor the collapse counts."""
+        """Vibration at the start and collapse do not count."""
         history = History({"time": np.arange(7.0), "far_field_stress": np.array([1.0, 9, 20, 60, 100, 30, 110]),
                            "nominal_strain": np.array([0.0, 0, 1, 2, 3, 4, 5]) * 1e-3,
                            "work_external": np.array([1.0, 2, 10, 50, 200, 220, 230]),
@@ -25,7 +25,7 @@ class CompressionTest(unittest.TestCase):
         self.assertAlmostEqual(kinetic_share(history), 0.02)
 
     def test_strength_before_the_failure(self) -> None:
-        """What a failed plate's halves press with is no strength; a drop under small strains is no failure."""
+        """The load of the halves of a failed plate is not a strength; a drop at small strains is not a failure."""
         stress = np.array([10.0, 2, 90, 100, 65, 120])
         history = History({"far_field_stress": stress, "nominal_strain": np.array([0.1, 0.2, 2, 3, 4, 5]) * 1e-3})
         self.assertEqual(row_of_strength(history), 3)
@@ -43,7 +43,7 @@ class CompressionTest(unittest.TestCase):
             self.assertEqual(strength_of(path), 3.5e8)
 
     def test_failed_across_width(self) -> None:
-        """Only what went across is listed."""
+        """Only failures across the width are listed."""
         summary = {"collapse": {"interfaces": [{"ply_above": 2, "failed_across_width": False},
                                                {"ply_above": 4, "failed_across_width": True}],
                                 "fibres": [{"ply": 1, "failed_across_width": True}]}}

@@ -1,4 +1,4 @@
-"""Tests of smooth regions: their area is what is asked for, their outlines close, images agree."""
+"""Tests of smooth regions: area, closed outlines, symmetry."""
 
 import unittest
 
@@ -17,17 +17,17 @@ def elements(edges: np.ndarray = EDGES) -> np.ndarray:
 
 
 def disc(radius: float, width: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return elements and shares of a quarter of a disc that fades over a width."""
+    """Return elements and shares of a quarter of a disc whose share falls to zero over a width."""
     corners = elements()
     distance = np.hypot(*np.moveaxis(nine_points(corners), -1, 0))
     return corners, np.clip((radius - distance) / width + 0.5, 0, 1)
 
 
 class ContoursTest(unittest.TestCase):
-    """Regions of fields that are known."""
+    """Regions of known fields."""
 
     def test_area_is_the_integral(self) -> None:
-        """Simpson's integral of the shares, to rounding; it is the disc's but for the elements' size."""
+        """The area is Simpson's integral of the shares to round-off, and that of the disc to the size of elements."""
         for radius, width in ((0.5, 0.2), (0.7, 0.05), (0.2, 0.4)):
             corners, shares = disc(radius, width)
             content = float(np.sum(shares @ WEIGHTS)) / len(corners)
@@ -37,14 +37,14 @@ class ContoursTest(unittest.TestCase):
                 self.assertAlmostEqual(content, np.pi / 4 * (radius**2 + width**2 / 12), delta=2e-3)
 
     def test_outline_is_round(self) -> None:
-        """A disc of radius .5 has corners within .004 of it, one in ten of an element; cells would be .035 off."""
+        """The outline of a disc of radius .5 is within .004, a tenth of an element; cells would be .035 off."""
         edges = outline(region(*disc(0.5, 0.2)))
         distance = np.hypot(*np.moveaxis(edges, -1, 0)).ravel()
         free = np.all(edges.reshape(-1, 2) > 1e-9, axis=1)
         self.assertLess(np.ptp(distance[free]), 0.008)
 
     def test_slight_damage_has_small_area(self) -> None:
-        """A thousandth everywhere is a thousandth of the plate, not the plate."""
+        """A share of .001 everywhere has an area of .001 of the plate, not the full plate."""
         corners = elements()
         shares = np.full((len(corners), 9), 1e-3)
         shares[0] = 0.5
@@ -53,7 +53,7 @@ class ContoursTest(unittest.TestCase):
         self.assertEqual(len(region(corners, np.zeros_like(shares))), 0)
 
     def test_a_hole_turns_the_other_way(self) -> None:
-        """A ring has two closed lines, whose areas as they turn add up to that of the ring."""
+        """A ring has two closed outlines with opposite senses; the sum of their signed areas is that of the ring."""
         corners, shares = disc(0.8, 0.1)
         _, inner = disc(0.4, 0.1)
         whole = np.concatenate([(corners * signs)[:, ::sign] for signs, sign in

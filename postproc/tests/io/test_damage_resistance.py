@@ -1,4 +1,4 @@
-"""Tests of what ASTM D7136 asks to be reported: threshold, energies, size and type of the damage."""
+"""Tests of the figures of ASTM D7136: threshold, energies, size and type of the damage."""
 
 import math
 import tempfile
@@ -16,13 +16,13 @@ from implam_post.io.run_figures import resistance
 from tests.io.test_fields import write_fields
 
 CORNER = 6e3
-SPEED, STIFFNESS, END = 4.0, 2e6, 1.5e-3  # of a straight rise, and when the impactor has gone in
+SPEED, STIFFNESS, END = 4.0, 2e6, 1.5e-3  # slope of the force, and time at which the displacement is largest
 
 
 def history(fall: float = 0.0, dissipated: float = 0.0, ripple: float = 0.0) -> History:
-    """Return a force that rises with the displacement and falls by a part at .8 ms, as plies take an energy.
+    """Return a force that rises with the displacement and drops by a fraction at .8 ms, where plies dissipate energy.
 
-    A ripple at 4 kHz lies over it.
+    A ripple of 4 kHz is added.
     """
     time = np.linspace(2e-6, END, 750)
     gone_in = SPEED * time
@@ -35,10 +35,10 @@ def history(fall: float = 0.0, dissipated: float = 0.0, ripple: float = 0.0) -> 
 
 
 class ThresholdTest(unittest.TestCase):
-    """The force at which the curve first drops by damage."""
+    """The threshold force."""
 
     def test_low_pass(self) -> None:
-        """What is slow passes, at the corner 1/sqrt(2) of it, and far above nothing; it comes later by 2.6/(2 pi f)."""
+        """Gain of 1 at low frequency, 1/sqrt(2) at the corner, 0 far above; delay of 2.6/(2 pi f)."""
         time = np.linspace(0, 20e-3, 40_001)
         for frequency, gain in ((600, 1), (CORNER, math.sqrt(0.5)), (30e3, 0.0016)):
             even, passed = low_pass(time, np.sin(2 * math.pi * frequency * time), CORNER)
@@ -47,7 +47,7 @@ class ThresholdTest(unittest.TestCase):
         self.assertAlmostEqual(even[-1] - passed[-1], 2.613 / (2 * math.pi * CORNER), delta=1e-7)
 
     def test_a_drop_by_damage(self) -> None:
-        """A fall of three tenths whose energy plies have taken; the energy is what the impactor has given by then."""
+        """A drop of 30 % with dissipation by plies; the energy is that transferred by the impactor until then."""
         force = STIFFNESS * SPEED * 0.8e-3
         found = threshold(history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2), CORNER)
         self.assertAlmostEqual(found.force / force, 1, delta=0.05)
@@ -55,7 +55,7 @@ class ThresholdTest(unittest.TestCase):
         self.assertAlmostEqual(found.energy / (STIFFNESS * (SPEED * 0.8e-3)**2 / 2), 1, delta=0.06)
 
     def test_impactors_whose_travel_is_given(self) -> None:
-        """They bring no energy that could be transferred, and load steps have no time to be filtered over."""
+        """Given displacements have no impact energy, and load steps no time for a filter."""
         force = STIFFNESS * SPEED * 0.8e-3
         decreased = history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2)
         for summary, by_load_steps, energies, has_threshold in (
@@ -67,21 +67,21 @@ class ThresholdTest(unittest.TestCase):
             self.assertEqual(math.isfinite(found["threshold_force"].value), has_threshold)
 
     def test_what_is_no_drop(self) -> None:
-        """Vibration without damage, a fall without it, and damage without a fall."""
+        """Vibration without damage, a drop without damage, and damage without a drop give no threshold."""
         ripple = history(ripple=0.2)
         self.assertTrue(np.any(np.diff(ripple["force"]) < 0))
         for found in (ripple, history(0.3, 0.0), history(0.0, 1.0)):
             self.assertIsNone(threshold(found, CORNER))
 
     def test_coarse_rows(self) -> None:
-        """Rows too far apart for the low pass give no threshold."""
+        """Rows too far apart for the filter give no threshold."""
         found = history(0.3, 10.0)
         self.assertIsNotNone(threshold(found, CORNER))
         coarse = History({name: values[::60] for name, values in found.columns.items()})
         self.assertIsNone(threshold(coarse, CORNER))
 
     def test_energy_to_the_peak(self) -> None:
-        """What the impactor has given when the force is largest, here at the end."""
+        """The energy transferred until the peak force, here at the end."""
         self.assertAlmostEqual(energy_to_peak(history()), STIFFNESS * (SPEED * END)**2 / 2, delta=1e-3)
 
 
@@ -95,7 +95,7 @@ class ExtentTest(unittest.TestCase):
         return Fields("none.h5", "whole", [Snapshot(1.0, mesh, np.ones((count, 9)), {}, np.zeros(count))])
 
     def test_a_turned_rectangle(self) -> None:
-        """8 by 6 mm turned by 45 degrees: a diagonal of 10, and sides met along 45 and -45 degrees."""
+        """8 by 6 mm rotated by 45 degrees: diameter 10, lengths along 45 and -45 degrees are the sides."""
         middle = np.array([[-4, -3], [4, -3], [4, 3], [-4, 3]]) / math.sqrt(2)
         found = extent(self.fields((middle @ np.array([[1, 1], [-1, 1]]))[None]))
         self.assertAlmostEqual(found.diameter, 10)
@@ -108,7 +108,7 @@ class ExtentTest(unittest.TestCase):
         self.assertAlmostEqual(found.through[0], 6 * math.sqrt(2))
 
     def test_two_lobes(self) -> None:
-        """Between lobes with a gap at the struck point the outermost points count; across, the line meets none."""
+        """For lobes with a gap at the struck point outermost points count; a line between lobes has length 0."""
         lobe = np.array([[2, -1], [5, -1], [5, 1], [2, 1]], dtype=float)
         found = extent(self.fields(np.stack([lobe, -lobe])))
         self.assertAlmostEqual(found.through[0], 10)
@@ -116,7 +116,7 @@ class ExtentTest(unittest.TestCase):
         self.assertAlmostEqual(found.width, 2)
 
     def test_nothing(self) -> None:
-        """Where nothing has delaminated there is no size; cells of a quarter count with their images."""
+        """Without delamination there is no size; cells of a quarter count with their mirror images."""
         plate = self.fields(np.array([[[0, 0], [1, 0], [1, 1], [0, 1.0]]]))
         plate.snapshots[0].shares[:] = 0
         self.assertIsNone(extent(plate))
@@ -128,12 +128,12 @@ class ExtentTest(unittest.TestCase):
         self.assertAlmostEqual(found.width, 2)
 
     def test_kinds(self) -> None:
-        """Every kind with its plies, runs of them in short."""
+        """Every kind of damage with its plies, consecutive plies as a range."""
         plies = [{"ply": ply, "matrix_crack_area": ply > 2, "matrix_crushing_area": ply == 1, "fibre_failure_area": 0}
                  for ply in range(1, 7)]
         interfaces = [{"ply_above": 2, "first_growth": {"at": 1}}, {"ply_above": 4, "first_growth": None}]
         self.assertEqual(kinds_of_damage({"plies": plies, "interfaces": interfaces}), [
-            "delamination below ply 2", "matrix cracks in plies 3 to 6", "crushed matrix in ply 1"])
+            "delamination below ply 2", "matrix cracks in plies 3 to 6", "matrix crushing in ply 1"])
 
 
 if __name__ == "__main__":

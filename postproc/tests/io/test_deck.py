@@ -1,4 +1,4 @@
-"""Tests of what a deck's groups mean."""
+"""Tests of the groups of a deck."""
 
 import unittest
 from pathlib import Path
@@ -17,7 +17,7 @@ class DeckTest(unittest.TestCase):
     """Defaults, broadcast values and refusals."""
 
     def test_contact_stiffness_by_suns_formula(self) -> None:
-        """Without k: 4/3 sqrt(R) E2 for a rigid ball, softer for one that is not."""
+        """Without k: 4/3 sqrt(R) E2 for a rigid sphere, less for an elastic one."""
         rigid = indentation_law_of(deck(SUN_CHEN, ("k=8.112e8", "")))
         self.assertAlmostEqual(rigid.stiffness / (4 / 3 * np.sqrt(6.35e-3) * 7.9e9), 1, delta=1e-14)
         steel = indentation_law_of(deck(SUN_CHEN, ("k=8.112e8", "impactor_E=206.8e9 impactor_nu=0.28")))
@@ -27,7 +27,7 @@ class DeckTest(unittest.TestCase):
         self.assertTrue(indentation_law_of(elastic).hertz)
 
     def test_laminate(self) -> None:
-        """One thickness and one material serve all plies, and G13 is G12 if it is not given."""
+        """A single thickness and material are for all plies, and G13 is G12 if it is not given."""
         section = section_of_deck(deck(SUN_CHEN))
         self.assertAlmostEqual(section.thickness, 2.69e-3, delta=1e-17)
         self.assertAlmostEqual(section.s[0, 0] / (5 / 6 * 5.5e9 * 2.69e-3), 1, delta=1e-14)
@@ -35,7 +35,7 @@ class DeckTest(unittest.TestCase):
         np.testing.assert_array_equal(one.d, section.d)
 
     def test_values_of_published_materials(self) -> None:
-        """What a run took from a published material is read from its results; what the deck gives stays."""
+        """Values of published materials are read from the results of a run; values in the deck have precedence."""
         text = "&material name='a' library='b' E1=2 /"
         adopted = "&material 1 E1 = 130e9 [library b, source a]\n&material 1 nu12 = .30e0 [library b, source a]"
         found = recorded_deck({"deck": text, "library": adopted}, Path("a.nml"))
@@ -43,7 +43,7 @@ class DeckTest(unittest.TestCase):
         self.assertEqual(found.groups["material"][0]["e1"], [2])
         self.assertNotIn("nu12", recorded_deck({"deck": text}, Path("a.nml")).groups["material"][0])
         text += "\n&laminate materials='a' angles=0 thicknesses=1 /"
-        with self.assertRaisesRegex(DeckError, "G12 is left to library = 'b'"):
+        with self.assertRaisesRegex(DeckError, "G12 comes from library = 'b'"):
             plies_of(Deck(text, Path("a.nml")))
         whole = adopted + "\n&material 1 G12 = 5e9 [b]\n&material 1 G23 = 3e9 [b]\n&material 1 E2 = 9e9 [b]"
         material = plies_of(recorded_deck({"deck": text.replace("E1=2", "E1=2e11"), "library": whole}, Path("a.nml")))
@@ -55,7 +55,7 @@ class DeckTest(unittest.TestCase):
         self.assertEqual(deck(SUN_CHEN).numbers("PLATE", "Length"), deck(SUN_CHEN).numbers("plate", "length"))
 
     def test_invalid_decks_are_refused(self) -> None:
-        """Every deck outside the method ends with a sentence about the reason."""
+        """Every deck outside the scope of the method is refused with the reason."""
         ten = "angles=0,90,0,90,0,0,90,0,90,0"
         changes = {
             "simple": ("edges=4*'simple'", "edges=3*'simple','free'"),
@@ -67,7 +67,7 @@ class DeckTest(unittest.TestCase):
             "1 or 10": ("10*0.269e-3", "9*0.269e-3"),
             "alpha_cr": ("law='hertz' k=8.112e8 alpha_cr=80.3e-6", "k=8.112e8"),
             "reload": ("law='hertz' k=8.112e8", "q=1.2"),
-            "none of tan_sun": ("law='hertz'", "law='plastic'"),
+            "not one of tan_sun": ("law='hertz'", "law='plastic'"),
             "no support but the edges": ("&time", "&support window=0.1, 0.1 /\n&time"),
             "free impactor": ("velocity=3", "travel=1e-4"),
             "is not a number": ("velocity=3", "velocity=NaN"),

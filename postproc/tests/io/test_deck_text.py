@@ -18,10 +18,10 @@ DECK = """! first & last / of 'all'
 
 
 class DeckTextTest(unittest.TestCase):
-    """What is set, and that nothing else changes."""
+    """Keys are changed, other text is not."""
 
     def test_paths(self) -> None:
-        """A key may be numbered; group%key is the same as group.key; anything else is no key."""
+        """A key may be numbered; group%key is the same as group.key; other texts are not keys."""
         self.assertEqual(key_path("delamination[2].G_c"), KeyPath("delamination", 2, "G_c"))
         self.assertEqual(key_path(" Case%title"), KeyPath("case", None, "title"))
         self.assertEqual(str(key_path("material[*].E1")), "material[*].E1")
@@ -29,7 +29,7 @@ class DeckTextTest(unittest.TestCase):
             self.assertIsNone(key_path(text), text)
 
     def test_values(self) -> None:
-        """Values of TOML as a deck has them; text that a deck could hold stays, any other is put in quotes."""
+        """Values of TOML in the notation of decks; text that is valid in a deck is kept, other text is quoted."""
         for value, text in ((1, "1"), (2.5e-7, "2.5e-07"), (True, ".true."), ("8*90", "8*90"), ("", ""),
                             ("'a', \"b\"", "'a', \"b\""), ("clamped", "'clamped'"), (".false.", ".false."),
                             ("T300/976", "'T300/976'"), ("it's", "'it''s'"), ("1 / &x y=2", "'1 / &x y=2'"),
@@ -41,14 +41,14 @@ class DeckTextTest(unittest.TestCase):
                 deck_value(value)
 
     def test_only_the_value_changes(self) -> None:
-        """Comments, strings and other groups stay as they are."""
+        """Comments, strings and other groups are kept."""
         changed = set_keys(DECK, {key_path("delamination[1].g_C"): "7"})
         self.assertEqual(changed, DECK.replace("G_c=400", "G_c=7"))
         changed = set_keys(DECK, {key_path("delamination[2].zone"): "1, 2"})
         self.assertEqual(changed, DECK.replace("10e-3,\n   20e-3", "1, 2"))
 
     def test_keys_that_are_new_all_or_out(self) -> None:
-        """New keys and groups are added, all groups of a name set at once, keys taken out."""
+        """New keys and groups are added, all groups of a name changed together, keys removed."""
         settings = {"delamination[*].eta": "2", "delamination[2].G_c": "", "delamination[3].below_ply": "3",
                     "time.end": "1", "case.title": "'a'", "solver.tolerance": ""}
         groups = read_namelist(set_keys(DECK, {key_path(name): value for name, value in settings.items()}))
@@ -65,7 +65,7 @@ class DeckTextTest(unittest.TestCase):
                 set_keys(deck, {key_path(path): "1"})
 
     def test_numbers(self) -> None:
-        """A number of the deck, or an error if there is not one."""
+        """A number of the deck, or an error if the value is not a single number."""
         self.assertEqual(number_of(SUN_CHEN, key_path("impactor.mass")), 8.537e-3)
         self.assertEqual(number_of(DECK, key_path("delamination[2].below_ply")), 2)
         for path in ("delamination.G_c", "delamination[2].G_c", "delamination[3].G_c", "case.name", "time.end"):

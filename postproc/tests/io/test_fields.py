@@ -26,8 +26,8 @@ PICTURES = ("delamination", "projected", "front", "matrix", "fibres")
 def write_fields(path: Path, part: str = "quarter", times: tuple[float, ...] = TIMES) -> None:
     """Write 3 x 3 cells of unequal sizes, each with layers of plies 1-2 and 3.
 
-    The starter is cell (0, 0); cell (1, 0) follows at the second time, cell (2, 0) at the third. The cells beside them
-    release energy, as many times G_c as their distance from the corner, halved at the first time. Ply 3 cracks in cells
+    The starter is cell (0, 0); cell (1, 0) delaminates at the second time, cell (2, 0) at the third. G/G_c of cells
+    next to them is their distance from the corner, and half of it at the first time. Ply 3 cracks in cells
     (0, 0) and (1, 0); ply 1 fails in all three modes in cell (2, 2).
     """
     corners, first, last = [], [], []
@@ -58,7 +58,7 @@ def flags(number: int) -> dict[str, np.ndarray]:
         apart[CELLS.index((i, 0)), 1] = 1
     back[[CELLS.index((0, 0)), CELLS.index((1, 0))], 1] = 2
     front[CELLS.index((2, 2)), 0] = 7
-    # The solver leaves what does not belong to an element's plies at zero; a stray flag must not count.
+    # The solver writes zero for plies that an element does not have; other values must not count.
     back[CELLS.index((2, 2)), 0] = 2
     for i, j in CELLS:
         beside = (i, j) == (number, 0) or (j == 1 and i < number)
@@ -87,14 +87,14 @@ class FieldsTest(unittest.TestCase):
         return path
 
     def plot(self, *arguments: object) -> tuple[int, str]:
-        """Run the command quietly."""
+        """Run the command without output."""
         text = io.StringIO()
         with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
             code = plot.main([str(argument) for argument in arguments])
         return code, text.getvalue()
 
     def test_delamination_of_the_full_plate(self) -> None:
-        """A quarter counts four times, mirrored, at each time with what has delaminated by then."""
+        """A quarter is mirrored to the full plate, with the delamination at each time."""
         fields = read_fields(self.path)
         self.assertEqual(fields.snapshots[0].mesh.interfaces, [2])
         for place, expected in enumerate((4, 12, 24)):
@@ -106,18 +106,18 @@ class FieldsTest(unittest.TestCase):
         self.assertAlmostEqual(float(np.mean(fields.delaminated(2, 2))), 0)
 
     def test_times_and_interfaces_that_are_not_there(self) -> None:
-        """Neither is taken for one without delamination."""
+        """A missing time or interface is an error, not an interface without delamination."""
         fields = read_fields(self.path)
         for ask in (fields.delaminated, fields.interface):
             for place, below_ply, sentence in ((0, 1, "no interface below ply 1; it has 2"),
-                                               (3, 2, "place 3: it has 3"), (-4, 2, "from 0 to 2")):
+                                               (3, 2, "index 3: indices are 0 to 2"), (-4, 2, "0 to 2")):
                 with self.subTest(ask=ask.__name__, place=place), self.assertRaisesRegex(ImplamError, sentence):
                     ask(place, below_ply)
         for ask in (fields.projected, fields.projected_area):
-            self.assertRaisesRegex(ImplamError, "place 3", ask, 3)
+            self.assertRaisesRegex(ImplamError, "index 3", ask, 3)
 
     def test_damage_is_no_delamination(self) -> None:
-        """Shares count as such: a thousandth is none of a cell, for pictures and panels; figures are the file's.
+        """Shares are areas: a share of .001 is not a delaminated cell; figures are those of the file.
 
         Cells (0, 0) to (2, 0) have shares of 1, .999 and .001, and areas of 1, 2 and 3; the first time is no starter.
         """
@@ -142,25 +142,25 @@ class FieldsTest(unittest.TestCase):
         self.assertAlmostEqual(area(read_fields(self.path).starter(2)), 1)
 
     def test_full_plate_is_not_mirrored(self) -> None:
-        """A run of the full plate is shown as it is."""
+        """A run of the full plate is not mirrored."""
         write_fields(self.path, part="whole")
         self.assertAlmostEqual(area(read_fields(self.path).delaminated(2, 2)), 6)
 
     def test_outline_has_no_inner_edges(self) -> None:
-        """Edges on the symmetry lines and between cells of different sizes are inside."""
+        """Edges on symmetry lines and between cells of different sizes are not part of the outline."""
         fields = read_fields(self.path)
         edges = outline(fields.delaminated(2, 2))
         self.assertAlmostEqual(float(np.sum(np.abs(edges[:, 1] - edges[:, 0]))), 2 * (12 + 2))
         self.assertEqual(len(outline(np.empty((0, 4, 2)))), 0)
 
     def test_outline_with_a_waist(self) -> None:
-        """Cells that lack on the axis leave their edges in the outline."""
+        """Missing cells at the axis leave edges in the outline."""
         mesh = read_fields(self.path).snapshots[0].mesh
         cells = mesh.corners[::2][[CELLS.index(cell) for cell in ((0, 0), (1, 0), (1, 1))]]
         self.assertAlmostEqual(float(np.sum(np.abs(np.diff(outline(cells), axis=1)))), 2 * (3 + 3))
 
     def test_failures_by_mode(self) -> None:
-        """Bits are modes; only elements that hold the ply count."""
+        """Bits are modes; only elements that contain the ply count."""
         last = read_fields(self.path).snapshots[-1]
         self.assertAlmostEqual(area(last.failed_cells(3, 2)), 1 + 2)
         self.assertEqual(len(last.failed_cells(3, 1)), 0)
@@ -168,7 +168,7 @@ class FieldsTest(unittest.TestCase):
             self.assertAlmostEqual(area(last.failed_cells(1, mode)), 9)
 
     def test_release_along_the_front(self) -> None:
-        """Cells ahead of the front with G/G_c; the picture has one line a time and the front in plan."""
+        """Cells ahead of the front with G/G_c; the picture has one line per time and the front in plan."""
         fields = read_fields(self.path)
         cells, ratio = fields.snapshots[0].release(2)
         self.assertEqual(sorted(ratio), [0.5, 0.5])
@@ -184,13 +184,13 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(in_plan.get_title(), "time 0.5")
 
     def test_times_asked_for(self) -> None:
-        """A time that the fields do not reach is reported."""
+        """A time outside the fields is reported."""
         self.assertEqual(self.plot(self.path, "--times", "0.5", "1.5")[0], 0)
         code, text = self.plot(self.path, "--times", "2")
-        self.assertEqual((code, text.count("outside the fields")), (1, 1), text)
+        self.assertEqual((code, text.count("outside the times of the fields")), (1, 1), text)
 
     def test_plots_beside_the_fields(self) -> None:
-        """Delamination and plies, and the history if there is one; --output moves them."""
+        """Pictures of delamination, plies and, if there is one, the history; --output changes their folder."""
         code, text = self.plot(self.path)
         self.assertEqual(code, 0, text)
         self.assertEqual({path.name for path in self.folder.glob("*.png")},
@@ -211,18 +211,18 @@ class FieldsTest(unittest.TestCase):
         self.assertEqual(self.plot(history, "--save", picture)[0], 1)
 
     def test_without_damage(self) -> None:
-        """A run without interfaces and failures is reported, not drawn."""
+        """A run without interfaces and failures is reported and not drawn."""
         with h5py.File(self.path, "a") as file:
             for group in file["times"].values():
                 del group["cells"]
             file["meshes/00000001/cells/first_ply"][()] = 1
             file["meshes/00000001/cells/last_ply"][()] = 3
         code, text = self.plot(self.path)
-        self.assertEqual((code, text.count("neither")), (0, 1), text)
+        self.assertEqual((code, text.count("no interfaces and no ply failures")), (0, 1), text)
         self.assertEqual(self.plot(self.path, "--history", self.write_history(), "--save", self.folder / "a.png")[0], 4)
 
     def test_what_is_no_file_of_fields(self) -> None:
-        """Missing, foreign and empty files are reported in one sentence."""
+        """Missing, other and empty files are reported in one sentence."""
         foreign = self.folder / "foreign.h5"
         with h5py.File(foreign, "w") as file:
             file["x"] = 1

@@ -7,7 +7,7 @@ from implam_post.io.namelist import read_namelist
 
 
 class NamelistTest(unittest.TestCase):
-    """What decks contain, and what they must not."""
+    """Valid and invalid decks."""
 
     def test_values_of_every_kind(self) -> None:
         """Numbers, logicals, strings, comments, repeat counts and subscripts are read."""
@@ -20,7 +20,7 @@ class NamelistTest(unittest.TestCase):
         self.assertEqual(groups["two"], [{"edges": ["free", "simple", "simple", "simple"]}, {"c": [1.0]}])
 
     def test_faults_are_reported_with_their_line(self) -> None:
-        """Each fault ends with one sentence that names the line."""
+        """Each error is one sentence with the line number."""
         faults = {"\n&a b=1": 2, "&a\nb= c=1 /": 2, "&a b='x\n' /": 1, "&a b=1\nb=2 /": 2, "&a b=xyz /": 1,
                   "&a\n\n b(3)=1 /": 3, "a=1": 1, "&a 1 /": 1, "&a b=3* /": 1, "&a b=1 &c d=1 /": 1}
         for text, line in faults.items():

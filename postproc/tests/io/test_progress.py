@@ -1,4 +1,4 @@
-"""Tests of the progress that long commands show."""
+"""Tests of the progress of long commands."""
 
 import io
 import unittest
@@ -8,18 +8,18 @@ from implam_post.io.progress import Progress
 
 
 class Terminal(io.StringIO):
-    """Text that says it is a terminal."""
+    """A stream that is a terminal."""
 
     def isatty(self) -> bool:
-        """Say so."""
+        """Return True."""
         return True
 
 
 class ProgressTest(unittest.TestCase):
-    """Lines in a file, a bar on a terminal, and the time left by the mean so far."""
+    """Lines in a file, a bar on a terminal, and the remaining time from the mean so far."""
 
     def test_lines(self) -> None:
-        """A line for each run, the time left in all but the last, no control characters."""
+        """A line for each run, with the remaining time in all but the last, without control characters."""
         text = io.StringIO()
         with patch("time.monotonic", side_effect=[100.0, 130.0, 160.0, 190.0]), Progress(3, text) as progress:
             for number, failure in ((1, ""), (2, "broke"), (3, "")):
@@ -29,7 +29,7 @@ class ProgressTest(unittest.TestCase):
                          "[3/3] case 3: done\n")
 
     def test_bar(self) -> None:
-        """The bar fills, and failures stand in lines of their own."""
+        """The bar is updated, and failures are printed on separate lines."""
         text = Terminal()
         with Progress(4, text) as progress:
             progress.end_run("case 1")

@@ -32,7 +32,7 @@ class QuantitiesTest(unittest.TestCase):
         np.testing.assert_allclose(found, (7, 2.2), rtol=1e-14)
 
     def test_contacts_of_hertzian_ends(self) -> None:
-        """Where force**(2/3) is linear, begin and end are exact; a contact that lasts has no end."""
+        """If force**(2/3) is linear, begin and end are exact; the end of a contact that has not ended is NaN."""
         depth = np.array([0, 0.5, 1.5, 0.4, 0, 0, 0.3, 0.6])
         found = contacts(pulses(*depth**1.5))
         np.testing.assert_allclose(found, [(0.5, 3 + 0.4 / 1.1), (5, np.nan)], rtol=1e-14)
@@ -44,7 +44,7 @@ class QuantitiesTest(unittest.TestCase):
         self.assertTrue(np.isnan(second_peak(pulses(0, 9, 0, 0)).value))
 
     def test_energy_error(self) -> None:
-        """The largest one counts, of either sign, as a fraction of the total at the start."""
+        """The largest absolute error, as a fraction of the total energy at the start."""
         columns = {name: np.zeros(3) for name in ENERGIES}
         columns |= {"time": np.arange(3.0), "energy_error": np.array([0, -0.3, 0.1])}
         columns["energy_impactor"] = np.array([6.0, 1, 1])
@@ -53,7 +53,7 @@ class QuantitiesTest(unittest.TestCase):
         self.assertFalse(np.isfinite(QUANTITIES["energy_error"](History(columns))))
 
     def test_energy_rise(self) -> None:
-        """From the lowest row before; what the pressure puts in and what is lost do not count."""
+        """The increase from the preceding minimum; work of the pressure and losses do not count."""
         columns = {name: np.zeros(6) for name in ENERGIES}
         columns |= {"time": np.arange(6.0), "work_external": np.array([0, 0, 0, 1.0, 1, 1])}
         columns["energy_impactor"] = np.array([10.0, 8, 6, 8, 7, 6])
@@ -64,7 +64,7 @@ class QuantitiesTest(unittest.TestCase):
         self.assertTrue(np.isnan(QUANTITIES["energy_rise"](History(columns))))
 
     def test_energy_of_the_impactor(self) -> None:
-        """What is there in the first row, without the pressure's work, less what is left at the last release."""
+        """Energy in the first row without work of the pressure, minus energy at the end of the last contact."""
         columns = dict(pulses(0, 8, 8, 0, 0, 8, 0, 0).columns)
         columns |= {name: np.zeros(8) for name in (*ENERGIES, "work_external")}
         columns["energy_impactor"] = np.array([9.0, 5, 4, 3, 3, 2, 1, 1])
@@ -82,7 +82,7 @@ class QuantitiesTest(unittest.TestCase):
                 self.assertTrue(np.isnan(QUANTITIES[name](one)), name)
 
     def test_energy_of_the_impactor_on_a_stressed_plate(self) -> None:
-        """The energy that the plate had before the impact, of residual stress, is not the impactor's."""
+        """Initial strain energy of residual stress does not count as impact energy."""
         columns = dict(pulses(2, 8, 0).columns)
         columns |= {name: np.zeros(3) for name in (*ENERGIES, "work_external")}
         columns |= {"energy_impactor": np.array([9.96, 1, 5]), "energy_strain": np.array([7.04, 9, 5])}
@@ -102,7 +102,7 @@ class QuantitiesTest(unittest.TestCase):
         self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history.until(2.0)), 5, delta=1e-14)
 
     def test_first_growth(self) -> None:
-        """The largest force up to the first growth; without growth, area or a number there is none."""
+        """The largest force up to the first growth; NaN without growth or area."""
         columns = dict(pulses(0, 5, 3, 9).columns)
         force, time = (QUANTITIES[f"first_growth_{name}"] for name in ("force", "time"))
         self.assertTrue(np.isnan(force(History(columns))))
@@ -121,14 +121,14 @@ class QuantitiesTest(unittest.TestCase):
         self.assertTrue(np.isnan(rms_force_difference(pulses(0, 2, 4), reference)))
 
     def test_l2_force_difference(self) -> None:
-        """A tenth more force differs by a tenth; NaN if the history ends before the reference."""
+        """A force 10 % larger has a difference of .1; NaN if the history ends before the reference."""
         reference = pulses(0, 2, 4, 2, 0, 0)
         self.assertAlmostEqual(l2_force_difference(pulses(0, 2.2, 4.4, 2.2, 0, 0, 0), reference), 0.1, delta=1e-14)
         self.assertAlmostEqual(l2_force_difference(pulses(0, 2, 4, 2, 1, 0), reference), 24**-0.5, delta=1e-14)
         self.assertTrue(np.isnan(l2_force_difference(pulses(0, 2, 4), reference)))
 
     def test_nan_stays_nan(self) -> None:
-        """One NaN among the forces spoils every number made from them."""
+        """One NaN among the forces makes all quantities NaN."""
         with_nan = pulses(0, 2, 4, np.nan, 0, 0)
         for name in ("peak_force", "peak_force_time", "contact_begin", "contact_release", "second_peak_force"):
             self.assertTrue(np.isnan(QUANTITIES[name](with_nan)), name)

@@ -1,4 +1,4 @@
-"""Summaries with members that are not what implam writes: a sentence that names the member, and only for those."""
+"""Summaries with members of the wrong kind are refused with the name of the member, other summaries are not."""
 
 import copy
 import json
@@ -32,14 +32,14 @@ COMPRESSION = {"residual_strength": 2e8, "shortening_at_strength": 7e-4, "effect
                "failure_code": "LDM", "percent_bending": -4.0, "buckling_strain": 3.9e-3,
                "collapse": {"interfaces": [], "fibres": [{"ply": 2, "failed_across_width": True}]}}
 COMPRESSION_COLUMNS = ("far_field_stress", "nominal_strain", "shortening", "work_external")
-# What each kind of value is replaced by.
+# Replacements of each kind of value.
 JUNK = {str: ([], 3), bool: ("yes", 2), int: ("three", None, [1]), float: ("3", True, {}), list: (5, {}, None),
         dict: ([], "", 7)}
 FREE = {"code", "title", "made_of", "deflection", "force", "unknowns", "wall_seconds", "ranks", "started"}
 
 
 def places(value: object, path: tuple = ()) -> Iterator[tuple[tuple, object]]:
-    """Give every member with its place."""
+    """Yield every member with its path."""
     for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
         yield (*path, key), inner
         if isinstance(inner, (dict, list)):
@@ -47,10 +47,10 @@ def places(value: object, path: tuple = ()) -> Iterator[tuple[tuple, object]]:
 
 
 class SummaryShapeTest(unittest.TestCase):
-    """A member at a time."""
+    """Each member."""
 
     def setUp(self) -> None:
-        """Write in a folder of its own."""
+        """Create a folder."""
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.path = Path(folder.name) / "case_summary.json"
@@ -60,13 +60,13 @@ class SummaryShapeTest(unittest.TestCase):
         self.path.write_text(json.dumps(summary), encoding="utf-8")
 
     def test_whole(self) -> None:
-        """A summary as it should be makes a page."""
+        """A valid summary gives a page."""
         self.write(SUMMARY)
         self.assertEqual(missing_member(read_summary(self.path)), "")
         self.assertTrue(report.write_report(self.path, None).exists())
 
     def test_each_member_of_another_kind(self) -> None:
-        """The sentence says which member."""
+        """The message names the member."""
         for place, value in places(SUMMARY):
             for junk in () if place[-1] in FREE or value is None else JUNK[type(value)]:
                 summary = copy.deepcopy(SUMMARY)
@@ -83,13 +83,13 @@ class SummaryShapeTest(unittest.TestCase):
                     self.assertIn(str(place[0]), str(caught.exception))
 
     def test_earlier_names(self) -> None:
-        """A summary of version 0.1.0 has another name of what has failed across the width."""
+        """A summary of version 0.1.0 has another name for failures across the width."""
         collapse = {"interfaces": [], "fibres": [{"ply": 2, "went_across": True}]}
         self.write(SUMMARY | COMPRESSION | {"collapse": collapse})
         self.assertEqual(failed_across_width(read_summary(self.path)), ([], [2]))
 
     def test_each_member_left_out(self) -> None:
-        """A page without what not every run has, or the sentence that names it."""
+        """Without optional members there is a page, without required ones a message with the name."""
         columns = ("time", "force", "deflection", "indentation", "impactor_velocity", "impactor_displacement",
                    *(f"energy_{name}" for name in ENERGIES if name not in ("impact", "absorbed")), *COMPRESSION_COLUMNS)
         rows = [",".join([str(1e-4 * place), *["1.0"] * (len(columns) - 1)]) for place in range(4)]
@@ -97,7 +97,7 @@ class SummaryShapeTest(unittest.TestCase):
         whole = SUMMARY | COMPRESSION
         for name in whole:
             self.write({key: value for key, value in whole.items() if key != name})
-            # The figures are made, but not drawn: that takes half a second each time, and no member is read any more.
+            # Figures are not drawn, which takes half a second and reads no further member.
             with self.subTest(name), mock.patch.object(report, "image", return_value=""):
                 try:
                     report.write_report(self.path, None)
@@ -105,7 +105,7 @@ class SummaryShapeTest(unittest.TestCase):
                     self.assertRegex(str(error), f"lacks '{name}'|is not a summary")
 
     def test_faults_of_the_program_are_none_of_the_file(self) -> None:
-        """An error within the page is not said to be the summary's."""
+        """An error of the page is not reported as one of the summary."""
         self.write(SUMMARY)
         for fault in (AttributeError, TypeError, KeyError):
             with self.subTest(fault), mock.patch.object(report, "layup_figure", side_effect=fault("within")), \

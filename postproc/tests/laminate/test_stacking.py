@@ -10,10 +10,10 @@ from tests.decks import SUN_CHEN, deck
 
 
 class StackingTest(unittest.TestCase):
-    """The notation of the field, and what the deck makes of it."""
+    """Notation of stacking sequences, and its use in decks."""
 
     def test_sequences(self) -> None:
-        """The same sequences as the solver's own test holds."""
+        """The same sequences as in the test of the solver."""
         plies = {
             "[45/0/-45/90]2s": [45, 0, -45, 90, 45, 0, -45, 90, 90, -45, 0, 45, 90, -45, 0, 45],
             "[0_2/90]s": [0, 0, 90, 90, 0, 0],
@@ -32,7 +32,7 @@ class StackingTest(unittest.TestCase):
                 self.assertEqual(angles_of(sequence), angles)
 
     def test_faults(self) -> None:
-        """What is not a sequence is refused with its place."""
+        """Invalid sequences are refused with the position of the error."""
         for sequence, place in {"[45/x]2s": 5, "[0/90": 6, "0/90]": 5, "[0/]": 4, "[0/90s]": 6, "[0/400]": 4,
                                 "[02/90]": 2, "[45/-045]": 5, "[00.5]": 2,
                                 "[0]2000": 4, "[0/90~]": 8, "[0,90]": 3, "[0/\N{MINUS SIGN}45]": 4}.items():
@@ -40,7 +40,7 @@ class StackingTest(unittest.TestCase):
                 angles_of(sequence)
 
     def test_deck(self) -> None:
-        """Stacking with one thickness gives the section of the list, energy the velocity."""
+        """Stacking with one thickness gives the same section as lists, energy the same velocity."""
         listed = deck(SUN_CHEN)
         shorthand = deck(SUN_CHEN, ("angles=0,90,0,90,0,0,90,0,90,0", "stacking='[0/90/0/90/0]s'"),
                     ("thicknesses=10*0.269e-3", "ply_thickness=0.269e-3"), ("velocity=3", "energy=38.4165e-3"))

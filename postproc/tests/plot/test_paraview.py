@@ -1,4 +1,4 @@
-"""Tests of the files for ParaView: where the sphere is, what is seen through the plate, that the files can be read."""
+"""Tests of the files for ParaView: position of the sphere, damage through the plate, validity of the files."""
 
 import ast
 import contextlib
@@ -21,7 +21,7 @@ THICKNESS, RADIUS = 3e-3, 1e-2
 
 
 class ParaviewTest(unittest.TestCase):
-    """Each test has fields with a deck, and a history, in a folder of its own."""
+    """Each test has fields with a deck, and a history, in its own folder."""
 
     def setUp(self) -> None:
         """Write them."""
@@ -40,7 +40,7 @@ class ParaviewTest(unittest.TestCase):
         return {Path(line).name for line in text.getvalue().splitlines()}
 
     def test_sphere(self) -> None:
-        """Its area is that of a sphere but for its corners; all normals point outwards or all inwards."""
+        """Its area is nearly that of a sphere; all normals point outwards or all inwards."""
         points, triangles = sphere(2.0)
         first, second, third = (points[triangles[:, corner]] for corner in range(3))
         normals = np.cross(second - first, third - first)
@@ -49,7 +49,7 @@ class ParaviewTest(unittest.TestCase):
         self.assertEqual(len(set(np.sign(np.sum(normals * first, axis=1)[wide]))), 1)
 
     def test_impactor_moves(self) -> None:
-        """Its nose is on the struck face, at -h/2, at first contact, and as deep as the history says."""
+        """Its lowest point is at the struck face, -h/2, at first contact, and then moves by the displacement."""
         self.assertEqual(self.write(), {"case_paraview.h5", "case_paraview.py", "case_through.xdmf",
                                         "case_impactor.xdmf"})
         with h5py.File(self.folder / "case_paraview.h5") as file:
@@ -59,7 +59,7 @@ class ParaviewTest(unittest.TestCase):
                 self.assertAlmostEqual(np.ptp(file[f"{number:08d}/sphere"][()][:, 2]), 2 * RADIUS)
 
     def test_through_the_thickness(self) -> None:
-        """Places with a delaminated interface, its ply, and the share of plies that failed, over the full plate."""
+        """Number and first of delaminated interfaces, and fraction of failed plies, over the full plate."""
         self.write()
         with h5py.File(self.folder / "case_paraview.h5") as file:
             for number, expected in enumerate((4, 12, 24), start=1):
@@ -75,7 +75,7 @@ class ParaviewTest(unittest.TestCase):
                          {(0, 0): 1, (1, 0): 1, (3, 3): 1})
 
     def test_files_belong_together(self) -> None:
-        """The grids name data that are there, at the times of the fields; the state is Python."""
+        """The XDMF refers to existing data at the times of the fields; the state file is valid Python."""
         self.write()
         ast.parse((self.folder / "case_paraview.py").read_text())
         with h5py.File(self.folder / "case_paraview.h5") as file:

@@ -1,4 +1,4 @@
-"""Tests of what pictures show: units, styles, cracks, the projected C-scan, measured curves, kinds of files."""
+"""Tests of pictures: units, styles, cracks, projected delamination, measured curves, file formats."""
 
 import contextlib
 import io
@@ -36,7 +36,7 @@ DECK = """&case units='SI' /
 
 
 def history(name: str, factor: float = 1.0) -> History:
-    """Return an impact of 2 ms that ends with a gap."""
+    """Return an impact of 2 ms that ends with separation."""
     time = np.linspace(0, 3e-3, 31)
     force = factor * np.maximum(np.sin(np.pi * time / 2e-3), 0) * 2000 * (time < 2e-3)
     rest = {name: np.zeros(31) for name in (*ENERGIES, "energy_error")}
@@ -45,7 +45,7 @@ def history(name: str, factor: float = 1.0) -> History:
 
 
 class PicturesTest(unittest.TestCase):
-    """Each test draws into a folder of its own, or looks at a figure."""
+    """Each test draws into its own folder, or checks a figure."""
 
     def setUp(self) -> None:
         """Write fields with a deck in them."""
@@ -63,14 +63,14 @@ class PicturesTest(unittest.TestCase):
         return path
 
     def plot(self, *arguments: object) -> tuple[int, str]:
-        """Run the command quietly."""
+        """Run the command without output."""
         text = io.StringIO()
         with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
             code = command.main([str(argument) for argument in arguments])
         return code, text.getvalue()
 
     def test_axes_have_units_and_runs_their_styles(self) -> None:
-        """2 kN at 1 ms are drawn as 2 and 1; two runs differ without colours; the gap is not drawn as indentation."""
+        """2 kN at 1 ms are drawn as 2 and 1; line styles of two runs differ; no indentation after separation."""
         axes = Figure().subplots()
         pictures._draw(axes, [history("a"), history("b", 0.5)], "force", PictureStyle("SI"))
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time [ms]", "contact force [kN]"))
@@ -95,7 +95,7 @@ class PicturesTest(unittest.TestCase):
         np.testing.assert_allclose(drawn[0][1], drawn[1][1], rtol=1e-12)
 
     def test_load_factors(self) -> None:
-        """Of a run by load steps every axis, legend and title has load factors, with or without a summary."""
+        """For load steps all axes, legends and titles have load factors, with or without a summary."""
         with h5py.File(self.path, "a") as file:
             del file["provenance/deck"]
             file["provenance/deck"] = np.bytes_(f"{DECK}&static steps=2 /\n")
@@ -128,7 +128,7 @@ class PicturesTest(unittest.TestCase):
         self.assertEqual((plan.get_title(), below.get_xlabel()), ("load factor 1.5", "load factor"))
 
     def test_projected_interfaces(self) -> None:
-        """What has delaminated is one region; its area stands in the title."""
+        """A delamination is drawn as one region; the title has its area."""
         fields = read_fields(self.path)
         axes = projected_figure(fields, PictureStyle("SI")).axes[0]
         cells = fields.delaminated(2, 2)
@@ -138,7 +138,7 @@ class PicturesTest(unittest.TestCase):
         self.assertEqual(axes.get_xlabel(), "x [mm]")
 
     def test_cracks_run_along_fibres(self) -> None:
-        """The lines of a ply have its angle, given by the deck in the file, and stay in their cells."""
+        """The lines of a ply have its angle, from the deck in the file, and are within their cells."""
         square = np.array([[[0, 0], [2, 0], [2, 1], [0, 1]]], dtype=float)
         for angle in (0, 30, 90, -45):
             line = along_fibres(square, angle)[0]
@@ -155,7 +155,7 @@ class PicturesTest(unittest.TestCase):
         self.assertTrue(all(abs(segment[0, 0] - segment[1, 0]) < 1e-9 for segment in lines))
 
     def test_struck_aside(self) -> None:
-        """The picture is centred at the struck point of the deck and holds the delaminated area."""
+        """The picture is centred at the struck point of the deck and shows the entire delaminated area."""
         with h5py.File(self.path, "a") as file:
             del file["provenance/deck"]
             file["provenance/deck"] = np.bytes_(DECK.replace("radius=1e-2", "radius=1e-2 at=2, 1"))
@@ -168,7 +168,7 @@ class PicturesTest(unittest.TestCase):
             np.testing.assert_allclose((low + high) / 2, (2, 1))
 
     def test_movie(self) -> None:
-        """A picture for each time, each with more cells apart than the one before."""
+        """A picture for each time, each with more delaminated cells than the one before."""
         self.write(history("case"), "case_history.csv")
         with contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(movie.main([str(self.path), "--dpi", "50"]), 0)
@@ -179,7 +179,7 @@ class PicturesTest(unittest.TestCase):
         self.assertTrue(blue[0] < blue[1] < blue[2], blue)
 
     def test_measured_curve_and_kinds_of_files(self) -> None:
-        """A measured force is a line more of the legend; PDF and SVG come out; a curve without a column is refused."""
+        """A measured force is in the legend; PDF and SVG are written; a curve without known columns is refused."""
         run, measured = self.write(history("a"), "a_history.csv"), self.folder / "m.csv"
         measured.write_text("time,force\n0,0\n1e-3,1900\n2e-3,10\n")
         plain = self.plot(run, "--units", "SI", "--format", "svg")
@@ -205,7 +205,7 @@ class PicturesTest(unittest.TestCase):
             self.assertEqual(sorted(self.folder.iterdir()), files)
 
     def test_titles_are_whole(self) -> None:
-        """Where axes keep equal scales, titles lie within the picture whatever the shape of the damage."""
+        """Titles of axes with equal scales are within the picture for any shape of the damage."""
         for length, width in ((57, 32), (38, 14), (20, 20), (15, 45)):
             corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
             mesh = Mesh(np.stack([corners, corners / 2]), *2 * [np.array([2, 3])], np.zeros(2, dtype=bool))
@@ -216,7 +216,7 @@ class PicturesTest(unittest.TestCase):
             self.assertLess(beyond, 0, (length, width))
 
     def test_shares_of_runs(self) -> None:
-        """The map of shares has the share of each group's runs at a place, and titles within the picture."""
+        """The map has the fraction of runs of each group at a place, and titles within the picture."""
         for groups, length, width in ((1, 57, 32), (2, 15, 45), (4, 20, 20)):
             corners = np.array([[0, 0], [length, 0], [length, width], [0, width]]) - np.array([length, width]) / 2
             mesh = Mesh(corners[None], *2 * [np.array([2])], np.zeros(1, dtype=bool))

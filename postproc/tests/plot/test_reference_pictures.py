@@ -1,4 +1,4 @@
-"""Pictures compared with those kept in tests/pictures; IMPLAM_KEEP_PICTURES=1 in the environment writes them anew."""
+"""Pictures compared with those in tests/pictures; the environment variable IMPLAM_KEEP_PICTURES=1 replaces those."""
 
 import contextlib
 import io
@@ -29,14 +29,14 @@ TOLERANCE, BLOCK = 3.0, 4
 
 
 def blocks(path: Path) -> np.ndarray:
-    """Return the means of a picture's blocks, a colour at a time."""
+    """Return the means over the blocks of a picture, for each colour."""
     dots = np.asarray(Image.open(path).convert("RGB"), dtype=float)
     rows, columns = (size // BLOCK * BLOCK for size in dots.shape[:2])
     return dots[:rows, :columns].reshape(rows // BLOCK, BLOCK, columns // BLOCK, BLOCK, 3).mean(axis=(1, 3))
 
 
 def difference(one: Path, other: Path) -> float:
-    """Return how far two pictures are apart; infinitely, if their sizes differ."""
+    """Return the difference of two pictures; infinity if their sizes differ."""
     first, second = blocks(one), blocks(other)
     return float(np.sqrt(np.mean((first - second)**2))) if first.shape == second.shape else float("inf")
 
@@ -59,7 +59,7 @@ class ReferencePicturesTest(unittest.TestCase):
                    header=",".join(of.columns), comments="")
 
     def draw(self) -> dict[str, Path]:
-        """Draw everything there is; return the pictures by name."""
+        """Draw all pictures; return them by name."""
         with contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(plot.main([str(self.folder / "case.h5"), "--dpi", "50"]), 0)
             self.assertEqual(movie.main([str(self.folder / "case.h5"), "--dpi", "50"]), 0)
@@ -69,7 +69,7 @@ class ReferencePicturesTest(unittest.TestCase):
         return {name: self.folder / f"case_{name}.png" for name in (*NAMES, "movie")}
 
     def test_pictures_are_those_kept(self) -> None:
-        """Each of them, and the projected one by time."""
+        """All pictures, including the projected delamination by time."""
         drawn = self.draw()
         by_time = projected_figure(read_fields(self.folder / "case.h5"), PictureStyle("SI", projected="time"))
         drawn["projected_by_time"] = self.folder / "by_time.png"
@@ -83,7 +83,7 @@ class ReferencePicturesTest(unittest.TestCase):
                 self.assertLess(difference(path, KEPT / f"{name}.png"), TOLERANCE)
 
     def test_a_fault_shows(self) -> None:
-        """Cells that delaminated later, and larger letters, are beyond the tolerance."""
+        """Later delamination and a larger font exceed the tolerance."""
         with h5py.File(self.folder / "case.h5", "a") as file:
             file["times/00000002/cells/delaminated_above"][...] = file["times/00000001/cells/delaminated_above"][()]
         fields = read_fields(self.folder / "case.h5")

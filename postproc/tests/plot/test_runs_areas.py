@@ -1,6 +1,6 @@
-"""Pictures and page of every quick deck print the areas of its summary, to the digit.
+"""Pictures and page of every quick deck have exactly the areas of its summary.
 
-With IMPLAM_EVERY_DECK=1 in the environment those of all decks in input/, large ones on coarse cells, in an hour."""
+With the environment variable IMPLAM_EVERY_DECK=1 all decks in input/, large ones on coarse cells, in an hour."""
 
 import json
 import re
@@ -18,19 +18,19 @@ from tests.program import ROOT, implam, run_quietly
 from tests.test_runs_every_deck import ALL, COARSE, DECKS, change_deck, run_program
 
 UNITS = "--units", "SI"
-# Of the others those of a few seconds: one that grows in time, a specimen, and one of 22 interfaces.
+# Other decks of a few seconds: delamination growth in time, a specimen, and 22 interfaces.
 QUICK = [ROOT / "input" / f"{name}.nml" for name in (
     "tutorial/delamination", "verify/moment_shear", "experiments/im7_8552_d7136_30J")]
 
 
 class AreasTest(unittest.TestCase):
-    """A deck at a time."""
+    """Each deck."""
 
     def test_every_deck(self) -> None:
-        """Fields at times of which the end is none, and yet at the end: they hold the state of the summary."""
+        """The end is not a multiple of fields_every, but fields have the final state of the summary."""
         for source in DECKS if ALL else [*DECKS, *QUICK]:
             text = source.read_text(encoding="utf-8")
-            # What begins from another run's end is run by compression.py.
+            # Decks that begin with the final state of another run are tested by compression.py.
             if "&delamination" not in text or "&initial_state" in text:
                 continue
             text = change_deck(text, next((coarse for name, coarse in COARSE.items() if source.name.startswith(name)),
@@ -42,11 +42,11 @@ class AreasTest(unittest.TestCase):
                 deck.write_text(change_deck(text, settings), encoding="utf-8")
                 run_program([implam(), deck, "--output", folder])
                 with warnings.catch_warnings():
-                    warnings.simplefilter("error", UserWarning)  # Matplotlib's, where a layout has no room
+                    warnings.simplefilter("error", UserWarning)  # Matplotlib warns if a layout does not fit
                     self.hold(next(Path(folder).glob("*_summary.json")))
 
     def hold(self, path: Path) -> None:
-        """Hold titles and cells of the page against the summary."""
+        """Compare titles and cells of the page with the summary."""
         summary, fields = json.loads(path.read_text(encoding="utf-8")), path.with_name(
             path.name.replace("_summary.json", ".h5"))
         titles = self.titles(fields)
@@ -55,7 +55,7 @@ class AreasTest(unittest.TestCase):
         expected.append(f"all interfaces: projected area {1e6 * summary['projected_area']:.4g} mm²")
         for title in expected:
             self.assertIn(title, titles)
-        with mock.patch.object(Figure, "savefig"):  # figures are laid out without being drawn: the page's text is read
+        with mock.patch.object(Figure, "savefig"):  # only the text of the page is tested: figures are not drawn
             code, printed = run_quietly(report.main, path)
         self.assertEqual(code, 0, printed)
         page = Path(printed.strip()).read_text(encoding="utf-8")

@@ -6,10 +6,10 @@ from implam_post.reference.indentation import IndentationLaw
 
 
 class IndentationTest(unittest.TestCase):
-    """Loading, unloading, reversal, separation, reloading and the dent."""
+    """Loading, unloading, reversal, separation, reloading and permanent indentation."""
 
     def test_course_of_tan_suns_law(self) -> None:
-        """Each branch follows its formula and they join without a jump."""
+        """Each branch has its formula, and the force is continuous."""
         law = IndentationLaw(8.0, slope=0.1, critical=0.5)
         law.commit(1.5)
         self.assertAlmostEqual(law.permanent, 0.1, delta=1e-15)
@@ -26,7 +26,7 @@ class IndentationTest(unittest.TestCase):
         self.assertAlmostEqual(law.force(1.0), 8.0 * 2.0**1.5 * (0.85 / 1.85)**2.5, delta=1e-12)
 
     def test_dents(self) -> None:
-        """No dent below the critical indentation; Yang and Sun's formula above it."""
+        """No permanent indentation below the critical one; Yang and Sun's formula above it."""
         law = IndentationLaw(1.0, critical=0.5, dent="yang_sun")
         law.commit(0.5)
         self.assertEqual(law.permanent, 0.0)

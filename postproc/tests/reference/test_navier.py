@@ -1,4 +1,4 @@
-"""Tests of Navier's plates against published or independently calculated figures."""
+"""Tests of Navier's solution against published or independently computed values."""
 
 import unittest
 
@@ -9,7 +9,7 @@ from implam_post.reference.navier import Plate, frequencies, sinusoidal_deflecti
 
 
 def square(angles: list[float], slenderness: float, correction: str = "5/6", **moduli: float) -> Plate:
-    """Return a unit square of plies of equal thickness, E2 = 1 unless `moduli` say otherwise."""
+    """Return a unit square with plies of equal thickness; E2 = 1 unless it is in `moduli`."""
     data = {"density": 1.0, "e1": 25.0, "e2": 1.0, "g12": 0.5, "g13": 0.5, "g23": 0.2, "nu12": 0.25} | moduli
     thickness = 1 / slenderness / len(angles)
     return Plate(section_of([Ply(Material(**data), angle, thickness) for angle in angles], correction), (1.0, 1.0))
@@ -42,21 +42,21 @@ class NavierTest(unittest.TestCase):
             self.assertAlmostEqual(frequencies(plate, m, n)[0] / np.sqrt(shear), expected, delta=6e-6)
 
     def test_compliance_is_the_sum_over_the_modes(self) -> None:
-        """The three modes of a pair together give its static solution."""
+        """The static solution of a pair is the sum over its three modes."""
         plate = square([0, 90, 0], 10)
         m, n = np.array([1, 3, 21]), np.array([1, 5, 7])
         frequency, deflection = plate.modes(m, n)
         np.testing.assert_allclose(np.sum((deflection / frequency)**2, axis=1), plate.compliance(m, n), rtol=1e-11)
 
     def test_energy_of_any_plies(self) -> None:
-        """Three unlike plies at odd angles: the figures of the solver's unit test, which a third program gave."""
+        """Three different plies at general angles: the values in the unit test of the solver, from a third program."""
         pagano = Material(1.0, 25.0, 1.0, 0.5, 0.5, 0.2, 0.25)
         plies = [Ply(pagano, 30, 0.1), Ply(pagano, -60, 0.25), Ply(Material(1.0, 10, 2, 0.7, 0.6, 0.3, 0.3), 10, 0.15)]
         expected = [[0.128208435644, -0.029794813661], [-0.029794813661, 0.141398392483]]
         np.testing.assert_allclose(section_of(plies, "energy").s, expected, rtol=1e-10)
 
     def test_natural_shear_correction(self) -> None:
-        """Equilibrium where shear moduli differ more than tenfold in one direction of the plate, as in the solver."""
+        """Shear stiffness from equilibrium if shear moduli in a direction differ by more than 10, as in the solver."""
         skin = Material(1.0, 70.0, 70.0, 5.0, 4.5, 4.5, 0.05)
         for moduli, angle, expected in (((0.03, 0.03), 0, "energy"), ((1.0, 0.449), 0, "energy"),
                                         ((0.449, 1.0), 90, "energy"), ((0.46, 0.46), 0, "5/6")):

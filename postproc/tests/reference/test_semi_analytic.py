@@ -1,4 +1,4 @@
-"""Tests of the semi-analytic impact against figures calculated independently and against closed forms."""
+"""Tests of the semi-analytic impact against independently computed values and closed forms."""
 
 import unittest
 
@@ -25,10 +25,10 @@ MICROSECOND = 1e-6
 
 
 class KarasTest(unittest.TestCase):
-    """Steel on steel; tolerances are the rounding of the figures, and a tenth of a microsecond for contact times."""
+    """Steel on steel; tolerances are the rounding of the values, and 0.1 microseconds for contact times."""
 
     def test_patches(self) -> None:
-        """Peak force and its time, release and rebound at three sizes of the patch."""
+        """Peak force and its time, end of contact and rebound for three sizes of the patch."""
         for patch, force, time, release, velocity in (("4", 1337.76, 33.30, 75.0, 0.65748),
                                                       ("5", 1343.24, 33.19, 74.7, 0.65694),
                                                       ("10", 1369.20, 32.79, 73.6, 0.65747)):
@@ -41,17 +41,17 @@ class KarasTest(unittest.TestCase):
                 self.assertAlmostEqual(rebound_velocity(history), -velocity, delta=6e-6)
 
     def test_course_of_the_force(self) -> None:
-        """Every 10 microseconds at a patch of 0.8 mm; the figures themselves differ by 0.3 N from convergence."""
+        """Forces every 10 microseconds with a patch of 0.8 mm; the values differ by 0.3 N from the converged ones."""
         history = semi_analytic(deck(KARAS, ("5.0d-3", "0.8d-3")))
         found = [history.at("force", 10 * MICROSECOND * number) for number in range(1, 9)]
         np.testing.assert_allclose(found, [418.3, 961.9, 1281.2, 1248.3, 927.6, 491.8, 120.6, 0], atol=0.4)
 
 
 class SunChenTest(unittest.TestCase):
-    """The laminate that is struck twice."""
+    """The laminate with two contacts."""
 
     def check(self, history: History, contacts: tuple, second: tuple, deflection: tuple, velocity: float) -> None:
-        """Compare with figures in newtons, microseconds, millimetres and metres a second, to their rounding."""
+        """Compare with values in newtons, microseconds, millimetres and metres per second, to their rounding."""
         first = peak(history, "force")
         self.assertAlmostEqual(first.value, 298.87, delta=0.006)
         self.assertAlmostEqual(first.time / MICROSECOND, 39.9, delta=0.05)
@@ -64,7 +64,7 @@ class SunChenTest(unittest.TestCase):
         self.assertAlmostEqual(history["impactor_velocity"][-1], velocity, delta=6e-5)
 
     def test_elastic(self) -> None:
-        """Hertz both ways."""
+        """Hertz's law in loading and unloading."""
         self.check(semi_analytic(deck(SUN_CHEN)), (0, 220.2, 344.0, 415.0), (83.1, 380.0), (0.4265, 850), -0.5178)
 
     def test_tan_sun(self) -> None:
@@ -73,7 +73,7 @@ class SunChenTest(unittest.TestCase):
         self.check(history, (0, 247.6, 315.0, 412.3), (90.8, 375.3), (0.4312, 852), -0.6134)
 
     def test_convergence(self) -> None:
-        """Half the step and twice the modes change force, deflection and velocity by less than 1e-5."""
+        """Half the step length and twice the modes change force, deflection and velocity by less than 1e-5."""
         case = impact_case(deck(SUN_CHEN, TAN_SUN))
         usual = respond(case)
         for other in (respond(case, step=case.default_step() / 2), respond(case, modes=2 * case.default_modes()[0])):
@@ -86,7 +86,7 @@ class ClosedFormTest(unittest.TestCase):
     """Parts of the method with known solutions."""
 
     def test_rigid_plate(self) -> None:
-        """On a plate that does not move: Hertz' peak and contact time, rebound at the speed of approach."""
+        """On a rigid plate: Hertz's peak force and contact time, rebound with the initial velocity."""
         history = semi_analytic(deck(KARAS, ("E=206.8e9", "E=206.8e17"), ("density=7833", "density=7833e6")))
         expected = 1.49595e10**0.4 * (1.25 * 0.0328108)**0.6
         max_indentation = (expected / 1.49595e10)**(2 / 3)
@@ -95,7 +95,7 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(rebound_velocity(history), -1, delta=1e-5)
 
     def test_gravity(self) -> None:
-        """A ball too slow to matter sinks in under gravity only until plate and indentation carry its weight."""
+        """A sphere with nearly no velocity indents under gravity until plate and contact carry its weight."""
         history = semi_analytic(deck(KARAS, ("velocity=1", "velocity=0 gravity=9.81"), ("120e-6", "20e-3")))
         weight = 0.0328108 * 9.81
         self.assertAlmostEqual(np.mean(history["force"]) / weight, 1, delta=0.05)
@@ -105,7 +105,7 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(impulse, momentum, delta=1e-12)
 
     def test_refused(self) -> None:
-        """No solution stands for a plate struck beside its middle, with a line, or with a state of its own."""
+        """Eccentric impact, lines and initial states are refused."""
         for change in ("&impactor at=0.02, 0 ", "&line at=0 displacement=0 /\n&impactor ",
                        "&initial_state from='a_restart.h5' /\n&impactor "):
             with self.subTest(change):
@@ -114,14 +114,14 @@ class ClosedFormTest(unittest.TestCase):
         impact_case(deck(KARAS, ("&impactor ", "&impactor at=0, 0 ")))
 
     def test_what_it_does_not_model(self) -> None:
-        """Large deflection and a contact that spreads are named."""
+        """Notes on large deflection and contact of a sphere."""
         self.assertEqual(notes(deck(KARAS)), [])
         found = notes(deck(KARAS, ("kinematics='linear'", ""), ("&impactor ", "&impactor contact_area='sphere' ")))
         self.assertEqual(len(found), 2)
         self.assertIn("sphere", found[1])
 
     def test_one_pair_of_half_waves(self) -> None:
-        """The kernel's response to a steadily growing force is that of three oscillators."""
+        """The response to a linearly growing force is that of three oscillators."""
         case = impact_case(deck(KARAS))
         plate = case.plate
         step, count = 2e-6, 200
@@ -138,7 +138,7 @@ class ClosedFormTest(unittest.TestCase):
             np.testing.assert_allclose(fftconvolve(kernel, time)[:len(time)], expected, atol=1e-12 * np.max(expected))
 
     def test_static_limit(self) -> None:
-        """All modes together, a force put on slowly: the compliance of the patch by plain summation."""
+        """All modes under a slowly applied force: the compliance of the patch by direct summation."""
         case = impact_case(deck(KARAS, ("120e-6", "0.1")))
         patch, _ = _kernels(case, 20, 5e-6, 20000)
         force = np.linspace(0, 1, 20001)**2 * (3 - 2 * np.linspace(0, 1, 20001))
@@ -148,7 +148,7 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(fftconvolve(patch, force)[len(force) - 1] / expected, 1, delta=1e-5)
 
     def test_sum_of_sines(self) -> None:
-        """The split into coarse and fine angles is exact."""
+        """The split into coarse and fine angles is exact to round-off."""
         generator = np.random.default_rng(1)
         amplitude, frequency = generator.random((2, 9000)), 1e6 * generator.random(9000)
         found = _sum_of_sines(amplitude, frequency, 1e-6, 30)
@@ -156,7 +156,7 @@ class ClosedFormTest(unittest.TestCase):
         np.testing.assert_allclose(found, expected, atol=1e-9)
 
     def test_balance_of_energy(self) -> None:
-        """Elastic indentation keeps nothing: what the ball loses is the work done on the plate."""
+        """Elastic indentation dissipates nothing: the energy lost by the sphere is the work on the plate."""
         history = semi_analytic(deck(SUN_CHEN))
         force, deflection = history["force"], history["patch_deflection"]
         work = np.sum((force[1:] + force[:-1]) / 2 * np.diff(deflection))

@@ -1,4 +1,4 @@
-"""Tests of regression runs with the real program: what passes, what fails, what is accepted and what CI is reported."""
+"""Tests of regression runs with the program: passed and failed runs, acceptance of values, JUnit XML."""
 
 import shutil
 import tempfile
@@ -61,7 +61,7 @@ class RegressTest(unittest.TestCase):
         self.expect.write_text(EXPECT.format(**{"slow": SLOW, "fast": FAST, **values}))
 
     def test_pass_and_fail(self) -> None:
-        """What is expected passes, a value changed by one percent fails; JUnit names it."""
+        """Expected values pass, a value changed by 1 % fails, also in JUnit XML."""
         self.write()
         code, text = self.regress("--junit", self.folder / "junit.xml")
         self.assertEqual(code, 1, text)
@@ -82,7 +82,7 @@ class RegressTest(unittest.TestCase):
         self.assertRegex(failure.text, "peak_force .* FAIL")
 
     def test_runs_that_fail_are_errors(self) -> None:
-        """A faulty deck, a run without convergence, one that takes too long and one of which nothing is expected."""
+        """A faulty deck, no convergence, a run beyond the time limit and a deck without expectations fail."""
         self.write()
         text = EXPECT.format(slow=SLOW, fast=FAST).replace("impactor%velocity=3", "impactor%mass=-1")
         self.expect.write_text(text.replace('name = "slow"', 'name = "slow"\nset = ["solver%max_iterations=1", '
@@ -91,7 +91,7 @@ class RegressTest(unittest.TestCase):
         code, text = self.regress("--junit", self.folder / "junit.xml")
         self.assertEqual(code, 1, text)
         for expected in ("slow +the run ended with 3: ", "fast +the run ended with 2: .*mass = -1",
-                     "other +nothing is expected"):
+                     "other +the deck has no expected values"):
             self.assertRegex(text, expected)
         suite = ElementTree.parse(self.folder / "junit.xml").getroot().find("testsuite")
         self.assertEqual([suite.get(name) for name in ("tests", "failures", "errors")], ["3", "0", "3"])
@@ -101,7 +101,7 @@ class RegressTest(unittest.TestCase):
         self.assertEqual((code, text.count("the run took longer than 0.01 s. FAIL")), (1, 2), text)
 
     def test_accept_changes_what_differs(self) -> None:
-        """The value that is not met is replaced, its tolerance, comments and other values stay; then all passes."""
+        """A value that is not met is replaced; its tolerance, comments and other values are kept; then all pass."""
         self.write(fast=800)
         text = self.expect.read_text().replace('[[variant.expect]]\nquantity = "rms_force"\nagainst = "fast.csv"\n'
                                                'value = 0\nabsolute = 1e-12\n', "")
@@ -115,7 +115,7 @@ class RegressTest(unittest.TestCase):
         self.assertEqual(self.regress()[0], 0)
 
     def test_accept_writes_new_files(self) -> None:
-        """A deck of which nothing was expected gets a file that passes, and fails for another deck."""
+        """A deck without expectations gets a file that passes, and fails for another deck."""
         shutil.copy(SMALL / "static_damage.nml", self.decks)
         code, said = self.regress("--accept")
         self.assertEqual(code, 0, said)
@@ -134,21 +134,21 @@ class RegressTest(unittest.TestCase):
         self.assertRegex(said, "ply_damage +peak_force .* FAIL")
 
     def test_what_cannot_be_accepted(self) -> None:
-        """Variants that differ in what is expected of both, entries in one line: nothing is written."""
+        """Nothing is written if variants differ in a common expectation, or if entries are on one line."""
         entry = {"quantity": "peak_force", "value": 800, "relative": 1e-3}
         inline = "{" + ", ".join(f'{key} = "{value}"' if key == "quantity" else f"{key} = {value}"
                                  for key, value in entry.items()) + "}"
         variants = '[[variant]]\nname = "slow"\n[[variant]]\nname = "fast"\nset = ["impactor%velocity=3"]\n'
         both = '[[expect]]\nquantity = "peak_force"\nvalue = 800\nrelative = 1e-3\n' + variants
         for text, expected in ((both, r"differs between the variants"),
-                               (f"expect = [{inline}]", r"a line for each key")):
+                               (f"expect = [{inline}]", r"each key on its own line")):
             self.expect.write_text(text)
             code, said = self.regress("--accept")
             self.assertEqual((code, self.expect.read_text()), (1, text), said)
             self.assertRegex(said, f"nothing is accepted: .*{expected}")
 
     def test_compare_takes_the_same_file(self) -> None:
-        """A history of a variant by its name; without it the file's variants are reported."""
+        """A history of a named variant; without the name the message lists the variants."""
         self.write()
         self.regress()
         history = self.runs / "ply_damage" / "slow" / "ply_damage_history.csv"
@@ -159,7 +159,7 @@ class RegressTest(unittest.TestCase):
         self.assertIn("slow, fast", text)
 
     def test_nothing_to_run(self) -> None:
-        """An empty folder and faulty expectations are errors of files."""
+        """An empty folder and invalid expectations are errors of files."""
         entry = "expect]]\nquantity = 'peak_force'\nvalue = 1\nrelative = 1\n"
         for text in ("", "[[variant]]\nname = 'a/b'", "decks = 'x'", "expect = 3",
                      f"[[{entry}[[variant]]\nname = 'a'\nset = ['velocity=3']",
@@ -173,7 +173,7 @@ class RegressTest(unittest.TestCase):
 
 
 class HelpTest(unittest.TestCase):
-    """Both commands name the format they share."""
+    """The help of both commands has the format."""
 
     def test_help(self) -> None:
         """The help names every key of an entry."""

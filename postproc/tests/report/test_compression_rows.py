@@ -1,4 +1,4 @@
-"""Tests of the section of a page on the strength in compression."""
+"""Tests of the section on compressive strength of a page."""
 
 import unittest
 from types import SimpleNamespace
@@ -27,27 +27,27 @@ class CompressionRowsTest(unittest.TestCase):
         return {label: value for label, value, _ in compression_rows(run, PictureStyle("SI"), undamaged)}
 
     def test_rows(self) -> None:
-        """Strength, its share, and what failed."""
+        """Strength, retained fraction, and failures."""
         rows = self._rows(_SUMMARY, 4e8)
-        self.assertEqual(rows["share of the undamaged plate's"], "0.500")
+        self.assertEqual(rows["retained fraction of the undamaged strength"], "0.500")
         self.assertEqual(rows["failure code of ASTM D7137"], "LDM")
-        self.assertEqual(rows["plies whose fibres broke across the width"], "3")
+        self.assertEqual(rows["plies with fibre failure across the width"], "3")
         self.assertEqual(rows["interfaces delaminated across the width"], "none")
-        self.assertEqual(rows["largest kinetic energy over the work"], "1 %")
+        self.assertEqual(rows["largest kinetic energy over external work"], "1 %")
         self.assertEqual(rows["effective modulus"], "-")
 
     def test_without_compression_or_failure(self) -> None:
-        """There is no section without lines, and no failure of a plate that carries the load."""
+        """No section without a compressive &line, and no failure rows for a plate that has not failed."""
         self.assertEqual(self._rows({}), {})
         rows = self._rows(_SUMMARY | {"has_failed": False, "failure_code": None})
         self.assertNotIn("failure code of ASTM D7137", rows)
-        self.assertNotIn("share of the undamaged plate's", rows)
+        self.assertNotIn("retained fraction of the undamaged strength", rows)
 
     def test_legend(self) -> None:
-        """The picture has strength, share, code and bending in its legend, and the undamaged plate's strength."""
+        """The legend has strength, retained fraction, code and bending, and the strength of the undamaged plate."""
         style = PictureStyle("SI")
         remark = remark_of(_SUMMARY, style, 4e8)
-        self.assertEqual(remark, "200 MPa, 50 % of the undamaged plate's, LDM, bending -4 %")
+        self.assertEqual(remark, "200 MPa, 50 % of the undamaged plate, LDM, bending -4 %")
         axes = compression_figure({"": _HISTORY}, style, {"": remark}, 4e8).axes[0]
         self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], [remark, "undamaged plate"])
         self.assertEqual(remark_of(_SUMMARY | {"has_failed": False}, style), "200 MPa, not failed, bending -4 %")

@@ -1,4 +1,4 @@
-"""Tests of the page of a run: it is whole, needs no other file, and says what the summary says."""
+"""Tests of the page of a run: it is complete and self-contained, and has the figures of the summary."""
 
 import base64
 import json
@@ -34,7 +34,7 @@ PRESSED = """
 
 
 class Page(HTMLParser):
-    """A page taken apart: cells of tables, pictures, what it refers to, and its text."""
+    """A parsed page: cells of tables, pictures, references, and text."""
 
     def __init__(self, text: str) -> None:
         """Read the page."""
@@ -48,7 +48,7 @@ class Page(HTMLParser):
         self.close()
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
-        """Note what a tag brings."""
+        """Store the content of a tag."""
         given = dict(attributes)
         if tag not in _WITHOUT_END:
             self.open.append(tag)
@@ -61,7 +61,7 @@ class Page(HTMLParser):
         self.references += [value for name, value in given.items() if name in ("src", "href", "srcset")]
 
     def handle_endtag(self, tag: str) -> None:
-        """Hold the tag against the one that is open."""
+        """Compare the tag with the open one."""
         assert self.open.pop() == tag, tag
 
     def handle_data(self, data: str) -> None:
@@ -87,7 +87,7 @@ class ReportTest(unittest.TestCase):
         return self.folder / f"{deck}_summary.json"
 
     def page(self, summary: Path) -> Page:
-        """Write the page of a summary and take it apart."""
+        """Write and parse the page of a summary."""
         code, text = run_quietly(report.main, summary)
         self.assertEqual(code, 0, text)
         page = Page(Path(text.strip()).read_text(encoding="utf-8"))
@@ -99,7 +99,7 @@ class ReportTest(unittest.TestCase):
         return page
 
     def test_the_page_says_what_the_summary_says(self) -> None:
-        """A front and failing plies, with fields: every figure, curve and map."""
+        """A run with a front and ply failures, with fields: all figures, curves and maps."""
         path = self.solve("damage", "&output fields_every=40e-6 /\n! <b> & \"quotes\"\n")
         summary, page = json.loads(path.read_text(encoding="utf-8")), self.page(path)
         for key, shown in (("peak_force", "{:.4g} kN"), ("largest_deflection", "{:.4g} mm"),
@@ -112,9 +112,9 @@ class ReportTest(unittest.TestCase):
         self.assertIsNone(summary["energy_absorbed"])
         self.assertIn("contact has not ended", page.cells)
         self.assertIn("algorithmic dissipation", page.cells)
-        self.assertIn("threshold: force where its curve first drops by damage, behind a low pass of 6 kHz", page.cells)
+        self.assertIn("threshold force: first drop by damage, after a low-pass filter of 6 kHz", page.cells)
         self.assertIn("largest diameter of the projected damage", page.cells)
-        self.assertIn("depth of the dent", page.cells)
+        self.assertIn("dent depth", page.cells)
         self.assertIn("delamination below ply 2", page.cells)
         growth = summary["interfaces"][0]["first_growth"]
         self.assertIn(f"{growth['force'] / 1e3:.4g} kN at {1e3 * growth['at']:.4g} ms", page.cells)
@@ -124,11 +124,11 @@ class ReportTest(unittest.TestCase):
             "plate in plan", "lay-up from the struck face", "contact force against time",
             "contact force against displacement of the impactor", "contact force against deflection",
             "deflection against time", "delaminated area against time", "energies against time",
-            "delamination of each interface", "all interfaces seen through the plate", "failures of each ply"})
+            "delamination of each interface", "projected delamination of all interfaces", "failures of each ply"})
         self.assertEqual([cell for cell in page.cells if cell in ("90.0", "90")], ["90"])
 
     def test_warnings_and_static_runs(self) -> None:
-        """Warnings are listed as they are; without an impactor there is no force, without fields no map."""
+        """Warnings are listed; without an impactor there is no force, without fields no map."""
         path = self.solve("cohesive")
         warnings = json.loads(path.read_text(encoding="utf-8"))["warnings"]
         page = self.page(path)
@@ -143,7 +143,7 @@ class ReportTest(unittest.TestCase):
         with h5py.File(self.folder / "cohesive.h5", "w") as file:
             file["part"] = np.bytes_("whole")
             file.create_group("meshes"), file.create_group("times")
-        self.assertIn("cohesive.h5 holds no time yet.", self.page(path).text)
+        self.assertIn("cohesive.h5 has no times yet.", self.page(path).text)
         page = self.page(self.solve("static_damage"))
         self.assertIn("load factor 1", page.text)
         self.assertNotIn("peak force", page.cells)
@@ -151,7 +151,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn("energies against load factor", page.pictures)
 
     def test_impactor_of_given_travel(self) -> None:
-        """In load steps the peak force is at a load factor, which the page gives without a unit."""
+        """For load steps the time of the peak force is a load factor without unit."""
         (self.folder / "pressed.nml").write_text(PRESSED, encoding="utf-8")
         run = run_deck(self.folder / "pressed.nml", output=self.folder / "pressed", program=str(implam())).wait(100)
         self.assertEqual(run.summary["peak_force_at"], 1)
@@ -161,7 +161,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn("contact force against load factor", page.pictures)
 
     def test_folders_and_faults(self) -> None:
-        """All summaries of a folder; a sentence for what is none."""
+        """All summaries of a folder; other files are refused."""
         self.solve("damage")
         self.solve("static_damage")
         output = self.folder / "pages"
@@ -175,7 +175,7 @@ class ReportTest(unittest.TestCase):
         for path, sentence in ((self.folder / "older_summary.json", "lacks 'plate_size'"),
                                (self.folder / "no_summary.json", "is not a summary"),
                                (self.folder / "damage.h5", "is not NAME_summary.json"),
-                               (self.folder / "missing_summary.json", "cannot be read"), (output, "holds no summary")):
+                               (self.folder / "missing_summary.json", "cannot be read"), (output, "has no summary")):
             code, text = run_quietly(report.main, path)
             self.assertEqual((code, len(text.splitlines())), (4, 1), text)
             self.assertIn(sentence, text)

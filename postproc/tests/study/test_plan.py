@@ -1,4 +1,4 @@
-"""Tests of the file of a study: problems, methods, references, and what is refused."""
+"""Tests of the file of a study: problems, methods, references, and errors."""
 
 import tempfile
 import unittest
@@ -38,7 +38,7 @@ class StudyPlanTest(unittest.TestCase):
         return read_study(path)
 
     def test_trials_and_references(self) -> None:
-        """Every problem by every method, repeats last, references first; derived steps depend on problem and method."""
+        """All problems with all methods, references first, repeats last; derived steps depend on problem and method."""
         study = self.read('repeats = 2\n[problems]\ndeck = ["karas.nml", "sun_chen.nml"]\ncoarse = [8e-6, 16e-6]\n'
                           + METHODS + REFERENCE)
         self.assertEqual([problem.name for problem in study.problems], ["karas", "sun_chen"])
@@ -58,7 +58,7 @@ class StudyPlanTest(unittest.TestCase):
         self.assertEqual(study.trials[0].runs[0].deck, study.trials[0].runs[1].deck)
 
     def test_references_of_problems(self) -> None:
-        """Given figures, a history beside the file, or the run of [reference]; problems of one deck have names."""
+        """References are semi-analytic, a history, or the run of [reference]; names of problems are unique."""
         (self.folder / "measured.csv").write_text("time,force\n0,0\n1,1\n")
         study = self.read('deck = "karas.nml"\n[problems]\n"impactor.velocity" = [1.0, 2.0, 3.0]\n'
                           f'reference = ["{SEMI_ANALYTIC}", "measured.csv", ""]\n'
@@ -70,7 +70,7 @@ class StudyPlanTest(unittest.TestCase):
         self.assertIn("velocity=3.0", third.deck)
 
     def test_studies_of_the_manual(self) -> None:
-        """Their files can be read, and every deck of theirs is another one."""
+        """The files can be read, and all decks are different."""
         paths = sorted((ROOT / "tests" / "studies" / "plans").glob("*.toml"))
         self.assertGreaterEqual(len(paths), 6)
         for path in paths:
@@ -78,20 +78,20 @@ class StudyPlanTest(unittest.TestCase):
             self.assertEqual(len(set(first)), len(first), path)
 
     def test_faults(self) -> None:
-        """What cannot be meant is reported with the name of the file."""
+        """Errors are reported with the name of the file."""
         grid = '[grid]\n"time.step" = [1e-6]\n'
         for text, expected in (
-                ('deck = "karas.nml"\n' + grid, "a reference is missing"),
-                ('deck = "karas.nml"\n' + grid + "[reference]\npart = 2\n", "'part' is neither a key"),
+                ('deck = "karas.nml"\n' + grid, "a reference is required"),
+                ('deck = "karas.nml"\n' + grid + "[reference]\npart = 2\n", "'part' is not a key"),
                 ('deck = "karas.nml"\n[problems]\nreference = "none.csv"\n' + grid, "there is no history"),
-                ('[problems]\ndeck = ["karas.nml", "sun_chen.nml"]\n"time.end" = [1]\n' + grid, "lists of one length"),
-                ('[problems]\ndeck = ["karas.nml", "karas.nml"]\nreference = "semi-analytic"\n' + grid, "several are"),
-                ('deck = "karas.nml"\nrepeats = 0\n' + grid, "repeats is an integer"),
-                ('deck = "karas.nml"\nerror = "force"\n' + grid, "error is one of"),
-                ('deck = "karas.nml"\nrepeat = 2\n' + grid, "'repeat' is none of"),
-                ('deck = "karas.nml"\n' + grid + '[figures]\nforce = "mean"\n', r"\[figures\] gives"),
+                ('[problems]\ndeck = ["karas.nml", "sun_chen.nml"]\n"time.end" = [1]\n' + grid, "of equal length"),
+                ('[problems]\ndeck = ["karas.nml", "karas.nml"]\nreference = "semi-analytic"\n' + grid, "several have"),
+                ('deck = "karas.nml"\nrepeats = 0\n' + grid, "repeats must be an integer"),
+                ('deck = "karas.nml"\nerror = "force"\n' + grid, "error must be one of"),
+                ('deck = "karas.nml"\nrepeat = 2\n' + grid, "'repeat' is not one of"),
+                ('deck = "karas.nml"\n' + grid + '[figures]\nforce = "mean"\n', r"\[figures\] must give"),
                 ('deck = "karas.nml"\n[grid]\ninterval = [1]\n' + REFERENCE.replace("part", '"time.step"'),
                  "no formula of"),
-                ('deck = "karas.nml"\n[reference]\n"time.step" = 1e-7\n', "nothing is swept")):
+                ('deck = "karas.nml"\n[reference]\n"time.step" = 1e-7\n', "the sweep has no values")):
             with self.subTest(expected), self.assertRaisesRegex(DeckError, f"study.toml: .*{expected}"):
                 self.read(text)

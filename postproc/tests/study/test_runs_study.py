@@ -1,4 +1,4 @@
-"""Tests of studies with real runs of the program: errors, costs, failures, and a study that is killed."""
+"""Tests of studies with runs of the program: errors, costs, failures, and a killed study."""
 
 import csv
 import json
@@ -32,7 +32,7 @@ PATIENCE = 120  # seconds
 
 
 class StudyTest(unittest.TestCase):
-    """Each test has a folder with Karas' deck, coarse; the program that is run notes how it was called."""
+    """Each test has a folder with Karas' deck on a coarse mesh; a wrapper of the program logs its calls."""
 
     def setUp(self) -> None:
         """Make the folder."""
@@ -60,7 +60,7 @@ class StudyTest(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def histories(self) -> dict[str, History]:
-        """Return the histories of the first runs by step and integrator, as their decks say."""
+        """Return the histories of the first runs by step and integrator of their decks."""
         found = {}
         for deck in sorted(self.output.glob("cases/*/karas.nml")):
             text = deck.read_text()
@@ -70,7 +70,7 @@ class StudyTest(unittest.TestCase):
         return found
 
     def test_errors_costs_and_front(self) -> None:
-        """Errors are those of the histories, fall with the step; costs are counted; nothing is run twice."""
+        """Errors are those of the histories and decrease with the step; costs are given; no run is repeated."""
         arguments = self.arguments(STEPS, "--format", "svg")
         code, text = run_quietly(study.main, *arguments)
         self.assertEqual(code, 0, text)
@@ -87,7 +87,7 @@ class StudyTest(unittest.TestCase):
             self.assertGreaterEqual(float(row["cpu_time_median"]), float(row["cpu_time_min"]))
             self.assertEqual(row["repeats"], "2")
         for coarse, fine in ((rows[0], rows[1]), (rows[2], rows[3])):
-            # Both integrators are of second order: half the step, a quarter of the error.
+            # Both integrators are of second order: half the step length gives a quarter of the error.
             ratio = float(coarse["force_history_error"]) / float(fine["force_history_error"])
             self.assertTrue(2.5 < ratio < 6, ratio)
         self.assertEqual({row["front"] for row in rows} - {"0"}, {"1"})
@@ -96,7 +96,7 @@ class StudyTest(unittest.TestCase):
         self.assertEqual((run_quietly(study.main, *arguments)[0], self.runs()), (0, 9))
 
     def test_semi_analytic_and_measured(self) -> None:
-        """Karas' solution is 1343.24 N at 33.19 us; against a history of 1000 N the same run is a third off."""
+        """Karas' solution is 1343.24 N at 33.19 us; against a history of 1000 N the error is a third."""
         (self.folder / "measured.csv").write_text("time,force\n0,0\n30e-6,1000\n60e-6,0\n")
         code, text = run_quietly(study.main, *self.arguments("""
             deck = "karas.nml"
@@ -109,7 +109,7 @@ class StudyTest(unittest.TestCase):
             """))
         self.assertEqual(code, 0, text)
         analytical, measured = self.table()
-        self.assertEqual(self.runs(), 1)  # both problems are one deck
+        self.assertEqual(self.runs(), 1)  # both problems have the same deck
         peak = float(analytical["peak_force"])
         self.assertAlmostEqual(peak / (1 + float(analytical["peak_force_error"])), 1343.24, delta=0.3)
         self.assertAlmostEqual(float(analytical["peak_force_time"]) / (1 + float(analytical["peak_force_time_error"])),
@@ -119,7 +119,7 @@ class StudyTest(unittest.TestCase):
         self.assertIn("Geometric means over 2 problems", text)
 
     def test_failures_are_collected(self) -> None:
-        """A method without convergence has a row that says so, the others have theirs."""
+        """A method without convergence has a row with the reason, other rows are complete."""
         shutil.copy(ROOT / "input" / "small" / "ply_damage.nml", self.folder)
         code, text = run_quietly(study.main, *self.arguments("""
             deck = "ply_damage.nml"
@@ -137,17 +137,17 @@ class StudyTest(unittest.TestCase):
         self.assertLess(abs(float(fine["peak_force_error"])), 1e-3)
 
     def test_results_that_cannot_be_read(self) -> None:
-        """A trial whose history is damaged is counted, and the study does not end as if all were well."""
+        """A trial with a damaged history is counted, and the exit code is not 0."""
         arguments = self.arguments(STEPS)
         self.assertEqual(run_quietly(study.main, *arguments)[0], 0)
         (self.output / self.table()[0]["folder"] / "karas_history.csv").write_text("time,force\n0,zero\n")
         code, text = run_quietly(study.main, *arguments, "--table")
         self.assertEqual(code, 1, text)
-        self.assertIn("1 of 4 trials cannot be evaluated, as the notes say.\n", text)
+        self.assertIn("1 of 4 trials cannot be evaluated; see the notes.\n", text)
         self.assertEqual([row["peak_force"] == "" for row in self.table()], [True, False, False, False])
 
     def test_killed(self) -> None:
-        """A study that was killed goes on: what had ended is not run again."""
+        """A killed study continues: completed runs are not repeated."""
         with start("study", *self.arguments(STEPS)) as process:
             latest = time.monotonic() + PATIENCE
             while len(self.ended()) < 3 and time.monotonic() < latest:

@@ -1,4 +1,4 @@
-"""Tests of sweeps with a second deck: what it takes from the first one, its figures, and the picture."""
+"""Tests of sweeps with a second deck: groups of the first deck in it, its figures, and the picture."""
 
 import contextlib
 import io
@@ -43,7 +43,7 @@ then = "pressed.nml"
 
 
 class ChainTest(unittest.TestCase):
-    """A sweep of an impact and of the compression behind it."""
+    """A sweep of an impact and the compression after it."""
 
     def setUp(self) -> None:
         """Write the files."""
@@ -55,7 +55,7 @@ class ChainTest(unittest.TestCase):
         self.sweep = Sweep(read_plan(self.folder / "sweep.toml"), ["implam"])
 
     def _end(self, sweep: Sweep, place: int, summary: dict[str, object]) -> None:
-        """Leave what a run leaves behind."""
+        """Write the results of a run."""
         folder = sweep.folder(sweep.plan.cases[place])
         folder.mkdir(parents=True, exist_ok=True)
         name = "hit" if sweep is self.sweep else "pressed"
@@ -66,7 +66,7 @@ class ChainTest(unittest.TestCase):
         (folder / f"{name}_summary.json").write_text(json.dumps(whole), encoding="utf-8")
 
     def test_second_deck(self) -> None:
-        """It has the material and the mesh of the first, its own lines and end, and begins from the case's end."""
+        """It has material and mesh of the first deck, its own lines and end, and the final state of the case."""
         self._end(self.sweep, 3, {})
         second = following(self.sweep)
         self.assertEqual([case.number for case in second.plan.cases], [4])
@@ -92,7 +92,7 @@ class ChainTest(unittest.TestCase):
         self.assertTrue(np.all(np.isnan(table.columns["residual_strength"][1:])))
 
     def test_damaged_summary(self) -> None:
-        """It is named, whichever run it is of, and the other cases keep their figures."""
+        """The note names it, for first and second runs, and the other cases keep their figures."""
         self._end(self.sweep, 0, {"dent_depth": 1e-4})
         self._end(self.sweep, 1, {"dent_depth": 2e-4})
         second = following(self.sweep)
@@ -115,12 +115,12 @@ class ChainTest(unittest.TestCase):
             self.assertEqual(exit_code(self.sweep, Table()), 75)
 
     def test_groups_are_copied(self) -> None:
-        """All groups of a name are replaced, and comments go with neither."""
+        """All groups of a name are replaced."""
         text = copy_groups("&b x=1 /\n&b x=2 /\n&c y=1 /\n", "&a z=3 /\n&b x=5 /\n", ["b"])
         self.assertEqual(text.replace("\n\n", "\n"), "&a z=3 /\n&b x=1 /\n&b x=2 /\n")
 
     def test_picture(self) -> None:
-        """Runs of one energy are together; without a strength there is no picture."""
+        """Runs of the same energy are grouped; without a strength there is no picture."""
         self.assertEqual([list(rows) for rows in groups(np.array([2.0, 1.0, 2.0000000001]))], [[1], [0, 2]])
         numbers = {"has_failed": ["true", "false", "true"], "impact_energy": [1.0, 2, 2],
                    "dent_depth": [0.0, 1e-4, 2e-4], "projected_area": [0.0, 1e-4, 2e-4]}

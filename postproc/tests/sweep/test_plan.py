@@ -1,4 +1,4 @@
-"""Tests of the cases that the file of a sweep asks for."""
+"""Tests of the cases of the file of a sweep."""
 
 import tempfile
 import unittest
@@ -30,7 +30,7 @@ class PlanTest(unittest.TestCase):
         return [read_namelist(case.deck)[name][0] for case in plan.cases]
 
     def test_grid(self) -> None:
-        """Every combination, the last key fastest; keys may be written without quotes."""
+        """All combinations, the last key changes fastest; keys may be given without quotes."""
         plan = self.plan('[grid]\nimpactor.velocity = [1, 2.5]\n"laminate.angles" = [[0, 90], "10*0"]')
         self.assertEqual([group["velocity"] for group in self.groups(plan, "impactor")], [[1], [1], [2.5], [2.5]])
         self.assertEqual([group["angles"] for group in self.groups(plan, "laminate")], 2 * [[0, 90], 10 * [0]])
@@ -38,7 +38,7 @@ class PlanTest(unittest.TestCase):
         self.assertEqual((plan.output, plan.names), (self.folder / "sweep", ["impactor.velocity", "laminate.angles"]))
 
     def test_tables_are_combined(self) -> None:
-        """Rows of lists side by side, with each row of the grid and each sample."""
+        """Rows of [list] are combined with each row of the grid and each sample."""
         plan = self.plan("""
             [grid]
             "mesh.patch" = [4e-3, 5e-3]
@@ -55,7 +55,7 @@ class PlanTest(unittest.TestCase):
         self.assertEqual(len({case.key for case in plan.cases}), 12)
 
     def test_derived(self) -> None:
-        """Formulas see free names, keys of the case's deck, swept or not, and what is derived before them."""
+        """Formulas may have free names, keys of the deck, swept or not, and values derived by preceding formulas."""
         plan = self.plan("""
             [grid]
             energy = [0.01, 0.02]
@@ -74,37 +74,37 @@ class PlanTest(unittest.TestCase):
         self.assertEqual(plan.derived, ["double", "impactor.velocity", "mesh.patch", "laminate.angles"])
 
     def test_decks_are_swept(self) -> None:
-        """The deck itself may differ from case to case."""
+        """The deck may differ between cases."""
         plan = self.plan('[grid]\ndeck = ["karas.nml", "sun_chen.nml"]\n"impactor.velocity" = [1]', deck="")
         self.assertEqual([case.deck_name for case in plan.cases], ["karas.nml", "sun_chen.nml"])
         self.assertIn("! Karas", plan.cases[0].deck)
 
     def test_keys_distinguish_decks(self) -> None:
-        """A case keeps its folder when others come before it."""
+        """A case keeps its folder if others are inserted before it."""
         short, long = (self.plan(f'[grid]\n"impactor.velocity" = {values}') for values in ("[2]", "[1, 2, 2]"))
         self.assertEqual([case.key for case in long.cases[1:]], 2 * [short.cases[0].key])
         self.assertNotEqual(long.cases[0].key, short.cases[0].key)
 
     def test_faults(self) -> None:
-        """Each fault is one sentence that names the file and what is wrong."""
+        """Each error is one sentence with the name of the file."""
         grid, patch = "[grid]\nenergy = [1]\n", '"mesh.patch" = [1]\n'
-        faults = {"nothing is swept": "", "'grids'": "[grids]\na=1", "Cannot overwrite": grid + "energy=[2]",
+        faults = {"the sweep has no values": "", "'grids'": "[grids]\na=1", "Cannot overwrite": grid + "energy=[2]",
                   "needs a list": '[grid]\n"mesh.patch" = 3', "at least": '[grid]\n"mesh.patch" = []',
-                  "no formula": grid, "neither swept": grid + '[derived]\n"mesh.patch" = "energie"',
-                  "one length": '[list]\n"mesh.patch" = [1]\n"impactor.mass" = [1, 2]',
-                  "both": f"[grid]\n{patch}[list]\n{patch}", "neither a key": '[grid]\n"mesh[0].patch" = [1]',
+                  "no formula": grid, "is not swept": grid + '[derived]\n"mesh.patch" = "energie"',
+                  "equal length": '[list]\n"mesh.patch" = [1]\n"impactor.mass" = [1, 2]',
+                  "is given in": f"[grid]\n{patch}[list]\n{patch}", "not a key": '[grid]\n"mesh[0].patch" = [1]',
                   "is the name of another": '[grid]\ncase = [1]', "a number from 1": "[samples]\nseed = 1",
                   "a distribution": '[samples]\nnumber = 1\n"mesh.patch" = 1',
-                  "cannot stand": "[grid]\nmesh.patch=[nan]",
-                  "as text": grid + '[derived]\n"mesh.patch" = 1', "only\\.": "[grid]\n'mesh[3].patch' = [1]",
-                  "the most": f"[grid]\na={list(range(400))}\nb={list(range(400))}",
+                  "not a valid value": "[grid]\nmesh.patch=[nan]",
+                  "as text": grid + '[derived]\n"mesh.patch" = 1', "only 1 group": "[grid]\n'mesh[3].patch' = [1]",
+                  "at most": f"[grid]\na={list(range(400))}\nb={list(range(400))}",
                   "single number": grid + '[derived]\nmesh.patch = "energy*mesh.elements"', "units": "units = 'feet'",
-                  "is a table": "grid = 3",
-                  "patch' stands in .grid. twice": f"[grid]\n{patch}mesh.patch = [2]",
-                  "1..patch' stands in .grid. twice": f'[grid]\n{patch}"mesh[1].patch" = [2]',
+                  "must be a table": "grid = 3",
+                  "patch' is given twice in .grid.": f"[grid]\n{patch}mesh.patch = [2]",
+                  "1..patch' is given twice in .grid.": f'[grid]\n{patch}"mesh[1].patch" = [2]',
                   "text, and units": "output = 3"}
         for expected, text in faults.items():
             with self.subTest(expected), self.assertRaisesRegex(DeckError, f"^{self.folder}/sweep.toml: .*{expected}"):
                 self.plan(text)
-        with self.assertRaisesRegex(DeckError, "deck, the deck"):
+        with self.assertRaisesRegex(DeckError, "deck, the base deck"):
             self.plan(patch.join(["[grid]\n", ""]), deck="")

@@ -1,4 +1,4 @@
-"""Tests of runs with random inputs: statistics, pairs of variants, and runs that are lost."""
+"""Tests of runs with random inputs: statistics, pairs of variants, and lost results."""
 
 import csv
 import json
@@ -49,7 +49,7 @@ class ScatterTest(unittest.TestCase):
         self.path.write_text(SWEEP)
 
     def sweep(self) -> str:
-        """Run the sweep; return what it says."""
+        """Run the sweep; return its output."""
         code, text = run_quietly(sweep.main, self.path, "--output", self.output, "--program", implam(), "--jobs", 2)
         self.assertEqual(code, 0, text)
         return text
@@ -60,7 +60,7 @@ class ScatterTest(unittest.TestCase):
             return list(csv.DictReader(file))
 
     def test_statistics_pairs_and_page(self) -> None:
-        """Means are those of the summaries; equal variants are equal run by run, a brittle interface is reported."""
+        """Means are those of the summaries; equal variants have equal runs, a brittle interface differs."""
         text = self.sweep()
         summaries = [json.loads((self.output / row["folder"] / "damage_summary.json").read_text())
                      for row in self.rows("table.csv")]
@@ -83,36 +83,36 @@ class ScatterTest(unittest.TestCase):
         self.assertLess(float(held["as it is", "l2_force measured.csv"]["mean"]), 0.2)
         band = [row for row in self.rows("force_band.csv") if row["group"] == "as it is"]
         self.assertTrue(all(float(row["low_5"]) <= float(row["mean"]) <= float(row["high_95"]) for row in band))
-        self.assertIn("brittle against as it is, runs with the same inputs", text)
+        self.assertIn("brittle compared with as it is, pairs of runs with the same random inputs", text)
         self.assertIn("symmetry", text)
         self.page(summaries)
 
     def page(self, summaries: list[dict]) -> None:
-        """The page has the means, the pictures and where the inputs' scatter comes from."""
+        """The page has the means, the pictures and the sources of the coefficients of variation."""
         code, text = run_quietly(report.main, self.output)
         self.assertEqual((code, Path(text.strip()).name), (0, "out_report.html"), text)
         page = Page(Path(text.strip()).read_text(encoding="utf-8"))
         self.assertEqual((page.open, page.references), ([], []))
         mean = statistics.mean(summary["peak_force"] for summary in summaries[:4])
         self.assertIn(f"{mean / 1e3:.4g} kN", page.cells)
-        self.assertEqual(set(page.pictures), {"Force history", "Share of the runs in which a place has delaminated"})
+        self.assertEqual(set(page.pictures), {"Force history", "Fraction of runs with delamination"})
         self.assertIn("material.YT", page.cells)
-        self.assertIn("Side by side", page.text)
+        self.assertIn("Comparison of variants", page.text)
         self.assertIn("CMH-17-1G", page.text)
         (self.output / "statistics.json").write_text("{}")
         code, text = run_quietly(report.main, self.output)
         self.assertEqual((code, len(text.splitlines())), (4, 1), text)
 
     def test_unreadable_measurement(self) -> None:
-        """What is measured is read before anything is run."""
+        """The measured curve is read before the first run."""
         self.path.write_text(SWEEP.replace("expect.toml", "measured.csv"))
         (self.folder / "measured.csv").write_bytes(b"\xff\xfe\x00")
         code, text = run_quietly(sweep.main, self.path, "--output", self.output, "--program", implam())
         self.assertEqual((code, self.output.exists()), (4, False), text)
-        self.assertIn("measured.csv cannot be read: it is no text", text)
+        self.assertIn("measured.csv cannot be read: it is not a text file", text)
 
     def test_lost_runs(self) -> None:
-        """What a run has left is emptied: it alone runs again, and all tables are as before."""
+        """A run with emptied results is run again, others are not, and all tables are as before."""
         self.sweep()
         before = (self.output / "statistics.csv").read_text()
         self.assertIn("12 cases, 0 decks to run", self.sweep())
@@ -121,7 +121,7 @@ class ScatterTest(unittest.TestCase):
         self.assertEqual((self.output / "statistics.csv").read_text(), before)
         first = self.output / self.rows("table.csv")[0]["folder"] / "damage.h5"
         first.write_bytes(b"no fields")
-        self.assertRegex(self.sweep(), "note: case 1 is left out of the statistics: "
+        self.assertRegex(self.sweep(), "note: case 1 is omitted from the statistics: "
                          ".*damage.h5 is not a file of fields")
         self.assertEqual(self.rows("statistics.csv")[0]["runs"], "3")
 

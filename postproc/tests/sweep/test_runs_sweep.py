@@ -1,4 +1,4 @@
-"""Tests of sweeps with real runs of the program: the table, failures, and sweeps that are killed or stopped."""
+"""Tests of sweeps with runs of the program: the table, failures, and killed or stopped sweeps."""
 
 import contextlib
 import csv
@@ -25,7 +25,7 @@ from implam_post.io.quantities import QUANTITIES
 from implam_post.sweep import command as sweep
 from tests.program import SMALL, implam, run, run_quietly, start, surroundings
 
-# Six runs that take a moment, with checkpoints.
+# Six runs of some seconds, with checkpoints.
 LONG = """
 deck = "ply_damage.nml"
 [grid]
@@ -46,7 +46,7 @@ PATIENCE, SLOW = 120, 5  # seconds
 
 
 class SweepTest(unittest.TestCase):
-    """Each test has a folder with small decks; the program that is run notes how it was called."""
+    """Each test has a folder with small decks; a wrapper of the program logs its calls."""
 
     def setUp(self) -> None:
         """Make the folder."""
@@ -65,7 +65,7 @@ class SweepTest(unittest.TestCase):
         return [str(word) for word in (path, "--output", self.output, "--program", self.program, "--jobs", 2, *more)]
 
     def called(self, verb: str) -> int:
-        """Return how many times the program was called to do something."""
+        """Return the number of calls of the program with a subcommand."""
         lines = self.calls.read_text().splitlines() if self.calls.exists() else []
         return sum(line.startswith(f"{verb} ") for line in lines)
 
@@ -78,7 +78,7 @@ class SweepTest(unittest.TestCase):
         return rows
 
     def test_checks_are_reported(self) -> None:
-        """Warnings of the check are reported once for all decks, and nothing else that it prints."""
+        """Only warnings of the check are reported, once for all decks."""
         code, text = run_quietly(sweep.main, *self.arguments("""
             deck = "ply_damage.nml"
             [grid]
@@ -91,7 +91,7 @@ class SweepTest(unittest.TestCase):
         self.assertTrue(warnings[0].startswith("warning, 2 of 2 decks: "), text)
 
     def test_lost_histories(self) -> None:
-        """A case whose history is emptied, lacks its rows or is gone runs again, from the start; others do not."""
+        """A case with an empty or missing history, or one without rows, runs again from the start; others do not."""
         arguments = self.arguments("""
             deck = "delamination.nml"
             [grid]
@@ -112,7 +112,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(histories[0].read_text(), whole)
 
     def test_table_and_plots(self) -> None:
-        """Figures are those of the histories, in CSV and HDF5; the energy is the one swept; nothing is run twice."""
+        """Figures are those of the histories, in CSV and HDF5; the energy is the swept one; no run is repeated."""
         arguments = self.arguments("""
             deck = "delamination.nml"
             [grid]
@@ -147,7 +147,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((self.called("run"), self.called("check"), self.table()), (4, 4, rows))
 
     def test_failures_are_collected(self) -> None:
-        """A run without convergence has no figures, the other has; it is run again only if asked for."""
+        """A run without convergence has no figures, the other one has; it is repeated only with --retry."""
         for more, runs in (((), 2), ((), 2), (("--retry",), 3)):
             code, text = run_quietly(sweep.main, *self.arguments(HARD, *more))
             self.assertEqual((code, self.called("run")), (1, runs), text)
@@ -157,17 +157,17 @@ class SweepTest(unittest.TestCase):
             self.assertEqual([(row["exit_code"], row["peak_force"] == "") for row in rows], [("3", True), ("0", False)])
 
     def test_faults_are_reported_before_anything_runs(self) -> None:
-        """A value out of range and a key misspelt: the program's own sentences, and not a single run."""
+        """A value out of range and a misspelt key: messages of the program, and no run."""
         for key, expected in (("impactor.mass", "mass = -1"), ("delamination.G_cc", "no such key")):
             code, text = run_quietly(sweep.main, *self.arguments(
                 f'deck = "delamination.nml"\n[grid]\n"{key}" = [-1, 0.2]'))
             self.assertEqual(code, 2, text)
-            self.assertRegex(text, f"case 1: {key}=-1\n.*{expected}.*\n(.*\n)*.*decks are faulty; nothing was run\\.")
+            self.assertRegex(text, f"case 1: {key}=-1\n.*{expected}.*\n(.*\n)*.*decks are faulty; no deck was run\\.")
         self.assertEqual((self.called("run"), self.called("check")), (0, 4))
         self.assertEqual([path for path in self.output.rglob("*") if path.suffix not in (".nml", "")], [])
 
     def test_faults_of_second_decks(self) -> None:
-        """They are reported before the first runs; sound ones leave no decks behind."""
+        """Faulty second decks are reported before the first runs; the decks of a valid check are removed."""
         deck = self.folder / "cai_compression.nml"
         arguments = self.arguments('deck = "cai_impact.nml"\nthen = "cai_compression.nml"\n'
                                    '[grid]\n"impactor.velocity" = [4.0, 5.0]', "--array")
@@ -176,10 +176,10 @@ class SweepTest(unittest.TestCase):
         deck.write_text(deck.read_text().replace("&line ", "&lime "))
         code, text = run_quietly(sweep.main, *arguments)
         self.assertEqual(code, 2, text)
-        self.assertRegex(text, "case 2: .*\n.*&lime: there is no such group(.*\n)*.*decks are faulty; nothing was run")
+        self.assertRegex(text, "case 2: .*\n.*&lime: there is no such group(.*\n)*.*decks are faulty; no deck was run")
 
     def test_killed(self) -> None:
-        """The sweep alone, all of its processes, all but the runs are killed: the table is as if nothing had been."""
+        """After killing the sweep only, all its processes, or all but the runs, the table is the same."""
         reference = self.folder / "reference"
         code, text = run("sweep", *self.arguments(LONG, "--output", reference, "--program", implam()))
         self.assertEqual(code, 0, text)
@@ -199,7 +199,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(list(self.output.rglob(".draft*")), [])
 
     def test_stopped_by_a_signal(self) -> None:
-        """SIGTERM ends the runs with checkpoints; the same command goes on with them."""
+        """SIGTERM ends the runs with checkpoints; the same command continues them."""
         with start("sweep", *self.arguments(LONG)) as process:
             self.wait_until(lambda: self.states(), process)
             process.send_signal(signal.SIGTERM)
@@ -213,7 +213,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual({row["exit_code"] for row in self.table()}, {"0"})
 
     def test_array(self) -> None:
-        """A queue runs the lines of a file, one a deck; the sweep then has the table without a run of its own."""
+        """A queue runs the commands of a file, one per deck; the sweep then writes the table without a run."""
         arguments = self.arguments(HARD)
         code, text = run_quietly(sweep.main, *arguments, "--array")
         self.assertEqual((code, self.called("run")), (0, 0), text)
@@ -228,7 +228,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((self.output / "decks.txt").read_text(), "")
 
     def test_useless_checkpoint(self) -> None:
-        """A file that is not a checkpoint does not stop a case: it is run afresh."""
+        """A case with an invalid checkpoint is run from the start."""
         text = 'deck = "ply_damage.nml"\n[grid]\n"impactor.mass" = [0.2]'
         self.assertEqual(run_quietly(sweep.main, *self.arguments(text, "--array"))[0], 0)
         case = next((self.output / "cases").iterdir())
@@ -237,7 +237,7 @@ class SweepTest(unittest.TestCase):
         self.assertEqual((code, self.called("restart"), self.called("run")), (0, 1, 1), said)
 
     def test_one_sweep_a_folder(self) -> None:
-        """A second sweep in a folder and a program that is not there end with one sentence and 4."""
+        """A second sweep in a folder and a missing program end with one sentence and exit code 4."""
         self.output.mkdir()
         with (self.output / "lock").open("w") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
@@ -248,24 +248,24 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(list(self.output.rglob("*.nml")), [])
 
     def states(self) -> set[tuple[str, int]]:
-        """Return the checkpoints there are, with the time they were written."""
+        """Return the existing checkpoints with the times they were written."""
         return {(str(path), path.stat().st_mtime_ns) for path in self.output.glob("cases/*/*_restart.h5")}
 
     def wait_until(self, condition: Callable[[], bool], process: subprocess.Popen) -> None:
-        """Wait until the condition holds; the process must still run then."""
+        """Wait until the condition is true; the process must still be running then."""
         latest = time.monotonic() + PATIENCE
         while not condition():
-            self.assertIsNone(process.poll(), "the sweep was over too early")
+            self.assertIsNone(process.poll(), "the sweep ended too early")
             self.assertLess(time.monotonic(), latest, "nothing happens")
             time.sleep(0.005)
 
     def processes(self) -> list[int]:
-        """Return the processes that work in the folder of the test."""
+        """Return the processes with the folder of the test in their command line."""
         numbers = [int(path.name) for path in Path("/proc").glob("[0-9]*")]
         return [number for number in numbers if str(self.folder).encode() in self.command(number)]
 
     def kill_sweep(self, process: subprocess.Popen) -> None:
-        """Kill the sweep alone: what it has started stops by itself, to go on from a checkpoint."""
+        """Kill the sweep only: its runs then stop with a checkpoint."""
         process.kill()
         latest = time.monotonic() + PATIENCE
         while self.processes() and time.monotonic() < latest:
@@ -274,11 +274,11 @@ class SweepTest(unittest.TestCase):
         self.assertIn(EXIT_STOPPED, [record["exit_code"] for record in records])
 
     def kill_all(self, process: subprocess.Popen) -> None:
-        """Kill the sweep and all it has started, at once, as when a machine goes down."""
+        """Kill the sweep and all its processes, as in a power failure."""
         self.kill(self.processes())
 
     def kill_all_but_runs(self, process: subprocess.Popen) -> None:
-        """Kill the sweep and the watchers over its runs; these go on, slowly, with nobody to note how they end."""
+        """Kill the sweep and the supervisors of its runs; the runs continue slowly, and their ends are not recorded."""
         runs = [number for number in self.processes() if b"implam_post" not in self.command(number)]
         self.assertGreater(len(runs), 0)
         self.send(signal.SIGSTOP, runs)
@@ -288,7 +288,7 @@ class SweepTest(unittest.TestCase):
         self.addCleanup(timer.join)
 
     def kill(self, numbers: list[int]) -> None:
-        """Kill processes, none of which sees another one end."""
+        """Stop, then kill processes, so that none reacts to the end of another."""
         self.send(signal.SIGSTOP, numbers)
         self.send(signal.SIGKILL, numbers)
 
@@ -299,7 +299,7 @@ class SweepTest(unittest.TestCase):
                 os.kill(process, number)
 
     def command(self, number: int) -> bytes:
-        """Return the command line of a process; nothing if it has ended."""
+        """Return the command line of a process; empty if it has ended."""
         try:
             return Path(f"/proc/{number}/cmdline").read_bytes()
         except OSError:

@@ -1,4 +1,4 @@
-"""Tests of inputs that scatter and of what is made of the runs: decks, statistics, maps of shares."""
+"""Tests of random inputs and the results of their runs: decks, statistics, maps."""
 
 import statistics
 import tempfile
@@ -27,7 +27,7 @@ DECK = """
 &support window=0.125, 0.075 /
 &support clamps=0.05, 0.04 /
 """
-# As `implam explain materials` prints it.
+# Output of `implam explain materials`.
 TABLE = """&material library names one of these; keys that the deck leaves out get its values. In SI:
   key      unit     im7_8552       as4_3501_6
   density  kg/m^3   1580 c         1560 h
@@ -52,7 +52,7 @@ class ScatterPlanTest(unittest.TestCase):
         return read_plan(path)
 
     def test_deck_is_what_was_drawn(self) -> None:
-        """Each key is that of the deck times its factor; the energy goes with the square of that of the speed."""
+        """Each value is that of the deck times its factor; the factor of the energy is that of the velocity squared."""
         for case in self.plan("[scatter]\nnumber = 4\n").cases:
             groups, drawn = read_namelist(case.deck), case.values
             material, first = groups["material"][0], groups["delamination"][0]
@@ -69,7 +69,7 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertEqual(first["friction"], [0.3])
 
     def test_variations_are_the_defaults(self) -> None:
-        """Over many runs the means are those of the deck, the deviations those of the kinds."""
+        """For many runs the means are those of the deck, the coefficients of variation those of the kinds."""
         plan = self.plan("[scatter]\nnumber = 400\n")
         for name, kind in (("material.YT factor", "strengths"), ("delamination[2].G_Ic factor", "toughness"),
                            ("thickness factor", "thickness"), ("material.E1 factor", "moduli"),
@@ -80,7 +80,7 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertAlmostEqual(statistics.mean(values), 0 if kind == "place" else 1, delta=3 * variation / 20)
 
     def test_given_variations(self) -> None:
-        """Kinds and single keys may have others, or none; draws depend neither on other inputs nor on the number."""
+        """Kinds and single keys may have other coefficients; samples do not depend on other inputs or the number."""
         plain = self.plan("[scatter]\nnumber = 5\n")
         given = self.plan('[scatter]\nnumber = 3\nplace = 0\nmoduli = 0\nthickness = 0\n"delamination[2].G_Ic" = 0\n'
                           '"material.XT" = 0.2\n')
@@ -93,7 +93,7 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertEqual(self.plan("[scatter]\nnumber = 3\n").cases[2].key, plain.cases[2].key)
 
     def test_variations_of_one_group_and_of_all(self) -> None:
-        """That of a group by its number counts, in whichever order both are given."""
+        """The coefficient of a numbered group has precedence, whatever the order."""
         for lines in (('"delamination.G_Ic" = 0', '"delamination[2].G_Ic" = 0.1'),
                       ('"delamination[2].G_Ic" = 0.1', '"delamination[*].G_Ic" = 0')):
             names = self.plan("\n".join(["[scatter]", "number = 2", *lines])).names
@@ -101,7 +101,7 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertNotIn("delamination[1].G_Ic factor", names)
 
     def test_variants_have_the_same_inputs(self) -> None:
-        """Factors come upon what a variant sets; groups are left out by their number in the deck."""
+        """Factors apply to the values of a variant; groups are removed by their number in the deck."""
         plan = self.plan("""
             [scatter]
             number = 2
@@ -120,7 +120,7 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertEqual(set(plan.names) - {"variant"}, plan.random)
 
     def test_variants_with_fewer_groups_have_the_same_inputs(self) -> None:
-        """The first of two groups has the factors of an only one."""
+        """The first of two groups has the same factors as a single one."""
         plan = self.plan("[scatter]\nnumber = 2\n[variants]\na = {}\nb = { drop = ['delamination[2]'] }\n")
         for one, other in zip(plan.cases[:2], plan.cases[2:], strict=True):
             first, second = (read_namelist(case.deck)["delamination"] for case in (one, other))
@@ -129,17 +129,17 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertNotEqual(first[0]["g_iic"], first[1]["g_iic"])
 
     def test_some_variants(self) -> None:
-        """The first variant and those asked for, with the decks that they have among all; a sentence for others."""
+        """Only the first variant and the requested ones, with unchanged decks; unknown variants are refused."""
         text = "[variants]\na = {}\nb = { 'impactor.energy' = 5 }\nc = { 'impactor.energy' = 6 }\n"
         plan = self.plan(text)
         some = only(plan, ["c"])
         self.assertEqual([(case.values["variant"], case.key) for case in some.cases],
                          [(case.values["variant"], case.key) for case in plan.cases[::2]])
-        with self.assertRaisesRegex(DeckError, "'d' is none of the variants a, b, c"):
+        with self.assertRaisesRegex(DeckError, "'d' is not one of the variants a, b, c"):
             only(plan, ["d"])
 
     def test_sweeps_of_the_panels(self) -> None:
-        """Their files can be read, and each variant has decks of its own, but for those that set what it has."""
+        """The files can be read, and the decks of variants differ unless a variant changes nothing."""
         paths = sorted((ROOT / "tests/studies/scatter").glob("*.toml"))
         self.assertGreaterEqual(len(paths), 3)
         for path in paths:
@@ -155,7 +155,7 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertTrue(all(len(set(keys)) == runs for keys in firsts))
 
     def test_variants_win(self) -> None:
-        """A variant sets a key that is swept, and the table has what it sets."""
+        """If a variant sets a swept key, the table has the value of the variant."""
         plan = self.plan("""
             [grid]
             "impactor.mass" = [3]
@@ -167,7 +167,7 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertEqual([case.values["impactor.mass"] for case in plan.cases], [3, 1])
 
     def test_published_materials(self) -> None:
-        """What a deck leaves to a published material is written into it, in its units; what it gives stays."""
+        """Values of published materials are written into the deck in its units; given values are kept."""
         library = read_library(TABLE)
         self.assertEqual(library["as4_3501_6"]["YT"], (48e6, "Pa"))
         self.assertNotIn("G_IIc", library["as4_3501_6"])
@@ -181,11 +181,11 @@ class ScatterPlanTest(unittest.TestCase):
         self.assertNotIn("eta", given)
         plain = "&material name='a' YT=50 /\n"
         self.assertEqual(adopt(plain, "deck.nml", dict), plain)
-        with self.assertRaisesRegex(DeckError, "'im7_8552' is none of the published materials"):
+        with self.assertRaisesRegex(DeckError, "'im7_8552' is not one of the published materials"):
             adopt(deck, "deck.nml", lambda: read_library(TABLE.replace("im7_8552", "other   ")))
 
     def test_toughness_of_the_only_material(self) -> None:
-        """Interfaces take it where all plies are of one published material, under whatever names."""
+        """Interfaces have the toughness of the published material if it is the same for all plies, under any names."""
         library = read_library(TABLE)
         deck = ("&case units='SI' /\n&material name='a' library='im7_8552' /\n"
                 "&material name='b' library='IM7_8552' /\n"
@@ -196,22 +196,22 @@ class ScatterPlanTest(unittest.TestCase):
             self.assertEqual("g_iic" in groups["delamination"][0], adopted, text)
 
     def test_a_part_of_the_plate(self) -> None:
-        """Under symmetry the place of impact stays, and a note says so."""
+        """With symmetry the place of impact does not scatter, which a note reports."""
         plan = self.plan("[scatter]\nnumber = 1\n", "symmetry='point'")
         self.assertNotIn("place x", plan.names)
         self.assertEqual(len(plan.notes), 1)
         self.assertIn("symmetry", plan.notes[0])
 
     def test_faults(self) -> None:
-        """A sentence for what means nothing."""
+        """Errors are one sentence."""
         for text, expected in (("[scatter]\n", "number of runs"), ("[scatter]\nnumber = 0\n", "number of runs"),
-                           ("[scatter]\nnumber = 2\nstrength = 0.1\n", "'strength' is none of"),
-                           ("[scatter]\nnumber = 2\nstrengths = 1\n", "from 0 to below 1"),
+                           ("[scatter]\nnumber = 2\nstrength = 0.1\n", "'strength' is not one of"),
+                           ("[scatter]\nnumber = 2\nstrengths = 1\n", "at least 0 and less than 1"),
                            ("[scatter]\nnumber = 2\nmethod = 'x'\n", "method"),
-                           ("[scatter]\nnumber = 2\n'material.YC' = 0.1\n", "no such key"),
-                           ("[scatter]\nnumber = 2\n'material.density' = 0.1\n", "is none of"),
+                           ("[scatter]\nnumber = 2\n'material.YC' = 0.1\n", "does not have this key"),
+                           ("[scatter]\nnumber = 2\n'material.density' = 0.1\n", "is not one of"),
                            ("[variants]\na = 1\n", "table of tables"),
-                           ("[variants.a]\nfriction = 1\n", "no key of the deck"),
+                           ("[variants.a]\nfriction = 1\n", "not a key of the deck"),
                            ("[variants.a]\ndrop = ['support[3]']\n", "2 groups &support"),
                            ("[variants.a]\ndrop = ['support']\n", "write support"),
                            ("scatter = 1\n", "table")):
@@ -223,12 +223,12 @@ class StatisticsTest(unittest.TestCase):
     """Means, scatter and differences."""
 
     def test_smallest_difference(self) -> None:
-        """The bound is that of Student's distribution, both ways 5 %."""
+        """The bound is that of the two-sided t-test at 5 %."""
         for pairs, bound in ((2, 12.7062), (3, 4.30265), (11, 2.22814), (101, 1.98397)):
             self.assertAlmostEqual(Difference(pairs, 1.0, 1.0, 1.0).least, bound, delta=1e-4 * bound)
 
     def test_spread(self) -> None:
-        """Runs without the figure are left out; of few runs the points are the least and the largest."""
+        """Runs without the figure are omitted; of few runs the percentiles are the smallest and the largest value."""
         found = spread_of([3, 1, float("nan"), 2])
         self.assertEqual((found.number, found.mean, found.deviation, found.low, found.high), (3, 2, 1, 1, 3))
         self.assertAlmostEqual(found.error, 3**-0.5)
@@ -237,7 +237,7 @@ class StatisticsTest(unittest.TestCase):
         self.assertEqual(spread_of([]).number, 0)
 
     def test_differences(self) -> None:
-        """Pairs show a small difference that the scatter of the runs hides, and none where there is none."""
+        """Pairs detect a difference smaller than the scatter of the runs, and none between equal variants."""
         stream = np.random.default_rng(1)
         first = stream.normal(10, 2, 20)
         difference = difference_of(first, first + stream.normal(0.5, 0.2, 20))
@@ -248,13 +248,13 @@ class StatisticsTest(unittest.TestCase):
         self.assertFalse(difference_of([1], [2]).differs)
 
     def test_risk(self) -> None:
-        """Of 2000 pairs of variants that are equal, one in 20 is taken for different."""
+        """Of 2000 comparisons of equal variants, one in 20 is significant."""
         stream = np.random.default_rng(2)
         wrong = sum(difference_of(stream.normal(size=6), stream.normal(size=6)).differs for _ in range(2000))
         self.assertAlmostEqual(wrong / 2000, 0.05, delta=0.015)
 
     def test_inside(self) -> None:
-        """Points of a grid in a ring with a hole."""
+        """Points of a grid in a ring."""
         ring = np.array([[[a, b], [a + 1, b], [a + 1, b + 1], [a, b + 1]] for a in range(3) for b in range(3)
                          if (a, b) != (1, 1)], dtype=float)
         middles = np.arange(-0.5, 4)

@@ -1,4 +1,4 @@
-"""Tests of the table of a sweep and its plots, on small tables made here."""
+"""Tests of the table of a sweep and its plots, on small tables."""
 
 import csv
 import math
@@ -33,12 +33,12 @@ class TableTest(unittest.TestCase):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def test_columns(self) -> None:
-        """The names that a sweep cannot have begin with those of the table's other columns."""
+        """Reserved names include all other columns of the table."""
         names = tuple(table({}, [1.0]).columns)
         self.assertEqual(names, COLUMNS[: len(names)])
 
     def test_files(self) -> None:
-        """CSV and HDF5 hold the same, numbers to the last digit, missing ones empty or NaN."""
+        """CSV and HDF5 have the same values with all digits; missing ones are empty or NaN."""
         made = table({"laminate.angles": ["0, 90", "90"], "mass": [1, 0.1 + 0.2]}, [1 / 3, math.nan])
         write_csv(made, self.folder / "table.csv")
         write_hdf5(made, self.folder / "table.h5")
@@ -54,7 +54,7 @@ class TableTest(unittest.TestCase):
             self.assertEqual(list(file["table/laminate.angles"].asstr()), ["0, 90", "90"])
 
     def test_series(self) -> None:
-        """Rows are joined where they differ in the energy alone, in its order; derived values do not part them."""
+        """Rows that differ only in energy, and in derived values, form a series in ascending energy."""
         grid = table({"G_c": [1, 1, 2, 2], "energy": [3.0, 2, 3, 2], "velocity": [6.0, 4, 6, 4]}, [3.0, 2, 3, 2],
                      ("velocity",))
         found = {label: rows.tolist() for label, rows in series(grid).items()}
@@ -63,21 +63,21 @@ class TableTest(unittest.TestCase):
         self.assertEqual({label: rows.tolist() for label, rows in series(samples).items()}, {"": [2, 0]})
 
     def test_plots(self) -> None:
-        """Pictures of what there are numbers for, and no others."""
+        """Only columns with numbers are drawn."""
         drawn = plot_table(table({"energy": [1.0, 2.0]}, [1.0, 2.0]), self.folder)
         self.assertEqual([path.name for path in drawn], ["area_energy.png", "scatter.png"])
         self.assertGreater(min(path.stat().st_size for path in drawn), 5000)
         self.assertEqual(plot_table(table({"energy": [1.0]}, [math.nan]), self.folder / "none"), [])
 
     def test_dimensions_of_swept_values(self) -> None:
-        """Keys have the dimension that they have in their group, other names that of their word."""
+        """Keys have the dimension of their group, other names that of their last word."""
         for name, dimension in (("material.E", "stress"), ("material[2].E", "stress"), ("ply_damage.e", ""),
                                 ("impactor.mass", "mass"), ("e", ""), ("energy", "energy"),
                                 ("delamination[*].G_c", "toughness")):
             self.assertEqual(dimension_of_swept(name), dimension, name)
 
     def test_units(self) -> None:
-        """Systems by the density of carbon/epoxy, and the same impact in each of them."""
+        """Systems from the density of carbon/epoxy, and the same impact in each of them."""
         self.assertEqual([system_of(density) for density in (1580.0, 1.58e-9, 1.58e-6, 1.0, None)],
                          ["SI", "mm-t-s", "mm-kg-ms", "", ""])
         for system, force, area, speed in (("SI", 2500.0, 3e-4, 4.0), ("mm-t-s", 2500.0, 300.0, 4000.0),
