@@ -1,4 +1,4 @@
-"""Prints the tests that were skipped, whole ones and parts, with the reasons that they gave.
+"""Prints the tests that were skipped, completely or in part, with their reasons.
 Usage: skipped.py FILE     (what ctest --output-junit has written)"""
 
 import re
@@ -6,17 +6,17 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-# How tests say it: scripts at the beginning of a line, unittest and the framework behind the test's name.
+# Output of skipped tests: of scripts at the beginning of a line, of unittest and the framework after the test's name.
 SAID = re.compile(r"^(?:.*\.\.\. |\S+: )?skipped:? (.+)$", re.MULTILINE)
 
 
 def reasons(output):
-    """Return the reasons in what a test has printed, each once."""
+    """Return the reasons in the output of a test, each once."""
     return list(dict.fromkeys(reason.strip("'\"") for reason in SAID.findall(output)))
 
 
 def main():
-    """Print a line a reason."""
+    """Print a line per reason."""
     lines = []
     for case in ElementTree.parse(Path(sys.argv[1])).getroot().iter("testcase"):
         whole = case.get("status") == "notrun"

@@ -132,7 +132,7 @@ contains
     end if
   end subroutine read_option
 
-  !> Reads an option that stands alone.
+  !> Reads an option without a value.
   subroutine read_switch(command, word, error)
     !> Receives the option
     type(command_t), intent(inout) :: command
@@ -222,7 +222,7 @@ contains
     end if
   end subroutine refuse_option
 
-  !> Command most similar to a word; empty: none is similar, or the word resembles a file.
+  !> Command most similar to a word; empty: none is similar, or the word may be the name of a file.
   pure function meant_verb(word) result(verb)
     !> The word
     character(len=*), intent(in) :: word

@@ -1,5 +1,6 @@
 !> Damage of a plate under compression: delamination of each interface and fibre failure of each ply, with its position
-!> along the load and its extent over the width. The comparison with the start gives the place of failure.
+!> along the load and its extent over the width. The difference from the damage at the start gives the location of
+!> failure.
 module compressed_damage
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive
@@ -106,7 +107,7 @@ contains
         end do
         return
       end if
-      ! Every rank knows all cells of a front; the first one adds them.
+      ! Every rank has all cells of a front; only the first rank adds them.
       if (.not. model%communicator%is_root()) return
       associate (region => now%interfaces%contact%regions(zone))
         do row = region%rows(1), region%rows(2)
@@ -141,7 +142,7 @@ contains
 
   !> Row of cells with a node on its centre line; 0: the node lies between two rows.
   pure integer function row_of(lines, along) result(row)
-    !> Lines of nodes that meet in the node, from 0
+    !> Lines of nodes that cross at the node, from 0
     integer, intent(in) :: lines(2)
     !> Axis of the load
     integer, intent(in) :: along

@@ -15,8 +15,9 @@ module compression_records
   real(wp), parameter :: failure_ratio = 0.7_wp
   !> The plate has buckled when a gauge has lost this fraction of its largest compression under a rising load (strain
   !> reversal, J. Singer, J. Arbocz, T. Weller, Buckling Experiments 1, 1998); a smaller loss may be vibration. On
-  !> elastic panels in load steps any fraction up to .3 gives the same strain; after an impact, where gauges vibrate,
-  !> .02 to .05 do on 3 mm, and .1 gives none; on 2 mm they differ by 15 % (doc/studies/residual_strength.md).
+  !> elastic panels in load steps any fraction up to .3 gives the same strain. After an impact, with vibrating gauges,
+  !> .02 to .05 give the same strain on cells of 3 mm, and .1 gives none; on cells of 2 mm the strains differ by 15 %
+  !> (doc/studies/residual_strength.md).
   real(wp), parameter :: reversed = 0.03_wp
 
   !> The record.

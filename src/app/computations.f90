@@ -145,8 +145,8 @@ contains
     call simulation%log%close()
   end subroutine simulate
 
-  !> Runs a setup twice, the second time finer, and reports the change of the results. Results of an earlier command are
-  !> reused.
+  !> Runs a setup twice, the second time on finer elements with shorter steps, and reports the change of the results.
+  !> Results of an earlier command are reused.
   subroutine verify(command, communicator, deck, profile, code, error)
     !> The parsed command line
     type(command_t), intent(in) :: command

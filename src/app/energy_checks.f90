@@ -22,8 +22,8 @@ module energy_checks
 
   !> State of the check.
   type :: energy_check_t
-    !> Largest energy so far of the impactor, of external work, or of the plate without residual stresses, whose energy
-    !> may be far larger than that of the loads. It begins with the energy of the impactor's weight.
+    !> Largest energy so far of the impactor, of external work, or of the plate. That of residual stresses is excluded,
+    !> as it may be far larger than that of the loads. It begins with the energy of the impactor's weight.
     real(wp) :: largest = 0
     !> True: the previous step had created more than the tolerance
     logical, private :: created_before = .false.
@@ -46,7 +46,7 @@ contains
   end function new_energy_check
 
   !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
-  !> of an impactor that is laid on a plate begins with zero, and its first steps are compared with this energy.
+  !> of an impactor placed on a plate at rest begins with zero, and its first steps are compared with this energy.
   pure real(wp) function energy_of_weight(deck) result(energy)
     !> The deck
     type(deck_t), intent(in) :: deck

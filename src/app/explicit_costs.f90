@@ -59,11 +59,11 @@ contains
     has_cohesive = any(deck%delaminations%law == law_cohesive)
   end function has_cohesive
 
-  !> Sentence on the step of the deck where it is longer than that taken; else empty.
+  !> Sentence on the step of the deck where it is longer than the step that is used; otherwise empty.
   function untaken_step(deck, step) result(sentence)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> The step that is taken
+    !> The step that is used
     real(wp), intent(in) :: step
     !> One sentence
     character(len=:), allocatable :: sentence

@@ -47,7 +47,7 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Set (files) if the checkpoint cannot be read, (deck) if it is of another plate
     type(error_t), allocatable, intent(inout) :: error
-    !> Returns true instead of an error if there is no such file, as the other run may be pending
+    !> Returns true instead of an error if there is no such file, as the other run may not have been started yet
     logical, intent(out), optional :: lacks
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: old
@@ -75,12 +75,12 @@ contains
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
-      call refuse(deck, 'the plate there is another one, '//objection, error)
+      call refuse(deck, 'that run has another plate, '//objection, error)
       return
     end if
     if (is_mapped(deck, old) .and. force > 0) then
-      call refuse(deck, 'the impactor is in contact at the end of that run, and under its load the state of a '// &
-                  'plate is not mapped to other cells; let the impact end, or give the mesh of that run', error)
+      call refuse(deck, 'the impactor is in contact at the end of that run, and a state under contact force '// &
+                  'cannot be mapped to another mesh; run the impact to its end, or give the mesh of that run', error)
       return
     end if
     do i = 1, size(deck%delaminations)
@@ -108,11 +108,12 @@ contains
     if (communicator%is_root()) &
       is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name//checkpoint_ending)
     call communicator%broadcast(is_own)
-    if (is_own) call refuse(deck, 'is where this run writes its own end, from which it would begin the next time; '// &
-                            'allowed: another &case name or &output directory', error)
+    if (is_own) call refuse(deck, 'is the checkpoint that this run writes at its own end, from which the next run '// &
+                            'would start; allowed: another &case name or &output directory', error)
   end subroutine refuse_own_end
 
-  !> Warns of a start from a run that was stopped before its end, as by a time limit, and lacks later damage.
+  !> Warns of a start from a run that was stopped before its end, such as by a time limit, and whose later damage is
+  !> missing.
   subroutine remark_stopped(deck, remark)
     !> The deck; the summary of its run repeats the warning
     type(deck_t), intent(inout) :: deck
@@ -129,8 +130,8 @@ contains
     call append(deck%remarks, 'line '//line//': '//sentence)
   end subroutine remark_stopped
 
-  !> Saves or loads how far the other run came: a restart does not read that run's checkpoint again, and its summary
-  !> repeats the warning.
+  !> Saves or loads the time that the other run reached: a restart does not read the checkpoint of that run again, and
+  !> its summary repeats the warning.
   subroutine visit_incomplete_start(deck, archive)
     !> The deck
     type(deck_t), intent(inout) :: deck
@@ -211,7 +212,7 @@ contains
     type(model_t), intent(in) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
-    !> Receives the quantities before and after mapping, and what had failed
+    !> Receives the quantities before and after mapping, and the failures before this run
     type(run_record_t), intent(inout) :: record
     !> Receives a note
     type(log_t), intent(inout) :: log
@@ -232,7 +233,7 @@ contains
       if (record%mapping%first_loss() > 0) then
         call refuse(deck, 'the interface below ply '// &
                     to_text(deck%delaminations(record%mapping%first_loss())%below_ply)// &
-                    ' has delaminated beyond the '//key_zone//' that it has here', error)
+                    ' has delaminated beyond its '//key_zone//' in this deck', error)
         return
       end if
     end if

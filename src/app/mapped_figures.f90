@@ -15,8 +15,8 @@ module mapped_figures
 
   !> Before the mapping and after it.
   integer, parameter, public :: before_mapping = 1, after_mapping = 2
-  !> Loss of an area or an energy from which it is reported: the part of one of 1e6 elements, the most of a mesh.
-  !> Round-off of the sums is a thousand times smaller.
+  !> Relative loss of an area or an energy above which it is reported: the area of one of 1e6 elements, the largest
+  !> number of a mesh. Round-off of the sums is a thousand times smaller.
   real(wp), parameter :: tolerance = 1.0e-6_wp
 
   !> Quantities of the full plate, the same on every rank; unallocated: no mapping.

@@ -14,7 +14,7 @@ module queue_scripts
   private
   public :: write_queue_script
 
-  !> Requested memory over the estimate: layers that follow damage take up to 14900 bytes an element in place of 9700
+  !> Ratio of requested to estimated memory: with adaptive layers an element takes up to 14900 bytes instead of 9700
   !> (`model_sizes`).
   real(wp), parameter :: spare_memory = 1.5_wp
   !> Wall-clock seconds of a job without `--time`, and largest reserve for the checkpoint.
@@ -130,7 +130,7 @@ contains
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))
     end do
     if (job%tasks > 0) close (unit)
-    if (job%tasks == 0) call fail(error, exit_files, 'No decks.txt of implam-sweep --array lies beside '// &
+    if (job%tasks == 0) call fail(error, exit_files, 'There is no decks.txt of implam-sweep --array beside '// &
                                   job%target//'.')
   end subroutine size_array
 

@@ -28,7 +28,7 @@ contains
 
   !> A column of the history or a field by name, also with a number for its N; no lines if there is none.
   subroutine explain_column(topic, lines, error)
-    !> Such as work_external or area_below_3, also behind the name of its table as `history force`
+    !> Such as work_external or area_below_3, optionally after the name of its table as in `history force`
     character(len=*), intent(in) :: topic
     !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)

@@ -57,7 +57,7 @@ contains
     if (allocated(stepper%explicit)) done = stepper%now%step
   end function done
 
-  !> The remainder, in the same unit. Steps by central differences are assumed to keep their length.
+  !> The remainder, in the same unit. The length of steps by central differences is assumed to be constant.
   pure real(wp) function left(stepper, end)
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper

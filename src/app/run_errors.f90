@@ -25,7 +25,7 @@ module run_errors
   end type run_errors_t
 
   !> Relative difference of the peak forces of run and elastic impact up to which the estimate applies: the errors of
-  !> two histories that differ by a tenth differ by about as much. It decides on a line of the log.
+  !> two histories that differ by a tenth differ by about as much. It affects a line of the log only.
   real(wp), parameter :: same_setup = 0.1_wp
 
 contains
@@ -63,10 +63,10 @@ contains
     end associate
   end function elastic_errors
 
-  !> Errors by a run of the same setup with half the elements and twice the step. Its error of the step is four times as
-  !> large, that of the mesh larger, so that a third of the difference is the estimate. Both may cancel in a difference,
-  !> and the difference of unresolved peaks is arbitrary: the relative error of the elastic impact on the same mesh is a
-  !> lower bound.
+  !> Errors by a run of the same setup with half the elements and twice the step. The error of that run due to the step
+  !> is four times as large, that due to the mesh larger, so that a third of the difference is the estimate. Both may
+  !> cancel in a difference, and the difference of unresolved peaks is arbitrary: the relative error of the elastic
+  !> impact on the same mesh is a lower bound.
   pure function errors_by_coarse_run(deck, record, velocity, area, coarse_run) result(errors)
     !> The deck
     type(deck_t), intent(in) :: deck

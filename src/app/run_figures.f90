@@ -1,4 +1,4 @@
-!> Results for the summary that are computed at the end of a run, besides its record.
+!> Results for the summary that are computed at the end of a run, in addition to its record.
 module run_figures
   use compressed_damage, only: compressed_damage_t, between_supports, damage_of
   use delamination_parameters, only: toughnesses

@@ -47,8 +47,8 @@ module run_records
     real(wp) :: time = 0, force = 0
     !> Stage of failure of each interface, (zones)
     integer, allocatable :: stage(:)
-    !> Time, contact force and deflection at the onset and at the first growth of each interface, (3, zones); time 0:
-    !> never, negative: before the run
+    !> Time, contact force and deflection at the onset and at the first growth of each interface, (3, zones); time 0: it
+    !> has not occurred, negative: before the run
     real(wp), allocatable :: onset(:, :), growth(:, :)
     !> Record of a compression by lines
     type(compression_record_t) :: compression
@@ -63,7 +63,7 @@ module run_records
     !> Their times
     real(wp), allocatable :: warning_times(:)
   contains
-    !> Notes what had failed before the run.
+    !> Stores which interfaces had failed before the run.
     procedure :: inherit
     !> Updates the record with an accepted step.
     procedure :: observe
@@ -96,7 +96,7 @@ contains
     allocate (self%warning_kinds(0), self%warning_zones(0), self%warning_times(0))
   end function new_run_record
 
-  !> Notes interfaces that had failed before the run: their onset and first growth are not those of this run.
+  !> Stores which interfaces had failed before the run: their onset and first growth are not those of this run.
   !> Collective.
   subroutine inherit(self, model, now)
     !> The record

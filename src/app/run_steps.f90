@@ -17,7 +17,7 @@ module run_steps
 
 contains
 
-  !> Takes steps up to the next one with output or a check: a single implicit one. Collective.
+  !> Takes steps up to the next one at which output or a check is due; a single step if steps are implicit. Collective.
   subroutine advance_to_output(deck, model, stepper, record, event, log, error)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -27,7 +27,7 @@ contains
     type(time_stepper_t), intent(inout) :: stepper
     !> The record, updated in each step
     type(run_record_t), intent(inout) :: record
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Receives a note of new layers
     type(log_t), intent(inout) :: log

@@ -28,8 +28,8 @@ module run_warnings
   private
   public :: report_warnings, report_last_warnings, reported_warnings
 
-  !> Fraction of the run after which slow motion is checked: the default rise of a travel, after which
-  !> the velocity is constant.
+  !> Fraction of the run after which the kinetic energy of slow motion is checked: the default rise of a travel, after
+  !> which the velocity is constant.
   real(wp), parameter :: slow_start = 0.25_wp
 
 contains

@@ -1,6 +1,6 @@
-!> The manual page of Unix and the completions of shells, made from the tables of the program.
+!> The manual page of Unix and the completions of shells, generated from the tables of the program.
 module shell_pages
-  use deck_values, only: allowed_sentence
+  use allowed_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use errors, only: error_t, fail, exit_usage
   use material_explain, only: material_topic

@@ -158,7 +158,7 @@ contains
     if (.not. allocated(error)) call self%log%open(self%base//'.log', communicator%is_root(), append, error)
     call communicator%agree(error)
     if (allocated(error)) return
-    ! A launcher gives its ranks a terminal of its own, whose output may go to a file.
+    ! A launcher gives its ranks a terminal of its own, whose output may be redirected to a file.
     if (launched()) self%log%interactive = .false.
     self%provenance = provenance_of(deck, communicator%size)
     call self%provenance%report(self%log)
@@ -371,7 +371,7 @@ contains
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
-    ! A complete run that is continued in another folder has no step that would write them.
+    ! In a complete run that is continued in another folder, no step writes the last fields.
     if (self%deck%output%fields_every <= 0 .or. self%fields%is_empty()) &
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return

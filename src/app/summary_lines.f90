@@ -48,8 +48,8 @@ contains
     else if (deck%has_impactor) then
       call add_figure(lines, 'peak force', rounded_text(record%peak_force)//' at '//moment(deck, record%peak_time))
     end if
-    call add_figure(lines, 'largest deflection', rounded_text(record%deflection)//' at '// &
-              moment(deck, record%deflection_time)//within(errors%deflection, record%deflection))
+    call add_figure(lines, 'largest deflection', rounded_text(record%deflection)// &
+              within(errors%deflection, record%deflection)//' at '//moment(deck, record%deflection_time))
     if (record%compression%strength > 0) then
       call add_figure(lines, 'residual strength', compression_text(deck, record%compression))
       if (record%compression%failed) &
@@ -91,9 +91,9 @@ contains
     !> Estimated errors
     type(run_errors_t), intent(in) :: errors
 
-    call add_figure(lines, 'peak force', rounded_text(record%peak_force)//' at time '// &
-                    rounded_text(record%peak_time)// &
-              within(errors%peak_force, record%peak_force)//within(errors%peak_time))
+    call add_figure(lines, 'peak force', rounded_text(record%peak_force)// &
+                    within(errors%peak_force, record%peak_force)//' at time '// &
+                    rounded_text(record%peak_time)//within(errors%peak_time))
     if (record%filter%frequency > 0) &
       call add_figure(lines, 'filtered', rounded_text(record%peak_filtered)//' at time '// &
                 rounded_text(record%peak_filtered_time)//' after the low-pass filter of '// &
@@ -112,7 +112,8 @@ contains
     end if
   end subroutine add_impact
 
-  !> Depth of the dent. In a plate that has not been damped to rest the deflection of its vibration is part of it.
+  !> Depth of the dent. In a plate that has not been damped to rest it includes the deflection of the residual
+  !> vibration.
   subroutine add_dent(lines, deck, figures)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)

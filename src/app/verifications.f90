@@ -144,7 +144,7 @@ contains
     call json%finished(content)
   end subroutine compare_summaries
 
-  !> Number of a member of the outermost object, which has a line of its own.
+  !> Number of a member of the outermost object; the member has a line of its own.
   pure subroutine find_number(summary, name, value, found)
     !> The summary
     character(len=*), intent(in) :: summary

@@ -14,9 +14,9 @@ module warning_texts
   private
   public :: warning_text
 
-  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry
-  !> 0.47 (w/h)**2 times what bending does, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
-  !> Shells, 1959, art. 100).
+  !> Deflection over thickness beyond which membrane forces carry a clamped plate: in a circular one they carry 0.47
+  !> (w/h)**2 times the load that bending carries, four times at 3 (S. Timoshenko, S. Woinowsky-Krieger, Theory of
+  !> Plates and Shells, 1959, art. 100).
   real(wp), parameter, public :: max_deflection_ratio = 3
   !> Permitted ratio of kinetic energy to work in slow motion, 5 % (Getting Started with Abaqus, chapter on quasi-static
   !> analysis: 5 to 10 %).
@@ -54,30 +54,30 @@ contains
       text = 'Layers have extended with the damage beyond the core of the mesh since '//at// &
              ', where cells are larger: make the core larger.'
     case (warning_energy)
-      text = energy_text('created', 'take smaller steps, &impactor integrator=''conserving'', or more damping '// &
-                         '(rho_inf) with delamination.', 'take a smaller step_factor.')
+      text = energy_text('created', 'use smaller steps, &impactor integrator=''conserving'', or more damping '// &
+                         '(rho_inf) with delamination.', 'use a smaller step_factor.')
     case (warning_loss)
-      text = energy_text('dissipated', 'take smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
+      text = energy_text('dissipated', 'use smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
     case (warning_ledger)
       text = 'The energy error (energy_error) has exceeded '//short_text(100*energy_tolerance)// &
-             ' % of the energy since '//at//': take a smaller '// &
+             ' % of the energy since '//at//': use a smaller '// &
              trim(merge('step_factor.         ', 'tolerance of &solver.', is_explicit(deck%stepping)))
     case (warning_kinetic)
       text = 'The kinetic energy of the plate has exceeded '//short_text(100*max_kinetic)//' % of the work since '// &
-             at//': the motion is too fast for a quasi-static test; take a longer end or rise.'
+             at//': the motion is too fast for a quasi-static test; give a longer end or rise.'
     case (warning_scaled)
       text = 'The kinetic energy of motions with scaled inertia has exceeded '//short_text(100*max_scaled)// &
-             ' % of the energy since '//at//': take a smaller mass_scaling, or compare with 1.'
+             ' % of the energy since '//at//': use a smaller mass_scaling, or compare with 1.'
     case (warning_contact)
       text = 'Contact of surfaces or with the frame has dissipated more than '//short_text(100*max_contact)// &
              ' % of the energy by '//at//' (energy_contact), as nodes that meet come to rest against each other: '// &
              'compare with a run on finer cells.'
     case (warning_indentation)
       text = 'The indentation has exceeded the thickness of the laminate or the radius of the impactor since '//at// &
-             ': no contact law is valid there; take less energy or a larger radius.'
+             ': no contact law is valid there; use less energy or a larger radius.'
     case (warning_slopes)
       text = 'The slope of the plate has exceeded '//to_text(max_slope)//' since '//at// &
-             ': strains of moderate rotations are off by 2 % at that slope, and by more where it is steeper.'
+             ': the strains assume moderate rotations; their error is 2 % at that slope and larger at steeper ones.'
     case (warning_steps)
       text = 'The error of steps has exceeded the tolerance of &adapt since '//at// &
              ' at the smallest step, which is too long for waves emitted by failures: compare with a run at an &
@@ -105,7 +105,7 @@ contains
       if (deck%is_static()) then
         words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
           at// &
-                ' (energy_algorithmic): take more steps, unless failures or snap-through release it as kinetic energy.'
+                ' (energy_algorithmic): use more steps, unless failures or snap-through release it as kinetic energy.'
       else if (is_explicit(deck%stepping)) then
         words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
           ' % of the energy by '//at &
@@ -126,8 +126,8 @@ contains
     !> End of a sentence
     character(len=:), allocatable :: cure
 
-    cure = 'take a smaller step_factor.'
+    cure = 'use a smaller step_factor.'
     if (any(deck%delaminations%is_adaptive)) &
-      cure = 'take a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
+      cure = 'use a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
   end function dissipation_remedy
 end module warning_texts

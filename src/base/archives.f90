@@ -1,13 +1,13 @@
-!> Each evolving type has one routine that both saves and loads it, so that checkpoint, rollback and restart have the
-!> same state.
+!> Each type with evolving data has one routine that both saves and loads it, so that checkpoint, repetition of a step
+!> and restart have the same state.
 module archives
   use kinds, only: wp
   implicit none
   private
   public :: archive_t
 
-  !> Storage of named items, saved or loaded in the order of the visit. Errors are stored, and checked at the end by the
-  !> owner of the archive.
+  !> Storage of named items, saved or loaded in the order in which they are visited. Errors are stored, and checked at
+  !> the end by the owner of the archive.
   type, abstract :: archive_t
     !> True: items are read into the variables visited; false: variables are written out.
     logical :: loading = .false.
@@ -96,7 +96,7 @@ module archives
       integer, intent(in) :: columns(:)
       !> Number of columns of the global field
       integer, intent(in) :: global_columns
-      !> The field; columns after `size(columns)` (ghosts) are left alone
+      !> The field; columns after `size(columns)` (ghosts) are not changed
       real(wp), intent(inout) :: value(:, :)
     end subroutine visit_field
   end interface

@@ -11,7 +11,7 @@ module environment_variables
       import :: c_char, c_int
       !> Name and value, ended by null characters
       character(kind=c_char), intent(in) :: name(*), value(*)
-      !> 0: a variable that is set stays as it is
+      !> 0: a variable that is set is not changed
       integer(c_int), value :: overwrite
     end function setenv
   end interface
@@ -22,7 +22,7 @@ contains
   subroutine set_environment_variable(name, value, overwrite)
     !> Name and value
     character(len=*), intent(in) :: name, value
-    !> False: a variable that is set stays as it is
+    !> False: a variable that is set is not changed
     logical, intent(in) :: overwrite
     integer(c_int) :: status
 

@@ -1,4 +1,4 @@
-!> Errors travel as values: a procedure that can fail returns one, only `main` stops the program.
+!> Errors are returned as values: a procedure that can fail returns one, only `main` ends the program.
 module errors
   implicit none
   private
@@ -15,7 +15,7 @@ module errors
 
   !> Description of the error; unallocated: success.
   type :: error_t
-    !> Exit code the program ends with if nobody handles the error.
+    !> Exit code of the program if no caller handles the error.
     integer :: code = exit_internal
     !> One sentence for the user.
     character(len=:), allocatable :: message

@@ -2,8 +2,8 @@
 !> ranks.
 !>
 !> Small superaccumulator of R. M. Neal, Fast exact summation using small and large superaccumulators (2015,
-!> arXiv:1505.05571): a fixed-point number as wide as the range of double precision, in chunks of 64 bits whose places
-!> are 32 bits apart. The upper half of a chunk has room for carries. Here a term is split into three parts below 2^32
+!> arXiv:1505.05571): a fixed-point number as wide as the range of double precision, in chunks of 64 bits whose lowest
+!> bits are 32 bits apart. The upper half of a chunk receives carries. Here a term is split into three parts below 2^32
 !> instead of two, so that carries are due after 2^30 terms instead of 2^11.
 module exact_sums
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
@@ -14,13 +14,13 @@ module exact_sums
 
   !> Bits of the fraction, of a place, and unit of the lowest place as a power of two: the smallest denormal number
   integer, parameter :: fraction_bits = 52, place_bits = 32, lowest = -1074
-  !> Bits of the exponent, of which the largest stands for infinities and NaN
+  !> Largest exponent, which represents infinities and NaN
   integer, parameter :: not_finite = 2047
   !> Places for exponents up to 2046 with 53 bits behind, then room for the carries of 2^63 terms
   integer, parameter :: highest = not_finite - 1 + fraction_bits
   integer, parameter :: places = (highest - mod(highest, place_bits))/place_bits + 3
-  !> Leading bits of a sum from which it is rounded: as many as an integer of 64 bits holds besides its sign, less one;
-  !> a real has 53, and one more decides a tie
+  !> Number of leading bits of a sum from which it is rounded: as many as an integer of 64 bits has besides its sign,
+  !> less one; a real has 53, and one more resolves a tie
   integer, parameter :: leading_bits = 62
   !> Terms after which carries are due: each adds less than 2^32 to a chunk with a capacity of 2^63
   integer, parameter :: max_terms = 2**30
@@ -157,7 +157,7 @@ contains
     leading = shiftr(chunks(place), within)
     if (place < top) leading = leading + shiftl(chunks(place + 1), place_bits - within)
     if (place + 1 < top) leading = leading + shiftl(chunks(place + 2), 2*place_bits - within)
-    ! Dropped bits matter only to a tie: one bit stands for all of them.
+    ! Dropped bits matter only to a tie: one bit represents all of them.
     if (any(chunks(:place - 1) /= 0) .or. trailz(chunks(place)) < within) leading = ibset(leading, 0)
     value = scale(real(leading, wp), dropped + lowest)
   end function rounded_magnitude

@@ -19,7 +19,7 @@ module file_locks
   end type file_lock_t
 
   interface
-    !> Locks a file, which is made if need be: a descriptor, or a negative number.
+    !> Locks a file, which is created if it does not exist: a descriptor, or a negative number.
     integer(c_int) function implam_lock_file(path) bind(c)
       import :: c_char, c_int
       !> Zero-terminated path
@@ -50,7 +50,7 @@ contains
     refused = self%descriptor == taken_by_another
   end subroutine take
 
-  !> Lets the file go.
+  !> Releases the lock.
   subroutine release(self)
     !> The lock
     class(file_lock_t), intent(inout) :: self

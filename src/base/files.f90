@@ -28,7 +28,7 @@ module files
       character(kind=c_char), intent(in) :: path(*)
     end function c_unlink
 
-    !> C library: makes a folder.
+    !> C library: creates a folder.
     integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir')
       import :: c_char, c_int
       !> Zero-terminated path
@@ -84,7 +84,7 @@ module files
     !> C library: reads bytes and returns how many there were.
     integer(c_size_t) function c_fread(buffer, item_size, items, stream) bind(c, name='fread')
       import :: c_ptr, c_size_t
-      !> Where the bytes go
+      !> Receives the bytes
       type(c_ptr), value :: buffer
       !> Size and number of items wanted
       integer(c_size_t), value :: item_size, items
@@ -118,7 +118,7 @@ contains
     is_directory = c_access(path//'/.'//c_null_char, 0_c_int) == 0
   end function is_directory
 
-  !> True: the path is a pipe, which to open means to wait for another program.
+  !> True: the path is a pipe. Opening it would wait for another program.
   logical function is_pipe(path)
     !> Its path
     character(len=*), intent(in) :: path
@@ -135,7 +135,7 @@ contains
     if (.not. is_directory(path)) is_readable = c_access(path//c_null_char, may_read) == 0
   end function is_readable
 
-  !> True: both paths, behind all links, lead to one file that exists.
+  !> True: both paths lead to one existing file, after all links are resolved.
   logical function is_same_file(a, b)
     !> The paths
     character(len=*), intent(in) :: a, b
@@ -144,7 +144,7 @@ contains
   end function is_same_file
 
   !> Why a file cannot be extended, as the end of a sentence; empty if it can be, or if the system gives another reason.
-  !> It is asked after a failure, since libraries do not return the reason.
+  !> It is called after a failure, since libraries do not return the reason.
   function write_obstacle(path, bytes) result(reason)
     !> Path of the file, which may not exist
     character(len=*), intent(in) :: path
@@ -185,11 +185,11 @@ contains
     ignored = c_unlink(path//c_null_char)
   end subroutine remove_file
 
-  !> Makes a folder and its parents, if they do not exist.
+  !> Creates a folder and its parents, if they do not exist.
   subroutine make_directory(path, error)
     !> Its path
     character(len=*), intent(in) :: path
-    !> Raised if the folder is not there in the end
+    !> Raised if the folder does not exist afterwards
     type(error_t), allocatable, intent(inout) :: error
     integer :: i, status
 
@@ -197,7 +197,7 @@ contains
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, all_permissions)
     end do
     status = c_mkdir(path//c_null_char, all_permissions)
-    ! Another process may have made the folder, so only the result matters.
+    ! Another process may have created the folder, so only the result matters.
     if (.not. is_directory(path)) call fail(error, exit_files, "Cannot make the folder "//path//'.')
   end subroutine make_directory
 
@@ -237,7 +237,7 @@ contains
     end do
   end subroutine read_whole_file
 
-  !> Says in one sentence why a path cannot be read.
+  !> Reports in one sentence why a path cannot be read.
   subroutine check_readable(path, error)
     !> The path
     character(len=*), intent(in) :: path

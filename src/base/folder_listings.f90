@@ -9,12 +9,12 @@ module folder_listings
   integer, parameter :: longest = 256
 
   interface
-    !> Name of the file than which so many others are newer: its length, or 0 if there is none.
+    !> Name of the file for which a given number of others are newer. Returns its length, or 0 if there is none.
     integer(c_int) function implam_file_by_age(folder, ending, newer, name) bind(c)
       import :: c_char, c_int
       !> Zero-terminated path of the folder, and the ending of the names
       character(kind=c_char), intent(in) :: folder(*), ending(*)
-      !> How many are newer
+      !> Number of newer files
       integer(c_int), value :: newer
       !> Receives the name, without a zero at its end
       character(kind=c_char), intent(out) :: name(*)
@@ -23,13 +23,13 @@ module folder_listings
 
 contains
 
-  !> Name of one of the files with a certain ending; empty if there are not that many.
+  !> Name of the file with a certain ending for which a given number of others are newer; empty if there is none.
   function file_by_age(folder, ending, newer) result(name)
     !> Path of the folder
     character(len=*), intent(in) :: folder
     !> Ending of the names, which are longer
     character(len=*), intent(in) :: ending
-    !> How many files are newer, from 0
+    !> Number of newer files, from 0
     integer, intent(in) :: newer
     !> The name, without the folder
     character(len=:), allocatable :: name

@@ -173,7 +173,7 @@ contains
   pure subroutine finished(self, content)
     !> The text
     class(json_t), intent(inout) :: self
-    !> As it goes into a file
+    !> The text as written to a file
     character(len=:), allocatable, intent(out) :: content
 
     do while (len(self%open_brackets) > 0)

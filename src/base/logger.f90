@@ -11,15 +11,15 @@ module logger
   private
   public :: log_t
 
-  !> Longest time in seconds that a line may wait before it is in the file: short for a reader, while writes that are
-  !> this rare take no measurable time. It changes no result.
+  !> Longest time in seconds before a line is written to the file: short for a reader, while writes that are this rare
+  !> take no measurable time. It has no effect on results.
   real(wp), parameter :: longest_wait = 2
   !> C's number of the standard output.
   integer(c_int), parameter :: standard_output = 1
 
   !> A log file together with the terminal.
   type :: log_t
-    !> Details go to the terminal as well
+    !> True: details are printed on the terminal, too
     logical :: verbose = .false.
     !> The output is a terminal, on which a line can be overwritten
     logical :: interactive = .false.
@@ -67,7 +67,7 @@ contains
     character(len=*), intent(in) :: path
     !> This rank is the one that writes
     logical, intent(in) :: writes
-    !> Go on with the file that is there (restart)
+    !> Append to the existing file (restart)
     logical, intent(in) :: append
     !> Raised, on the rank that writes, if the file cannot be opened or another run writes it
     type(error_t), allocatable, intent(inout) :: error
@@ -77,7 +77,7 @@ contains
     if (.not. writes) return
     self%interactive = c_isatty(standard_output) == 1
     if (len_trim(path) == 0) return
-    ! Opening may empty the file, so the lock comes first.
+    ! Opening may empty the file, so the lock is taken before.
     call self%lock%take(path, refused)
     if (refused) then
       call fail(error, exit_files, 'Another run is writing '//trim(path)//' and the results beside it; wait '// &
@@ -133,7 +133,7 @@ contains
     call self%to_file(text, at_once=.false.)
   end subroutine detail
 
-  !> Shows a line that the next one overwrites; nothing if the output is no terminal.
+  !> Shows a line that the next one overwrites; no effect if the output is not a terminal.
   subroutine status(self, text)
     !> The log
     class(log_t), intent(inout) :: self
@@ -158,7 +158,7 @@ contains
     call self%lock%release()
   end subroutine close
 
-  !> Writes a line to the terminal; one that cannot be written there is no reason to stop.
+  !> Writes a line to the terminal; the run continues if this fails.
   subroutine to_terminal(self, unit, line)
     !> The log
     class(log_t), intent(inout) :: self
@@ -174,13 +174,13 @@ contains
     flush (unit, iostat=ignored)
   end subroutine to_terminal
 
-  !> Writes a line to the file. If it cannot be written the file is given up, and the terminal informed.
+  !> Writes a line to the file. If this fails no more lines are written to the file, and the terminal is informed.
   subroutine to_file(self, line, at_once)
     !> The log
     class(log_t), intent(inout) :: self
     !> The line
     character(len=*), intent(in) :: line
-    !> It must not wait
+    !> True: the line is written at once
     logical, intent(in) :: at_once
     integer(long) :: now, rate
 

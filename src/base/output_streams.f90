@@ -5,9 +5,9 @@ module output_streams
   private
   public :: output_stream_t
 
-  !> A file being written. Once something has failed it stays so: `failed` is asked for at the end.
+  !> A file being written. After a failure it remains failed: `failed` is checked at the end.
   type :: output_stream_t
-    !> Something could not be done
+    !> True: an operation has failed
     logical :: failed = .false.
     !> C's handle
     type(c_ptr), private :: stream = c_null_ptr

@@ -6,7 +6,8 @@ module short_numbers
   private
   public :: short_text, text_at_least, text_at_most
 
-  !> Numbers this near to one of three digits are meant to be it: a thousand operations lose as much.
+  !> Relative distance of a number from one of three digits within which it is taken to be that number: a thousand
+  !> operations lose as much.
   real(wp), parameter :: rounding_tolerance = 1.0e-12_wp
 
 contains

@@ -7,14 +7,16 @@ module shortest_digits
   private
   public :: find_shortest
 
-  !> Decimal exponents of the numbers it knows; those beyond need powers of ten beyond the range of doubles.
+  !> Largest decimal exponent of the numbers that are treated; for larger ones the powers of ten exceed the range of
+  !> doubles.
   integer, parameter :: most = 280
-  !> Relative distance from a bound within which nothing is decided; the products are good to 1e-15 of a last digit.
+  !> Relative distance from a bound within which a case is not decided; the products are exact to 1e-15 of a last digit.
   real(wp), parameter :: tie_tolerance = 1.0e-12_wp
 
 contains
 
-  !> The nearest number of 15 digits if it reads back as the same double, else that of 16, else that of 17.
+  !> The nearest number of 15 digits if it reads back as the same double, otherwise that of 16 digits, otherwise that of
+  !> 17.
   pure subroutine find_shortest(value, digits, exponent, known)
     !> The number, > 0
     real(wp), intent(in) :: value
@@ -42,7 +44,7 @@ contains
     if (value*ten(-exponent) < ten(16)) exponent = exponent - 1
     scaled = value*ten(-exponent)
     whole = int(scaled, long)
-    ! What is nearer than half the distance to the next double reads back. Below a power of two they are denser.
+    ! A number closer than half the distance to the next double reads back. Below a power of two doubles are denser.
     bound(2) = real(spacing(value)*ten(-exponent), wp)/2
     bound(1) = bound(2)
     if (.not. abs(fraction(value)) > 0.5_wp) bound(1) = bound(2)/2

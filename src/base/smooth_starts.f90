@@ -1,4 +1,4 @@
-!> Smooth ramps: a prescribed motion that follows them excites no vibrations.
+!> Smooth ramps: a prescribed motion with such a ramp hardly excites vibrations (doc/theory/time_integration.md).
 module smooth_starts
   use kinds, only: wp
   implicit none
@@ -9,9 +9,9 @@ contains
 
   !> Step from 0 to 1 whose velocity and acceleration are 0 at both ends, 10 s^3 - 15 s^4 + 6 s^5, or a derivative.
   elemental real(wp) function smooth_step(s, order) result(value)
-    !> Part of the step that is over
+    !> Time over the duration of the ramp, 0 to 1
     real(wp), intent(in) :: s
-    !> Which derivative, 0 to 2
+    !> Order of the derivative, 0 to 2
     integer, intent(in) :: order
 
     value = 0
@@ -27,12 +27,12 @@ contains
     end select
   end function smooth_step
 
-  !> Ramp from 0 to 1 whose velocity rises as 3 s^2 - 2 s^3 and then stays, or a derivative. Without a rise the velocity
-  !> is constant from the beginning.
+  !> Ramp from 0 to 1 whose velocity rises as 3 s^2 - 2 s^3 and is then constant, or a derivative of it. Without a rise
+  !> the velocity is constant from the beginning.
   elemental real(wp) function smooth_ramp(part, rise, order) result(value)
-    !> Part of the run that is over, and part in which the velocity rises
+    !> Time over the duration of the run, 0 to 1, and fraction of the run in which the velocity rises
     real(wp), intent(in) :: part, rise
-    !> Which derivative, 0 to 2
+    !> Order of the derivative, 0 to 2
     integer, intent(in) :: order
     real(wp) :: s, velocity
 

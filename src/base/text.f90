@@ -4,7 +4,7 @@ module text
   use shortest_digits, only: find_shortest
   implicit none
   private
-  public :: line_t, lower_case, to_text, rounded_text, counted, listed, joined, words_of, append, &
+  public :: line_t, lower_case, to_text, rounded_text, counted, listed, joined, words_of, append, ended, &
             edit_distance, nearest_name
 
   !> One line of a list of lines.
@@ -76,7 +76,7 @@ contains
     integer :: exponent
     logical :: known
 
-    ! Many columns of a history hold nothing, with either sign.
+    ! Many columns of a history are zero, with either sign.
     digits = '0'
     if (value >= 0 .and. value <= 0) return
     call find_shortest(abs(value), number, exponent, known)
@@ -133,7 +133,7 @@ contains
     digits = plain_decimal(trim(adjustl(buffer)))
   end function rounded_text
 
-  !> A number with the noun of what it counts, in the plural unless the number is 1.
+  !> A number with the noun of the counted items, in the plural unless the number is 1.
   pure function counted(digits, noun) result(words)
     !> The number as text
     character(len=*), intent(in) :: digits
@@ -191,7 +191,7 @@ contains
     logical, intent(in) :: negative
     !> Its digits, the first of them before the point
     character(len=*), intent(in) :: figures
-    !> Its exponent; outside -4 to 6 it stays
+    !> Its exponent, which is written only outside -4 to 6
     integer, intent(in) :: exponent
     !> Such as -0.25
     character(len=:), allocatable :: plain
@@ -297,9 +297,9 @@ contains
     if (i > 1 .and. j > 1) swapped = a(i - 1:i) == b(j:j)//b(j - 1:j - 1)
   end function swapped
 
-  !> The known name that a mis-spelt one most likely means, or an empty text if none is near.
+  !> The known name most similar to a misspelt one, or an empty text if none is similar.
   pure function nearest_name(name, known) result(nearest)
-    !> As it was written
+    !> The name as written
     character(len=*), intent(in) :: name
     !> Known names
     type(line_t), intent(in) :: known(:)
@@ -318,4 +318,15 @@ contains
       nearest = known(i)%text
     end do
   end function nearest_name
+
+  !> A sentence with its full stop, which `.false.` has already.
+  pure function ended(sentence)
+    !> The sentence
+    character(len=*), intent(in) :: sentence
+    !> It ends with one full stop
+    character(len=:), allocatable :: ended
+
+    ended = sentence
+    if (sentence(len(sentence):) /= '.') ended = sentence//'.'
+  end function ended
 end module text

@@ -28,8 +28,8 @@ module case_deck
       &System of units of the deck; the check compares values with usual ones, and results name it.', &
     'case | strict | logical | 1 | - | .false. | .true. .false. | &
       &Whether a run ends with exit code 3 where it exceeds a limit of the model, instead of a warning.', &
-    'case | error_estimate | logical | 1 | - | none | .true. .false. | &
-      &Whether a coarser run, an eighth of the work, estimates errors. Default: with accuracy, unless the impact is elastic.', &
+    'case | error_estimate | logical | 1 | - | none | .true. .false. | Whether a coarser run, an eighth of the work, &
+      &estimates errors. Default: with accuracy, unless the impact is elastic.', &
     'case | refine | integer | 1 | - | 0 | >= 0, <= 4 | &
       &Number of halvings of elements and steps; results are then named NAME_finer1 and so on.']
 

@@ -22,8 +22,8 @@ module deck_accuracy
   private
   public :: check_left_out, choose_by_accuracy
 
-  !> Error of the history allowed over that of the peak: 3 % and 1 %, as a small shift in time changes a steep history
-  !> by more than its peak (doc/studies/speed.md). Mesh and step get half of both each.
+  !> Ratio of the permitted error of the history to that of the peak: 3 % and 1 %, as a small shift in time changes a
+  !> steep history more than its peak (doc/studies/speed.md). Half of each is permitted for the mesh, half for the step.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
   !> Largest number of elements from the plate's centre to an edge, twice that from edge to edge, with
   !> factorizations and without: more take hours. Central differences take .2 us an element and step (`explicit_costs`):
@@ -35,7 +35,8 @@ module deck_accuracy
   real(wp), parameter :: core_waves = 2
   !> Elements across the smaller side of the zone of an interface that may delaminate.
   integer, parameter :: zone_elements = 24
-  !> Fields written in a run, and the largest accuracy, %, with which they are: they cost a draft half its time.
+  !> Number of times at which fields are written in a run, and the largest accuracy, %, with which they are written:
+  !> they would take half of the time of a draft.
   integer, parameter :: fields_written = 10
   !> Between a draft, 5 %, and the standard, 1 %.
   real(wp), parameter :: max_with_fields = 2
@@ -61,7 +62,7 @@ contains
       call require(mesh_group, key_elements, '2 integers >= 2')
     else if (.not. problems%concern(mesh_group)) then
       call problems%error(0, mesh_group, '', '&'//mesh_group//' is missing; `implam explain '//mesh_group// &
-                          '` shows what it takes.')
+                          '` lists its keys.')
     end if
     if (.not. (needs_lengths .and. settings%has_group(time_group))) return
     call require(time_group, key_end, '1 real value > 0')
@@ -223,8 +224,8 @@ contains
     end if
   end subroutine choose_elements
 
-  !> Core of elements of the required size around the struck point, which waves of first contact do not leave before its
-  !> end. Across a narrow plate it ends two elements before the edges.
+  !> Core of elements of the required size around the struck point, so large that waves of first contact do not leave it
+  !> before this contact ends. Across a narrow plate it ends two elements before the edges.
   subroutine choose_core(deck, cell, wave_length)
     !> The deck
     type(deck_t), intent(inout) :: deck

@@ -34,9 +34,9 @@ module deck_central_differences
   !> Approximate number of rows of a history, enough for a plot. They are written at the ends of steps, which are not
   !> shortened for them.
   real(wp), parameter :: rows = 2000
-  !> Longest step over the time in which the force of first contact rises, with the default `step_factor`: 15 steps in a
-  !> contact. The energy of a mass on Hertz' spring is then within 1 % in all steps, and its rebound velocity within
-  !> .1 %. The stable step leaves 3 steps, with which the mass gains 12 % (`ctest -R extremes`).
+  !> Longest step over the rise time of the force of first contact, with the default `step_factor`: 15 steps in a
+  !> contact. The energy of a mass on Hertz' spring is then within 1 % in all steps, and its rebound velocity within .1
+  !> %. The stable step alone allows 3 steps in a contact, in which the mass gains 12 % of energy (`ctest -R extremes`).
   real(wp), parameter :: part_of_rise = 2/15.0_wp
 
 contains
@@ -105,7 +105,7 @@ contains
                   ' %, and changes the force history of a preliminary elastic impact by '// &
                   short_text(100*chosen%change)//' %.')
     else
-      call append(deck%reasons, 'Mass scaling 1: no impact says how short the waves are.')
+      call append(deck%reasons, 'Mass scaling 1: without an impact the length of the waves is not known.')
     end if
     call deck%settings%derive(time_group, key_mass_scaling, short_text(chosen%scaling), .false.)
   end subroutine choose_scaling
@@ -130,7 +130,7 @@ contains
     end if
     associate (time => deck%stepping%time)
       if (time%step > step) call append(deck%reasons, 'Steps of '//short_text(step)//' instead of '// &
-                                        short_text(time%step)//': longer ones are not stable.')
+                                        short_text(time%step)//': longer steps are not stable.')
       if (.not. time%step > 0 .or. time%step > step) time%step = min(step, time%end)
     end associate
     if (.not. deck%settings%is_given(time_group, key_step)) &
@@ -138,12 +138,12 @@ contains
     if (deck%settings%is_given(output_group, key_history_every)) return
     deck%output%steps_between_rows = max(1, nint(deck%stepping%time%end/deck%stepping%time%step/rows))
     call append(deck%reasons, 'A row of the history every '// &
-                counted(to_text(deck%output%steps_between_rows), 'step')//'; peaks are followed in every step.')
+                counted(to_text(deck%output%steps_between_rows), 'step')//'; peaks are found from every step.')
   end subroutine find_stable_step
 
-  !> Shortens the step for the contact of an impactor so light that the waves of the plate last longer. The stable step
-  !> allows for the contact's stiffness so far, of which Hertz' law has none before the first step. `step_factor`
-  !> shortens this step as it does the stable one.
+  !> Shortens the step for the contact of an impactor so light that the force rises faster than the waves of the plate.
+  !> The stable step allows for the contact stiffness so far, which is zero before the first step by Hertz' law.
+  !> `step_factor` reduces this step as it does the stable one.
   subroutine limit_by_contact(deck, step)
     !> The deck; receives its longest step where the contact decides
     type(deck_t), intent(inout) :: deck

@@ -1,4 +1,5 @@
-!> Checks of softening plies: are all fracture energies given, which keys have no effect, are elements short enough?
+!> Checks of softening plies: whether all fracture energies are given, which keys have no effect, and whether elements
+!> are short enough.
 module deck_crack_bands
   use cell_grids, only: cell_edges
   use crack_band_limits, only: longest_element
@@ -23,7 +24,7 @@ module deck_crack_bands
   private
   public :: check_crack_bands
 
-  !> Ratio of dissipated energy to fracture energy from which it is reported: smaller ones are written as 1.0.
+  !> Ratio of dissipated energy to fracture energy from which it is reported: smaller ratios are printed as 1.0.
   real(wp), parameter :: reported_ratio = 1.05_wp
 
 contains
@@ -55,14 +56,14 @@ contains
     if (deck%ply_damage%permanent_shear) call check_permanent_shear(deck, problems)
     if (deck%ply_damage%crack_closure .and. .not. (deck%has_time .and. is_explicit(deck%stepping))) &
       call report(deck%settings, problems, ply_damage_group, key_closure, 'implicit steps and load steps do not '// &
-                'close cracks; take integrator = ''central_difference'' of &time, or leave it out.')
+                'model crack closure; use integrator = ''central_difference'' of &time, or leave it out.')
     call remark_idle(deck%settings, problems, ply_damage_group, keys_of_sudden_failure, &
                      'has no effect on plies with fracture energies.')
     if (problems%errors() > 0) return
     if (deck%ply_damage%in_situ .and. all(block_of(stacked_plies(deck%laminate, deck%materials), 1) == &
                                           [1, size(deck%laminate%angle)])) &
       call remark(deck%settings, problems, ply_damage_group, key_in_situ, 'has no effect: all plies are of one '// &
-                  'material and angle, so that none has a neighbour to hold its cracks together.')
+                  'material and angle, so that no ply has a neighbour that constrains its cracks.')
     do i = 1, size(deck%materials)
       call check_lengths(deck, i, problems)
     end do
@@ -78,7 +79,7 @@ contains
 
     if (.not. (deck%has_time .and. is_explicit(deck%stepping))) &
       call report(deck%settings, problems, ply_damage_group, key_permanent, 'implicit steps and load steps have no '// &
-                'permanent strains; take integrator = ''central_difference'' of &time, or leave it out.')
+                'permanent strains; use integrator = ''central_difference'' of &time, or leave it out.')
     if (any([(deck%settings%is_given(material_group, key_shear_strain, place), place=1, size(deck%materials))])) return
     call report(deck%settings, problems, ply_damage_group, key_permanent, 'there is no permanent strain without '// &
               key_shear_strain//' of a &'//material_group//'; give it, or leave this out.')
@@ -173,8 +174,8 @@ contains
     sides = length_text(deck, present(2))
     if (length_text(deck, present(1)) /= sides) sides = length_text(deck, present(1))//' to '//sides
     call remark(deck%settings, problems, material_group, '', 'the sides of elements are '//sides//' long; failure '// &
-                'dissipates more than the fracture energy in those longer than '//joined(limits, ', ')// &
-                '. Use shorter ones where plies fail.'//excess, place)
+                'dissipates more than the fracture energy in elements longer than '//joined(limits, ', ')// &
+                '. Use shorter elements where plies fail.'//excess, place)
   end subroutine check_lengths
 
   !> Longest elements that dissipate no more than the fracture energies, over all blocks of a material, with in-situ

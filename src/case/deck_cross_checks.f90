@@ -95,7 +95,8 @@ contains
                     'an impactor needs &time, or a travel; give &impactor travel, or leave out &static or &impactor.')
     else if (deck%has_pressure .or. loads(deck%lines)) then
       call report(deck%settings, problems, impactor_group, key_travel, &
-                  'with it a static analysis has no other load; leave out &pressure, and lines that move or press.')
+                  'no other load is possible with a travel in a static analysis; leave out &pressure and lines '// &
+                  'that move or load the plate.')
     end if
     call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
                      keys_of_motion(deck%settings), 'has no effect on a static analysis.')
@@ -181,8 +182,8 @@ contains
                      'has no effect without growth = ''one_per_step''.')
   end subroutine check_transient
 
-  !> What to give of &time: central differences, the default where plies or interfaces soften, choose the step, and for
-  !> an impact the end, too.
+  !> Keys of &time to be given: central differences, the default where plies or interfaces soften, choose the step, and
+  !> for an impact the end, too.
   function needed_of_time(deck) result(clause)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -214,7 +215,7 @@ contains
       ! The force acts on the full patch, also beyond the nose.
       if (deck%impactor%spreads .and. deck%impactor%radius > 0 .and. &
           deck%mesh%patch/sqrt(2.0_wp) > deck%impactor%radius) &
-        call remark(s, problems, mesh_group, key_patch, 'reaches beyond the nose that presses on it: its corners '// &
+        call remark(s, problems, mesh_group, key_patch, 'extends beyond the nose of the impactor: its corners '// &
                     'are '//short_text(deck%mesh%patch/sqrt(2.0_wp))//' from the struck point, and the radius is '// &
                     short_text(deck%impactor%radius)//'; make the patch smaller.')
       call check_dent(deck, problems)
@@ -235,8 +236,8 @@ contains
     end associate
   end subroutine check_impact
 
-  !> Remarks on a dent that begins beyond the range of the indentation law, which ends at the laminate's thickness:
-  !> mostly a length in another unit, which makes the contact elastic.
+  !> Warns of a dent that begins beyond the range of the indentation law, which ends at the laminate's thickness. It is
+  !> usually a length in another unit, with which the contact is elastic.
   subroutine check_dent(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -246,8 +247,8 @@ contains
     if (deck%indentation%law == law_hertz .or. .not. allocated(deck%laminate%thickness)) return
     associate (thickness => sum(deck%laminate%thickness))
       if (thickness > 0 .and. deck%indentation%alpha_critical > thickness) &
-        call remark(deck%settings, problems, indentation_group, key_alpha_critical, 'is larger than the laminate '// &
-                    'is thick, '//short_text(thickness)//': the contact is elastic and leaves no dent.')
+        call remark(deck%settings, problems, indentation_group, key_alpha_critical, 'is larger than the thickness '// &
+                    'of the laminate, '//short_text(thickness)//': the contact is elastic and leaves no dent.')
     end associate
   end subroutine check_dent
 

@@ -57,8 +57,9 @@ contains
         if (place == before .or. deck%delaminations(i)%law /= law_front) cycle
         before = place
         if (are_clear(deck%settings, problems, delamination_group, key_law, place)) &
-          call report(deck%settings, problems, delamination_group, key_law, 'central differences cannot be used with a '// &
-                    'front; write &time integrator = ''generalized_alpha'', or law = ''cohesive'' with strengths.', place)
+          call report(deck%settings, problems, delamination_group, key_law, 'central differences cannot be used '// &
+                      'with a front; write &time integrator = ''generalized_alpha'', or law = ''cohesive'' with '// &
+                      'strengths.', place)
       end associate
     end do
   end subroutine check_fronts

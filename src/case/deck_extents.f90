@@ -27,18 +27,19 @@ module deck_extents
   public :: check_sizes, check_extents, extent_lines
 
   !> Length over thickness beyond which round-off dominates the result, and below which plate theory is inaccurate.
-  !> Stiffnesses of shear and bending differ by the square of the first, 1e10, which leaves six of sixteen digits. At
+  !> Stiffnesses of shear and bending differ by the square of the first, 1e10, so that six of sixteen digits remain. At
   !> four thicknesses the deflection of a cross-ply is 12 % too small (N. J. Pagano, S. J. Hatfield, AIAA J. 10 (1972)
   !> 931-933).
   real(wp), parameter :: max_slenderness = 1.0e5_wp, min_slenderness = 5
-  !> Side of a starter over the loaded patch's below which growth may never start: of two starters under the same force,
-  !> that of the patch's size had an eighth of the energy release rate of one twice as wide. It decides on a warning.
+  !> Smallest ratio of the sides of starter and loaded patch; below it growth may never start: under the same force a
+  !> starter as large as the patch had an eighth of the energy release rate of one twice as wide. It affects a warning
+  !> only.
   real(wp), parameter :: min_starter = 1.5_wp
   !> Relative difference from the requested size above which a warning is given: 5 %, as much as the error of the
   !> force with accuracy='draft'.
   real(wp), parameter :: size_tolerance = 0.05_wp
-  !> Distance from its place at which a line counts as moved, relative to the plate's length: .1 mm in 100 mm, which no
-  !> rig keeps. It decides on a remark.
+  !> Distance of a line from its coordinate, relative to the plate's length, above which it is reported as moved: .1 mm
+  !> in 100 mm, below the accuracy of a rig. It affects a warning only.
   real(wp), parameter :: moved_line = 1.0e-3_wp
 
 contains
@@ -102,8 +103,8 @@ contains
       associate (edges => cell_edges(deck%plate, deck%mesh, direction), at => deck%lines(place)%at)
         taken = place_of_node(edges, node_line(edges, at))
         if (abs(taken - at) > moved_line*deck%plate%length(direction)) &
-          call remark(deck%settings, problems, line_group, line_key_at, 'a line lies on nodes; this mesh puts it '// &
-                      'at '//to_text(rounded(taken))//'.', place)
+          call remark(deck%settings, problems, line_group, line_key_at, 'lines lie on nodes; on this mesh the line '// &
+                      'is at '//to_text(rounded(taken))//'.', place)
       end associate
     end do
   end subroutine check_line_nodes
@@ -154,7 +155,7 @@ contains
         if (deck%has_impactor .and. d%law == law_front .and. d%starter < min_starter*deck%mesh%patch .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
-                      'patch: most of the shear then passes inside it, and growth may never start.', place)
+                      'patch: most of the shear force then acts within the starter, and growth may never start.', place)
       end associate
     end do
   end subroutine check_zones
@@ -192,19 +193,19 @@ contains
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
         call extents_of(x_edges, y_edges, d, zone, starter)
         if (differs(zone, d%zone) .and. .not. d%is_adaptive) &
-          call remark(deck%settings, problems, delamination_group, key_zone, 'a zone is whole cells; this '// &
-                      'mesh makes it '//shown(zone)//'.', place)
+          call remark(deck%settings, problems, delamination_group, key_zone, 'zones consist of entire cells; '// &
+                      'on this mesh the zone is '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
             differs(starter, [d%starter, d%starter])) &
           call remark(deck%settings, problems, delamination_group, key_starter, &
-                      'a starter is whole cells; this mesh makes it '//shown(starter)//'.', place)
+                      'starters consist of entire cells; on this mesh the starter is '//shown(starter)//'.', place)
         call check_smoothing(deck, d, mean_cell(x_edges, y_edges, d%zone), minval(starter)/2, problems)
       end associate
     end do
   end subroutine check_extents
 
-  !> Remarks on a front that is smoothed over more than its radius: a rate proportional to the cosine of twice the angle
-  !> around a disc loses 29 % of its amplitude there, 8 % at half the radius.
+  !> Warns of a front that is smoothed over more than its radius: a rate proportional to the cosine of twice the angle
+  !> around a disc then loses 29 % of its amplitude, 8 % at half the radius.
   subroutine check_smoothing(deck, delamination, cell, radius, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -226,13 +227,13 @@ contains
       advice = 'give a shorter one'
       if (.not. distance > 0) then
         distance = default_smoothing(sum(deck%laminate%thickness), cell)
-        advice = 'take cells of at most '//to_text(rounded(radius/min_smoothed_cells))
+        advice = 'use cells of at most '//to_text(rounded(radius/min_smoothed_cells))
         if (.not. min_smoothed_cells*cell > sum(deck%laminate%thickness)) return
       end if
       if (distance > radius*(1 + size_tolerance)) &
         call remark(deck%settings, problems, delamination_group, key_smoothing, 'rates are averaged over '// &
-                    to_text(rounded(distance))//' along the front, more than half of the starter, which levels '// &
-                    'those that differ along it; '//advice//'.', d%group)
+                    to_text(rounded(distance))//' along the front, more than half of the starter, which reduces '// &
+                    'their variation along it; '//advice//'.', d%group)
     end associate
   end subroutine check_smoothing
 
@@ -254,7 +255,7 @@ contains
   pure function extent_lines(deck) result(lines)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
-    !> One line an interface
+    !> One line per interface
     type(line_t), allocatable :: lines(:)
     real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)
@@ -269,7 +270,7 @@ contains
       text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
              shown(zone)
       if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
-      if (deck%delaminations(place)%is_adaptive) text = text//'. The zone follows the damage'
+      if (deck%delaminations(place)%is_adaptive) text = text//'. The zone grows with the damage'
       lines(place)%text = text//'.'
     end do
   end function extent_lines

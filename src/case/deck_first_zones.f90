@@ -31,9 +31,9 @@ contains
       place = deck%delaminations(i)%group
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
       if (deck%delaminations(i)%law == law_front) then
-        call require('a front needs it; zones are adaptive with law = ''cohesive'' only')
+        call require('a front requires a zone; zones are adaptive with law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
-        call require(key_strip//' runs across its whole width')
+        call require(key_strip//' runs across the full width of the zone')
       else if (.not. all(beside_layers(deck)) .and. .not. problems%concern(line_group, line_key_at)) then
         call require('a &line acts on layers that exist from the start')
       end if
@@ -51,7 +51,7 @@ contains
     end subroutine require
   end subroutine check_left_out_zones
 
-  !> Lines outside of layers: those that displace an edge of the plate in its plane.
+  !> True for lines that do not act on layers: those that displace an edge of the plate in its plane.
   pure function beside_layers(deck)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -68,7 +68,7 @@ contains
   subroutine set_first_zones(deck, problems)
     !> The deck, filled; its interfaces receive the zones
     type(deck_t), intent(inout) :: deck
-    !> Errors so far; with any it returns
+    !> Errors so far; if there are any, nothing is done
     type(problems_t), intent(in) :: problems
     real(wp) :: least, thickness
     integer :: i, direction
@@ -110,6 +110,7 @@ contains
       end associate
     end do
     call append(deck%reasons, 'The plate has layers from the start, '//trim(merge('in the core', 'everywhere ', &
-                deck%mesh%cell > 0))//', as with shear_correction = ''energy'' it is softer in shear than they are.')
+                deck%mesh%cell > 0))//', as with shear_correction = ''energy'' its shear stiffness is below that '// &
+                'of its layers.')
   end subroutine set_permanent_zones
 end module deck_first_zones

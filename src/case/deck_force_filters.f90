@@ -1,4 +1,4 @@
-!> Warns of a low pass of the contact force that the history cannot show.
+!> Warns of a low-pass filter of the contact force whose corner the rows of the history cannot resolve.
 module deck_force_filters
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -12,8 +12,8 @@ module deck_force_filters
 
 contains
 
-  !> Compares the corner with the Nyquist frequency of the rows. Rows of steps without an interval are taken to be as
-  !> far apart as the first ones.
+  !> Compares the corner frequency with the Nyquist frequency of the rows. Rows without an interval of time are assumed
+  !> to be as far apart as the first ones.
   subroutine check_force_filter(deck, problems)
     !> The deck, filled and checked, its step known
     type(deck_t), intent(in) :: deck

@@ -7,12 +7,13 @@ module deck_idle_keys
   use deck_remarks, only: remark, remark_idle
   use interface_places, only: interfaces_between
   use impactor_deck, only: impactor_group, key_rise, key_travel
-  use material_deck, only: material_group, key_expansion, key_shear_strain, of_interfaces, &
-                           strength_keys, toughness_keys
+  use material_deck, only: material_group, key_expansion, key_fibre_shear, key_shear_23, key_shear_strain, &
+                           of_interfaces, strength_keys, toughness_keys
   use output_deck, only: output_group, key_force_filter
   use plate_deck, only: key_imperfection, plate_group
   use plate_options, only: kinematics_linear
   use ply_damage_deck, only: ply_damage_group
+  use ply_damage_parameters, only: criteria_hou, criteria_puck
   use stepping_parameters, only: is_explicit
   use thermal_deck, only: thermal_group
   use time_deck, only: time_group, key_longest_step
@@ -70,13 +71,34 @@ contains
     end if
     if (.not. deck%has_thermal) call remark_idle(deck%settings, problems, material_group, key_expansion, &
                                                  'has no effect without &'//thermal_group//'.', place)
-    if (deck%has_ply_damage .or. problems%concern(ply_damage_group)) return
+    if (problems%concern(ply_damage_group)) return
+    if (deck%has_ply_damage) then
+      call remark_strengths(deck, place, problems)
+      return
+    end if
     call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
                      'has no effect without &'//ply_damage_group//': shear is linear.', place)
     call remark_first(deck, place, pack(strength_keys, .not. (of_interfaces .and. has_interfaces(deck))), 'strengths', &
                       problems)
     call remark_first(deck, place, toughness_keys, 'fracture energies', problems)
   end subroutine check_material
+
+  !> Remarks on strengths that the criteria of failure do not contain.
+  subroutine remark_strengths(deck, place, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the material
+    integer, intent(in) :: place
+    !> Receives the remarks
+    type(problems_t), intent(inout) :: problems
+
+    if (deck%ply_damage%criteria /= criteria_hou .or. any(deck%materials(place)%toughness > 0)) &
+      call remark_idle(deck%settings, problems, material_group, key_fibre_shear, &
+                       'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
+    if (deck%ply_damage%criteria == criteria_puck) &
+      call remark_idle(deck%settings, problems, material_group, key_shear_23, &
+                       'has no effect with criteria = ''puck''.', place)
+  end subroutine remark_strengths
 
   !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.
   pure logical function has_interfaces(deck)
@@ -96,7 +118,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> The keys, and what they are
+    !> The keys, and the quantities that they give
     character(len=*), intent(in) :: keys(:), quantities
     !> Receives the remark
     type(problems_t), intent(inout) :: problems

@@ -32,7 +32,7 @@ module deck_initial_states
 
 contains
 
-  !> Refuses features that a run from another's end cannot have.
+  !> Refuses features that are not possible in a run from the end of another run.
   subroutine check_initial_state(deck, problems)
     !> The deck, filled
     type(deck_t), intent(in) :: deck
@@ -48,18 +48,18 @@ contains
       if (.not. deck%initial%is_inherited) return
       if (deck%is_static()) then
         call report(s, problems, static_group, '', &
-                    'load steps do not begin from a state of another run; give &time '// &
+                    'load steps cannot start from a state of another run; give &time '// &
                   'with integrator = ''central_difference'', or leave &initial_state out.')
       else if (deck%has_time .and. .not. is_explicit(deck%stepping)) then
         call report(s, problems, initial_state_group, '', 'requires &time integrator = ''central_difference''.')
       end if
       if (deck%has_impactor) call report(s, problems, impactor_group, '', &
-                                         'does not go with &initial_state; load the '// &
+                                         'cannot be combined with &initial_state; load the '// &
                                        'plate by &line or &pressure.')
       do place = 1, size(deck%lines)
         if (deck%lines(place)%precedes()) call report(s, problems, line_group, key_rise, &
                                                       'a line that has moved the '// &
-          'plate before the run does not go with &initial_state; give it a rise > 0.', place)
+          'plate before the run cannot be combined with &initial_state; give it a rise > 0.', place)
       end do
       do place = 1, size(deck%supports)
         if (deck%supports(place)%unilateral) &
@@ -114,8 +114,8 @@ contains
 
     objection = ''
     if (deck%has_ply_damage .and. .not. deck%has_crack_bands()) &
-      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) have '// &
-                  'failed or not, of which there is no mean; give the same &mesh in both decks'
+      objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) fail '// &
+                  'at once, so that their state cannot be averaged; give the same &mesh in both decks'
   end function mapping_objection
 
   !> First difference of plies and materials.
@@ -229,8 +229,8 @@ contains
     end associate
   end function interface_objection
 
-  !> Objection to a fixed zone that does not contain that of the other run; each is centred on the point that is struck
-  !> in its run.
+  !> Objection to a fixed zone that does not contain that of the other run; each zone is centred on the point that is
+  !> struck in its own run.
   function zone_objection(deck, old, mine, its) result(objection)
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old

@@ -33,7 +33,7 @@ contains
         call deck%settings%derive(time_group, key_integrator, 'central_difference', .true.)
         if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
         call append(deck%reasons, 'Integrator central_difference: '//softening//' soften; &time integrator='// &
-                    '''generalized_alpha'' brings implicit steps.')
+                    '''generalized_alpha'' selects implicit steps.')
       else
         call deck%settings%derive(time_group, key_integrator, 'generalized_alpha', .true.)
       end if

@@ -15,7 +15,8 @@ module deck_interface_remarks
   private
   public :: check_interfaces
 
-  !> Angles nearer than this, in degrees, are one: decks have at most three decimals, and rounding gives 1e-13.
+  !> Difference of angles in degrees below which they are equal: decks have at most three decimals, and round-off is
+  !> about 1e-13.
   real(wp), parameter :: same = 1.0e-6_wp
 
 contains
@@ -34,7 +35,7 @@ contains
       associate (d => deck%delaminations(i), groups => deck%delaminations%group)
         within(i) = lies_within_a_block(deck, d%below_ply)
         beyond(i) = any(beyond_core(deck, d%zone)) .and. .not. d%is_adaptive
-        ! Each is said once of a group.
+        ! Each warning is given once per group.
         if (within(i) .and. .not. any(within(:i - 1) .and. groups(:i - 1) == d%group)) &
           call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are '// &
                       'of one material and angle, and act as one thick ply; impacts delaminate plies of different '// &
@@ -47,7 +48,8 @@ contains
     end do
   end subroutine check_interfaces
 
-  !> True if an interface lies between plies of one orthotropic material and angle, in a laminate that has others too.
+  !> True if an interface lies between plies of one orthotropic material and angle, in a laminate that also has other
+  !> interfaces.
   pure logical function lies_within_a_block(deck, ply) result(within)
     !> The deck
     type(deck_t), intent(in) :: deck

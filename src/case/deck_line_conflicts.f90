@@ -1,4 +1,5 @@
-!> Checks that a motion of a node is prescribed by one line, and lines act on motions that edges leave free.
+!> Checks that each motion of a node is prescribed by one line only, and that lines act on motions that the edges do not
+!> constrain.
 module deck_line_conflicts
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -46,7 +47,8 @@ contains
     end do
   end subroutine check_line_conflicts
 
-  !> True: a line moves or loads an edge in a component that the edge holds. A support of a support is harmless.
+  !> True: a line moves or loads an edge in a component that the edge constrains. A line that only supports such an edge
+  !> has no effect and is accepted.
   pure logical function acts_on_held_edge(deck, line) result(acts)
     !> The deck
     type(deck_t), intent(in) :: deck

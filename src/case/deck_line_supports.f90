@@ -43,15 +43,15 @@ contains
       tilts(along) = n > 1 .or. any(edges(5 - 2*along:6 - 2*along)) .or. any(supporting%component == 3 + along) .or. &
                      any(supporting%component == 3 .and. .not. across)
     end do
-    ! A rotation about an in-plane axis turns its sign as the plate is turned by 180 degrees about z.
+    ! A rotation about an in-plane axis changes its sign if the plate is turned by 180 degrees about z.
     tilts = tilts .or. is_mirrored(deck%plate%symmetry) .or. deck%plate%symmetry == symmetry_point
     if (all(tilts) .and. (any(supporting%component == 3) .or. any(edges))) return
     call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
   end subroutine check_line_supports
 
-  !> Checks that in-plane forces balance where nothing holds the plate against them: the struck point, which is held
-  !> against rigid-body motions, would carry the rest.
+  !> Checks that in-plane forces balance where nothing restrains the plate against them: the struck point, which is
+  !> fixed against rigid-body motions, would carry the remainder.
   subroutine check_in_plane_balance(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -69,7 +69,7 @@ contains
     do line = 1, size(deck%lines)
       associate (l => deck%lines(line), normal => merge(1, 2, deck%lines(line)%direction == along_y))
         if (l%prescribed .or. l%component > 2) cycle
-        ! A line off the cut stands for its mirror image, too.
+        ! A line off the cut represents its mirror image, too.
         net(l%component) = net(l%component) + merge(2, 1, mirrored(normal) .and. abs(l%at) > 0)*l%value
         if (l%component /= normal) net(3) = net(3) + merge(1, -1, normal == 1)*l%at*l%value/maxval(deck%plate%length)
         total = total + abs(l%value)

@@ -1,4 +1,4 @@
-!> Lines required in the mesh, by rigs and by later decks.
+!> Lines required in the mesh, by rigs or by decks of later runs.
 module deck_mesh_lines
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t

@@ -9,13 +9,14 @@ module deck_patches
   use mesh_deck, only: mesh_group, key_elements, key_patch, key_core, key_cell, max_elements
   use plate_deck, only: plate_group, key_symmetry
   use roundings, only: rounding
+  use short_numbers, only: text_at_least
   use text, only: to_text
   implicit none
   private
   public :: check_patch, check_core
 
-  !> Smallest patch, fraction of the plate's shorter side: the elements that it requires are as slender as those of the
-  !> thinnest plate.
+  !> Smallest patch as a fraction of the plate's shorter side: the elements that it requires are then as slender as
+  !> those of the thinnest plate.
   real(wp), parameter :: min_patch = 1.0e-5_wp
 
 contains
@@ -39,7 +40,7 @@ contains
                   to_text(shorter)//'.')
       else if (patch < min_patch*shorter) then
         call report(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
-                  to_text(min_patch*shorter)//'.')
+                  text_at_least(min_patch*shorter)//'.')
       else if (.not. deck%mesh%cell > 0) then
         call check_elements(deck, problems)
       end if
@@ -91,7 +92,7 @@ contains
     end associate
   end subroutine check_elements
 
-  !> Whether a rectangle about the struck point meets or crosses the border, with no room for elements on that side.
+  !> Whether a rectangle around the struck point reaches or crosses the border, so that no elements fit on that side.
   pure function meets_border(deck, extents) result(meets)
     !> The deck
     type(deck_t), intent(in) :: deck

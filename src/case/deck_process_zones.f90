@@ -153,7 +153,7 @@ contains
   end function bending_moduli
 
   !> Largest bending modulus over all directions. Delaminations grow first and farthest along the stiff direction of the
-  !> thinner layer, and cells that resolve that front suffice (doc/studies/accuracy.md).
+  !> thinner layer, so that cells that resolve the front there suffice (doc/studies/accuracy.md).
   pure real(wp) function largest_modulus(moduli) result(largest)
     !> Along x and y, as of bending_moduli
     real(wp), intent(in) :: moduli(6)

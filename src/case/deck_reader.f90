@@ -64,7 +64,7 @@ module deck_reader
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
 
-  !> Default rise of a travel, relative to the run: at its end the velocity is 8/7 of the mean.
+  !> Default rise of a travel, relative to the run, after which the velocity is constant: 8/7 of the mean velocity.
   real(wp), parameter :: usual_rise = 0.25_wp
 
 contains
@@ -245,7 +245,7 @@ contains
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
     if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
     call fill_initial_state(deck%settings, deck%initial)
-    ! An impactor of given travel does not leave the plate: no end of contact prolongs the run.
+    ! An impactor with a given travel does not leave the plate, so that the run is not extended until the contact ends.
     if (deck%impactor%travel > 0) deck%stepping%central%settle = 0
     if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
@@ -254,7 +254,7 @@ contains
   end subroutine fill_loads
 
   !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws
-  !> less. With it doc/studies/accuracy.md has the same area at steps of 16, 8 and 4 us.
+  !> excite them less. With these values the area in doc/studies/accuracy.md is the same at steps of 16, 8 and 4 us.
   pure real(wp) function natural_rho_infinity(deck) result(rho_infinity)
     !> The deck, its interfaces filled
     type(deck_t), intent(in) :: deck
@@ -264,7 +264,7 @@ contains
     if (any(deck%delaminations%law == law_front)) rho_infinity = 0
   end function natural_rho_infinity
 
-  !> Parameters of steps and written.
+  !> Parameters of steps and output.
   subroutine fill_steps(deck)
     !> Receives it
     type(deck_t), intent(inout) :: deck

@@ -13,8 +13,8 @@ module deck_refinements
 
 contains
 
-  !> Halves elements and steps, or with error control an eighth of the permitted error, `refine` times. The results have
-  !> a name of their own.
+  !> Halves elements and steps `refine` times; under error control the permitted error is divided by eight instead of
+  !> halving the step. The results have a name of their own.
   subroutine refine(deck)
     !> The deck, filled
     type(deck_t), intent(inout) :: deck
@@ -71,7 +71,8 @@ contains
     end if
   end function refined_text
 
-  !> Last character of the name of the group &case where it begins, outside of texts and comments; 0: there is none.
+  !> Position of the last character of the name of the group &case at its first occurrence outside of texts and
+  !> comments; 0: there is none.
   pure integer function end_of_case(text) result(place)
     !> Text of the deck
     character(len=*), intent(in) :: text

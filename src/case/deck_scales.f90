@@ -17,10 +17,11 @@ module deck_scales
   private
   public :: check_scales
 
-  !> Errors of peak and history, by preliminary elastic impacts, that a user is warned of: 5 % is the peak's error with
-  !> accuracy='draft'; a small shift in time changes a history by more. They decide on warnings.
+  !> Errors of peak and history, by preliminary elastic impacts, above which a warning is given: 5 % is the error of the
+  !> peak with accuracy='draft'; a small shift in time changes a history more. They affect warnings only.
   real(wp), parameter :: error_limits(2) = [0.05_wp, 0.2_wp]
-  !> The same for the size of the patch, of which twice as much is permitted for the peak, as it is an estimate itself.
+  !> The same for the size of the patch, with twice the limit for the peak, as the effect of the patch is an estimate
+  !> itself.
   real(wp), parameter :: patch_error_limits(2) = [0.1_wp, 0.2_wp]
   !> Ratio of estimated to requested error above which it is reported: estimates are 1.2 to 2 times the true errors.
   real(wp), parameter :: max_error_ratio = 1.5_wp
@@ -69,7 +70,7 @@ contains
 
     associate (duration => deck%stepping%central%settle)
       if (duration > 0 .and. duration < min_periods*period) call remark(deck%settings, problems, time_group, &
-        key_settle, 'is too short to bring the plate to rest: take at least '//short_text(min_periods*period)// &
+        key_settle, 'is too short to bring the plate to rest: give at least '//short_text(min_periods*period)// &
         ', '//short_text(min_periods)//' periods of the first bending mode.')
     end associate
   end subroutine check_settling
@@ -83,12 +84,12 @@ contains
 
     associate (o => deck%expected)
       if (any(o%step_error > error_limits)) call remark(deck%settings, problems, time_group, key_step, &
-        'is too long for this impact: by a preliminary elastic impact the largest force would be '// &
-        short_text(100*o%step_error(1))//' % off, its history '//short_text(100*o%step_error(2))// &
+        'is too long for this impact: by a preliminary elastic impact the error of the largest force '// &
+        'would be '//short_text(100*o%step_error(1))//' %, of the history '//short_text(100*o%step_error(2))// &
         ' %; make it shorter, or leave it out with &case accuracy.')
       if (any(o%mesh_error > error_limits)) call remark(deck%settings, problems, mesh_group, key_elements, &
         'are too large for this impact, '//short_text(o%edge)//' near the struck point: by a preliminary elastic '// &
-        'impact the largest force would be '//short_text(100*o%mesh_error(1))//' % off, its history '// &
+        'impact the error of the largest force would be '//short_text(100*o%mesh_error(1))//' %, of the history '// &
         short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
       if (any(o%patch_error > patch_error_limits)) call remark(deck%settings, problems, mesh_group, key_patch, &
         'is larger than the contact, with a force distributed over '//short_text(o%contact_side)// &
@@ -97,8 +98,8 @@ contains
     end associate
   end subroutine check_resolution
 
-  !> Reports mesh and step below the requested accuracy, or where it is unknown: a contact too long for preliminary
-  !> elastic impacts with half the step.
+  !> Reports a requested accuracy that mesh and step do not reach, or that cannot be verified because the contact is too
+  !> long for preliminary elastic impacts with half the step.
   subroutine check_accuracy(deck, problems)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -109,10 +110,11 @@ contains
     associate (o => deck%expected)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'cannot be verified by preliminary elastic '// &
-                    'impacts for this step: so many steps would take them too long.')
+                    'impacts for this step: the number of steps is too large.')
       else if (100*(o%step_error(1) + o%mesh_error(1)) > max_error_ratio*deck%accuracy) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'is not reached: by a preliminary elastic '// &
-                    'impact the largest force will be '//short_text(100*(o%step_error(1) + o%mesh_error(1)))//' % off.')
+                    'impact the error of the largest force will be '// &
+                    short_text(100*(o%step_error(1) + o%mesh_error(1)))//' %.')
       end if
     end associate
   end subroutine check_accuracy
@@ -133,7 +135,7 @@ contains
       first = count(edges < -distance) + 1
       last = count(edges <= distance)
       if (last <= first) then
-        ! No whole element is as near: those beside the struck point.
+        ! No entire element is within the distance: the elements beside the struck point are used.
         first = max(1, count(edges < 0))
         last = min(size(edges), count(edges <= 0) + 1)
       end if

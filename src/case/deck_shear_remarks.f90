@@ -44,8 +44,8 @@ contains
       if (all(deck%delaminations(i)%zone >= (1 - rounding)*deck%plate%length)) cycle
       call remark(deck%settings, problems, delamination_group, key_zone, &
                   'at the border of the zone all layers have '// &
-                  'one rotation, though plies shear unlike each other: the plate is up to a few per cent too '// &
-                  'stiff; take a zone as large as the plate.', deck%delaminations(i)%group)
+                  'one rotation, though the shear strains of the plies differ: the plate is up to a few per cent '// &
+                  'too stiff; give a zone as large as the plate.', deck%delaminations(i)%group)
       exit
     end do
   end subroutine check_correction

@@ -1,5 +1,5 @@
-!> Load steps of a softening plate may find no equilibrium beyond the limit load; slow motion in time passes it, and so
-!> do steps by the energy dissipated. Remarks where that is expected, with the keys to write.
+!> Load steps of a softening plate may find no equilibrium beyond the limit load. Slow motion in time, and steps
+!> controlled by the dissipated energy, pass the limit load. Warnings where this is expected, with the keys to write.
 module deck_slow_motion
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -12,8 +12,8 @@ module deck_slow_motion
   private
   public :: check_softening_steps, slow_motion_advice
 
-  !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below some per cent
-  !> of the work, doc/manual/slow_motion.md.
+  !> Periods of the first bending mode in which a travel is quasi-static: its kinetic energy stays below a few per cent
+  !> of the work (doc/manual/slow_motion.md).
   integer, parameter :: periods = 20
   !> Factor s of rotary inertia in such a motion. It slows the first bending, of a wave number k = pi/L over the span L,
   !> by the share (s - 1) (k h)**2/24 (theory of explicit steps): 3.7 (h/L)**2, below 1 % from 20 thicknesses on.
@@ -34,20 +34,20 @@ contains
                 'several interfaces soften'//slow_motion(deck)//'.')
   end subroutine check_softening_steps
 
-  !> Alternative to a load step without equilibrium.
+  !> Sentence on an alternative to a load step without equilibrium.
   function slow_motion_advice(deck) result(clause)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Continues a sentence that ends with a full stop; empty where it does not help
+    !> Follows a sentence that ends with a full stop; empty if there is no alternative
     character(len=:), allocatable :: clause
 
     clause = ''
     if (is_pressed(deck)) then
-      clause = ' Softening may leave none'//slow_motion(deck)//'.'
+      clause = ' With softening there may be no equilibrium'//slow_motion(deck)//'.'
     else if (deck%is_static() .and. .not. deck%static%dissipation > 0 .and. &
              any(deck%delaminations%law == law_cohesive)) then
-      clause = ' A softening interface may leave none at this load: &'//static_group//' '//key_dissipation// &
-               ' follows its growth.'
+      clause = ' With a softening interface there may be no equilibrium at this load: use &'//static_group//' '// &
+               key_dissipation//' to trace its growth.'
     end if
   end function slow_motion_advice
 

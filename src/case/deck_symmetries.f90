@@ -23,11 +23,11 @@ module deck_symmetries
   private
   public :: check_symmetry, note_symmetry, symmetry_sentence
 
-  !> Tolerance of zero coupling stiffness, relative to the stiffness it couples: plies that cancel each other leave
-  !> 1e-16, and one degree in one of a hundred plies leaves 1e-4.
+  !> Tolerance of zero coupling stiffness, relative to the stiffness it couples: round-off of plies whose couplings
+  !> cancel is 1e-16, and one degree in one of a hundred plies gives 1e-4.
   real(wp), parameter :: no_coupling = 1.0e-9_wp
-  !> Tolerance of the distance of a clamp from the image of another one, relative to the plate, and of the ends of a
-  !> strip from their images: .1 um in 100 mm, below the digits of a deck and above round-off.
+  !> Tolerance of the distance of a clamp from the image of another one, and of the ends of a strip from their images,
+  !> relative to the plate: .1 um in 100 mm, below the digits of a deck and above round-off.
   real(wp), parameter :: same_place = 1.0e-6_wp
 
 contains
@@ -54,7 +54,7 @@ contains
       call check_starters(deck, name, problems)
       if (.not. supports_are_symmetric(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
-                  '; list all of the full plate, or use ''none''.')
+                  '; list all clamps of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
         'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
@@ -87,7 +87,7 @@ contains
       if (strip_is_eccentric(deck%delaminations(i), deck%plate%symmetry) .and. &
           are_clear(deck%settings, problems, delamination_group, key_strip, deck%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_strip, 'the strip is not its own image under '// &
-                    'symmetry = '//name//'; let it begin as far below 0 as it ends above, or use ''none''.', &
+                    'symmetry = '//name//'; give two x of equal size and opposite sign, or use ''none''.', &
                     deck%delaminations(i)%group)
     end do
   end subroutine check_starters
@@ -107,7 +107,7 @@ contains
 
   !> True if a point is not on a line of symmetry.
   pure logical function is_eccentric(point, symmetry)
-    !> Its place, from the middle of the plate
+    !> Its position, from the centre of the plate
     real(wp), intent(in) :: point(2)
     !> The symmetry
     integer, intent(in) :: symmetry
@@ -115,7 +115,7 @@ contains
     is_eccentric = any(abs(point) > 0 .and. (is_halved(symmetry) .or. symmetry == symmetry_point))
   end function is_eccentric
 
-  !> Sentence on the smallest part of the plate that suffices; empty if the deck has it already.
+  !> Sentence on the smallest part of the plate that need be modelled; empty if the deck already models only this part.
   function symmetry_sentence(deck) result(sentence)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -130,7 +130,7 @@ contains
                                                 trim(names(part))//''', which reduces the model.'
   end function symmetry_sentence
 
-  !> The smallest part of the plate that suffices; that of the deck if there is none smaller.
+  !> The smallest part of the plate that need be modelled; that of the deck if there is none smaller.
   integer function smallest_part(deck) result(part)
     !> The deck, checked
     type(deck_t), intent(in) :: deck
@@ -144,8 +144,8 @@ contains
     end do
   end function smallest_part
 
-  !> Sets the symmetry that is enforced on a full plate during failure; without failure it is preserved anyway. A state
-  !> that another run has left need not be symmetric.
+  !> Sets the symmetry that is enforced on a full plate during failure; without failure the solution is symmetric in any
+  !> case. A state from another run need not be symmetric.
   subroutine note_symmetry(deck)
     !> The deck, checked
     type(deck_t), intent(inout) :: deck
@@ -164,7 +164,7 @@ contains
     integer :: i
 
     alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
-    ! Lines and strips need not have images.
+    ! Lines and strips may have no images.
     suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
             .not. any([(is_eccentric(deck%delaminations(i)%starter_at, symmetry), &
                         i=1, size(deck%delaminations))]) .and. &

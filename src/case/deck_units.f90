@@ -1,4 +1,4 @@
-!> Warnings of values of the deck that are probably in another unit than the rest.
+!> Warns of values of the deck that are probably in another unit than the others.
 !>
 !> The system of units is that of `&case units`, or by default the one with the fewest unusual values. A value is
 !> reported only if its size is unusual in that system and usual in another common unit. Three values are compared with
@@ -28,7 +28,7 @@ module deck_units
   private
   public :: check_units
 
-  !> One value of the deck with the key to name.
+  !> One value of the deck, and the key to be named in a warning.
   type :: quantity_t
     !> Kind of the quantity
     integer :: quantity = 0
@@ -36,18 +36,19 @@ module deck_units
     real(wp) :: value = 0
     !> Group and key
     character(len=16) :: group = '', key = ''
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer :: place = 1
   end type quantity_t
 
   !> Usual range of the end of the run over the plate's period or the contact, whichever is longer. It is wide enough
-  !> for any run, and confused units change the ratio by 1e3 or 1e6. It decides on a warning, as all below.
+  !> for any run, and confused units change the ratio by 1e3 or 1e6. It affects a warning only, as all below.
   real(wp), parameter :: shortest_run = 5.0e-3_wp, longest_run = 100
-  !> Times that a contact takes as long as its force rises: two in a symmetric contact, and room for repeated ones.
+  !> Ratio of the duration of a contact to its rise time: two in a symmetric contact, and a margin for repeated
+  !> contacts.
   real(wp), parameter :: contact_rises = 10
   !> Density of steel, kg/m^3, and the relative tolerance for a ball of steel: steels have 7700 to 8050.
   real(wp), parameter :: steel = 7850, near = 0.03_wp
-  !> Contact stiffness over that of Sun's formula for a rigid ball: usual and improbable values. That of an
+  !> Ratios of the contact stiffness to that of Sun's formula for a rigid ball: usual and improbable ones. That of an
   !> elastic plate is .5 (input/verify/karas.nml); N/mm^1.5 in place of N/m^1.5 changes the ratio by 3e4.
   real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
   !> N/m^1.5 in one N/mm^1.5: 1000**1.5.
@@ -73,7 +74,7 @@ contains
       if (.not. is_unusual(list(i)%quantity, list(i)%value, system)) cycle
       fits = unit_that_fits(list(i)%quantity, list(i)%value)
       if (fits == '') cycle
-      call report_unit(deck, problems, list(i), system, 'is odd', fits)
+      call report_unit(deck, problems, list(i), system, 'is unusual', fits)
     end do
     if (deck%has_time .and. .not. deck%is_static()) call check_times(deck, system, problems)
     if (deck%moves_impactor()) call check_ball(deck, system, problems)
@@ -95,11 +96,11 @@ contains
     character(len=*), intent(in) :: fits
 
     call remark(deck%settings, problems, trim(item%group), trim(item%key), short_text(item%value)//' '// &
-                unit_name(item%quantity, system)//' '//finding//' beside the other values, which fit '// &
+                unit_name(item%quantity, system)//' '//finding//' compared with the other values, which fit '// &
                 trim(systems(system))//'; it is probably in '//fits//'.', item%place)
   end subroutine report_unit
 
-  !> Values with a size that can be recognised as odd.
+  !> Values whose magnitude can be recognised as unusual.
   subroutine gather(deck, list)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -111,7 +112,7 @@ contains
     allocate (list(0))
     call add(of_length, minval(deck%plate%length), plate_group, key_length, 1)
     call add(of_thickness, sum(deck%laminate%thickness), laminate_group, key_thicknesses, 1)
-    ! Moduli and strengths of a honeycomb in its plane have no least size: the stiffest material decides.
+    ! In-plane moduli and strengths of a honeycomb have no lower limit: only the stiffest material is considered.
     stiffest = maxloc(deck%materials%e1, 1)
     call add(of_pressure, deck%materials(stiffest)%e1, material_group, &
              merge(key_isotropic, key_along, deck%settings%is_given(material_group, key_isotropic, stiffest)), stiffest)
@@ -136,7 +137,7 @@ contains
         else
           call add(of_toughness, toughness(2), delamination_group, key_toughness_shear, d%group)
         end if
-        ! That in opening may be as small as large cells need.
+        ! The strength in opening may be as small as large cells require.
         if (deck%settings%is_given(delamination_group, key_strength_shear, d%group)) &
           call add(of_strength, d%strength_shear, delamination_group, key_strength_shear, d%group)
       end associate
@@ -158,7 +159,7 @@ contains
       real(wp), intent(in) :: value
       !> Group and key
       character(len=*), intent(in) :: group, key
-      !> Which of the groups of this name
+      !> Index among the groups of this name
       integer, intent(in) :: place
       type(quantity_t) :: item
 
@@ -172,8 +173,8 @@ contains
     end subroutine add
   end subroutine gather
 
-  !> The system of the deck, or else the one with the fewest unusual kinds of quantities; 0: none fits, the deck has
-  !> units of its own.
+  !> The system of the deck, or otherwise the one with the fewest unusual kinds of quantities; 0: none fits, the deck
+  !> has units of its own.
   pure integer function probable_system(deck, list) result(system)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -188,7 +189,7 @@ contains
       odd(i) = unusual_kinds(list, i)
     end do
     system = minloc(odd, 1)
-    ! Without an impactor there are too few values to decide, and plates of unit density are common.
+    ! Without an impactor there are too few values to determine the system, and plates of unit density are common.
     if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
   end function probable_system
 
@@ -259,7 +260,7 @@ contains
       ball = impactor%mass*base(2)/(4*pi/3*(impactor%radius*base(1))**3)
       if (abs(ball/(1000*steel) - 1) < near) then
         call report_unit(deck, problems, quantity_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
-                       'is a thousand times a steel ball''s', &
+                       'is a thousand times that of a steel ball,', &
                        trim(merge('kg', 'g ', unit_name(of_mass, system) == 't')))
       end if
       if (.not. deck%settings%is_given(indentation_group, key_k)) return
@@ -274,7 +275,7 @@ contains
 
   !> True: a usual contact stiffness.
   pure logical function usual(ratio)
-    !> Over that of Sun's formula
+    !> Its ratio to that of Sun's formula
     real(wp), intent(in) :: ratio
 
     usual = ratio > usual_stiffness(1) .and. ratio < usual_stiffness(2)

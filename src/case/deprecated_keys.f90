@@ -5,7 +5,7 @@ module deprecated_keys
   implicit none
   private
 
-  !> Group, key, value or - if the key itself goes, replacement or - if there is none, first version that warns. For
-  !> example 'time | settling | - | settle | 0.2.0'.
+  !> Group, key, value or - if the key itself is deprecated, replacement or - if there is none, first version that
+  !> warns. For example 'time | settling | - | settle | 0.2.0'.
   character(len=*), parameter, public :: deprecated_rows(*) = [character(len=deprecation_row_length) ::]
 end module deprecated_keys

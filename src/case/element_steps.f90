@@ -1,8 +1,8 @@
 !> Stable step of central differences before there is a model: that of the smallest element with all its layers.
 !>
-!> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both;
-!> with equal sections it has the highest frequency; with scaled inertia longer ones have about the same. Before layers
-!> are inserted the step of a run is longer; contact stiffness makes it shorter.
+!> The grid is a tensor product of lines along x and y, so that one of its elements has the shortest side along both.
+!> With equal sections this element has the highest frequency; with scaled inertia the frequencies of longer ones are
+!> about the same. Before layers are inserted the step of a run is longer; contact stiffness reduces it.
 module element_steps
   use cell_grids, only: cell_edges
   use communicators, only: communicator_t
@@ -26,7 +26,8 @@ contains
   real(wp) function smallest_element_step(deck, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
-    !> Slope of the plate; its membrane strain is the mean of half the squared slope of half a sine; 0 if absent
+    !> Slope of the plate, the largest of a half sine, whose membrane strain is the mean of half the squared slope; 0 if
+    !> absent
     real(wp), intent(in), optional :: slope
     type(model_t) :: model
     type(ply_failure_t) :: plies
@@ -52,8 +53,9 @@ contains
     if (frequency > 0) step = 2/frequency
   end function smallest_element_step
 
-  !> Motion of a plate that is sloped along one direction and stretched by a quarter of the squared slope, of which the
-  !> slope itself gives half a square.
+  !> Motion of a plate with a uniform slope along one direction and the membrane strain of a half sine with this largest
+  !> slope, a quarter of its square. The uniform slope causes a strain of half the square, the in-plane displacement one
+  !> of minus a quarter.
   pure function sloped_motion(model, slope, direction) result(motion)
     type(model_t), intent(in) :: model
     !> The slope

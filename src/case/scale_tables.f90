@@ -15,7 +15,7 @@ module scale_tables
   private
   public :: scale_lines, strength_lines, length_unit, length_unit_size, length_text
 
-  !> Characters before the values, and of a value.
+  !> Characters before the values, and characters of a value.
   integer, parameter :: name_width = 56, value_width = 12
 
   !> A physical dimension.
@@ -160,7 +160,7 @@ contains
     if (unit /= '') line = line//repeat(' ', max(1, value_width - len(value)))//unit
   end function table_line
 
-  !> A value to three digits, in the unit that it is read in.
+  !> A value to three digits, in the unit in which it is printed.
   pure function read_as(deck, value, dimension) result(digits)
     !> The deck
     type(deck_t), intent(in) :: deck
@@ -177,7 +177,7 @@ contains
     if (system > 0) digits = short_text(value*product(base_units(system)**dimension%exponents)/dimension%size)
   end function read_as
 
-  !> Unit of lengths behind a blank; empty where the deck does not name its units.
+  !> Unit of lengths after a blank; empty if the deck does not name its units.
   pure function length_unit(deck) result(unit)
     !> The deck
     type(deck_t), intent(in) :: deck

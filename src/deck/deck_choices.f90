@@ -1,4 +1,4 @@
-!> Numbers of the choices of the deck.
+!> Integer constants of the choices of the deck.
 module deck_choices
   use text, only: line_t, lower_case, words_of
   implicit none
@@ -7,13 +7,13 @@ module deck_choices
 
 contains
 
-  !> Code of a choice; the first one for an unknown word.
+  !> Constant of a choice; the first one for an unknown word.
   pure integer function code_of(word, names, codes) result(code)
     !> The choice
     character(len=*), intent(in) :: word
     !> Choices separated by blanks
     character(len=*), intent(in) :: names
-    !> Their numbers
+    !> Their constants
     integer, intent(in) :: codes(:)
     type(line_t), allocatable :: choices(:)
     integer :: i

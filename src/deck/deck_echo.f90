@@ -16,7 +16,7 @@ contains
     type(vocabulary_t), intent(in) :: vocabulary
     !> Keys in effect of a deck without errors
     type(settings_t), intent(in) :: settings
-    !> One line a key
+    !> One line per key
     type(line_t), allocatable, intent(out) :: lines(:)
     character(len=:), allocatable :: words, origin
     integer :: i

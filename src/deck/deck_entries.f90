@@ -1,18 +1,18 @@
-!> Groups, keys and values as they stand in a deck.
+!> Groups, keys and values as written in a deck.
 module deck_entries
   use deck_problems, only: max_shown
   implicit none
   private
   public :: value_t, entry_t, block_t, append_entry, append_values, split_repeats, shown, shown_values, written_values
 
-  !> Most values and keys that a deck may have.
+  !> Largest number of values and keys of a deck.
   integer, parameter, public :: max_values = 10000
 
   !> One value of a key.
   type :: value_t
     !> The word, or the text without its quotes
     character(len=:), allocatable :: text
-    !> True: it stood in quotes
+    !> True: it was written in quotes
     logical :: quoted = .false.
   end type value_t
 
@@ -26,7 +26,7 @@ module deck_entries
     integer :: line = 0
     !> False: a fault was already reported
     logical :: valid = .true.
-    !> The values, repeat counts spread out
+    !> The values, repeated by their repeat counts
     type(value_t), allocatable :: values(:)
   end type entry_t
 
@@ -61,11 +61,11 @@ contains
     call move_alloc(longer, entries)
   end subroutine append_entry
 
-  !> Adds a value, several times if need be, to a key.
+  !> Adds a value to a key, as often as its repeat count says.
   pure subroutine append_values(values, repeats, value)
     !> The key's values
     type(value_t), allocatable, intent(inout) :: values(:)
-    !> How many times
+    !> The repeat count
     integer, intent(in) :: repeats
     !> The value
     type(value_t), intent(in) :: value
@@ -84,15 +84,15 @@ contains
     call move_alloc(longer, values)
   end subroutine append_values
 
-  !> Takes a repeat count off a value.
+  !> Separates a repeat count from a value.
   pure subroutine split_repeats(written, quoted, counted, repeats, word)
-    !> The value as it stands in the deck, without quotes
+    !> The value as written in the deck, without quotes
     character(len=*), intent(in) :: written
-    !> True: it stood in quotes
+    !> True: it was written in quotes
     logical, intent(in) :: quoted
-    !> Digits of the count if they stood in front of quotes, else empty
+    !> Digits of the count if they were written in front of quotes, otherwise empty
     character(len=*), intent(in) :: counted
-    !> The count, 1 if there is none, 0 if it is none that counts
+    !> The count; 1 if there is none, 0 if it is not allowed
     integer, intent(out) :: repeats
     !> The value itself
     character(len=:), allocatable, intent(out) :: word
@@ -115,29 +115,29 @@ contains
     if (status /= 0 .or. repeats > max_values) repeats = 0
   end subroutine split_repeats
 
-  !> A name or word as a message shows it: not too long.
+  !> A name or word as shown in a message: truncated if it is long.
   pure function shown(word) result(short)
     !> Any text
     character(len=*), intent(in) :: word
-    !> The text, cut if it is long
+    !> The text, truncated
     character(len=:), allocatable :: short
 
     short = word
     if (len(word) > max_shown) short = word(:max_shown - 3)//'...'
   end function shown
 
-  !> Values as a message shows them, with a blank in front.
+  !> Values as shown in a message, with a blank in front.
   pure function shown_values(values) result(short)
     !> The values
     type(value_t), intent(in) :: values(:)
-    !> Separated by commas, cut if it is long
+    !> Separated by commas, truncated if long
     character(len=:), allocatable :: short
 
     short = ''
     if (size(values) > 0) short = ' '//shown(written_values(values(:min(size(values), max_shown))))
   end function shown_values
 
-  !> Values as they would stand in a deck.
+  !> Values as written in a deck.
   pure function written_values(values) result(words)
     !> The values
     type(value_t), intent(in) :: values(:)

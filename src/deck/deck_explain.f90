@@ -1,9 +1,9 @@
 !> Explains groups and keys from the table, for the terminal and for the manual.
 module deck_explain
-  use deck_values, only: allowed_sentence
+  use allowed_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t, group_entry_t
   use errors, only: error_t, fail, exit_usage
-  use text, only: line_t, append, joined, lower_case, nearest_name, words_of
+  use text, only: line_t, append, ended, joined, lower_case, nearest_name, words_of
   implicit none
   private
   public :: explain, explain_table
@@ -42,7 +42,7 @@ contains
     end if
   end subroutine explain
 
-  !> One line a group.
+  !> One line per group.
   subroutine explain_groups(vocabulary, lines)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
@@ -152,10 +152,10 @@ contains
     unit = ''
     if (key%unit /= '-') unit = '; unit: '//key%unit
     call append(lines, '  '//key%name//repeat(' ', max(1, 18 - len(key%name)))//key%meaning)
-    call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//default_in_words(key)//'.')
+    call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//ended(default_in_words(key)))
   end subroutine explain_key
 
-  !> How a group comes in a deck.
+  !> Whether a group is required and repeatable, in words.
   pure function presence_in_words(group) result(words)
     !> The group
     type(group_entry_t), intent(in) :: group

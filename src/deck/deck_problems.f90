@@ -12,16 +12,16 @@ module deck_problems
   !> Characters of a name or value shown in a message.
   integer, parameter, public :: max_shown = 60
 
-  !> Stands for any key of a group, when a fault may have swallowed some.
+  !> Represents any key of a group, when a fault may have hidden some.
   character(len=*), parameter, public :: any_key = '*'
 
   !> One fault.
   type :: problem_t
     !> Line of the deck; 0: the deck as a whole
     integer :: line = 0
-    !> Which of the groups of this name it belongs to; 0: any
+    !> Index of its group among those of this name; 0: any
     integer :: place = 0
-    !> True: the deck can still run
+    !> True: a warning, with which the deck can run
     logical :: is_warning = .false.
     !> Group and key it belongs to, in lower case; empty if none
     character(len=:), allocatable :: group, key
@@ -87,7 +87,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> Text after `file:line:`
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name it belongs to; absent: any
+    !> Index of its group among those of this name; absent: any
     integer, intent(in), optional :: place
 
     call self%add(.false., line, group, key, message, place)
@@ -117,7 +117,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> Printed text
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name it belongs to; absent: any
+    !> Index of its group among those of this name; absent: any
     integer, intent(in), optional :: place
     type(problem_t) :: problem
 
@@ -140,14 +140,14 @@ contains
     is_full = self%errors() > max_problems
   end function is_full
 
-  !> True: an error belongs to this group, or to this key of it, so checks that build on it would mislead.
+  !> True: an error belongs to this group, or to this key of it, so that checks that depend on it would be misleading.
   pure logical function concern(self, group, key, place)
     class(problems_t), intent(in) :: self
     !> Name of the group
     character(len=*), intent(in) :: group
     !> Name of the key; absent: any
     character(len=*), intent(in), optional :: key
-    !> Which of the groups of this name; absent: any
+    !> Index among the groups of this name; absent: any
     integer, intent(in), optional :: place
     integer :: i
 
@@ -222,7 +222,8 @@ contains
     end do
   end function remarks
 
-  !> The faults, warnings of one line of the deck that differ in numbers alone as one, in the order they were found.
+  !> The faults in the order they were found; warnings of one line of the deck that differ only in numbers are merged
+  !> into one.
   function grouped(self) result(list)
     class(problems_t), intent(in) :: self
     !> The faults
@@ -248,7 +249,7 @@ contains
     end do
   end function grouped
 
-  !> One fault as the user reads it.
+  !> One fault as printed.
   function line_of(self, problem) result(line)
     class(problems_t), intent(in) :: self
     !> The fault

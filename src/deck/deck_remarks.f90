@@ -20,7 +20,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> The error and the values allowed
     character(len=*), intent(in) :: fault
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     call problems%error(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//fault, &
@@ -37,7 +37,7 @@ contains
     character(len=*), intent(in) :: group, key
     !> One clause
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     call problems%warning(line_of(settings, group, key, place), group, key, head(settings, group, key, place)//message)
@@ -53,9 +53,9 @@ contains
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
-    !> Why
+    !> Reason
     character(len=*), intent(in) :: message
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -69,7 +69,7 @@ contains
     end do
   end subroutine remark_idle
 
-  !> True: some keys are valid or absent. A check that calls this first reports no error that follows from another.
+  !> True: some keys are valid or absent. A check that calls this first does not report errors caused by other errors.
   pure logical function are_clear(settings, problems, group, keys, place)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -79,7 +79,7 @@ contains
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -97,13 +97,13 @@ contains
     end do
   end function are_clear
 
-  !> Line to name.
+  !> Line of the deck to be named in a message.
   pure integer function line_of(settings, group, key, place) result(line)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
 
     if (key == '') then
@@ -119,7 +119,7 @@ contains
     type(settings_t), intent(in) :: settings
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> Such as `&time step = 1e-6: `
     character(len=:), allocatable :: beginning

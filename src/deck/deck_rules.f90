@@ -1,17 +1,18 @@
 !> Checks a scanned deck against the vocabulary: unknown and repeated names, types, counts and ranges.
 module deck_rules
+  use allowed_values, only: allowed_sentence
   use deck_entries, only: value_t, entry_t, shown, shown_values
   use deck_problems, only: problems_t
   use deck_scanner, only: scan_t
   use deck_settings, only: settings_t, setting_t, present_group_t
-  use deck_values, only: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value
+  use deck_values, only: fault_of_value, fault_of_count, decimal_commas, limit_of_size, literal_value
   use deck_vocabulary, only: vocabulary_t, key_entry_t
-  use text, only: line_t, append, joined, lower_case, nearest_name, to_text, words_of
+  use text, only: line_t, append, ended, joined, lower_case, nearest_name, to_text, words_of
   implicit none
   private
   public :: resolve_settings
 
-  !> Most groups of one name; no laminate has so many materials.
+  !> Largest number of groups of one name; no laminate has so many materials.
   integer, parameter :: max_repetitions = 100
 
 contains
@@ -56,7 +57,7 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    !> True: its keys count
+    !> True: its keys are used
     logical, intent(out) :: accepted
     type(present_group_t) :: new
     integer :: index, earlier
@@ -104,7 +105,7 @@ contains
     end if
   end subroutine report_unknown_group
 
-  !> Whether a key belongs to its group and comes once.
+  !> Checks that a key belongs to its group and is given once.
   subroutine check_key(scan, entry, place, vocabulary, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
@@ -134,7 +135,7 @@ contains
   subroutine report_unknown_key(group, place, entry, vocabulary, problems)
     !> Name of the group
     character(len=*), intent(in) :: group
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key
     type(entry_t), intent(in) :: entry
@@ -163,7 +164,7 @@ contains
   subroutine resolve_group(scan, accepted, vocabulary, group, settings, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> Which of its groups count
+    !> True for groups that are used
     logical, intent(in) :: accepted(:)
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
@@ -189,7 +190,7 @@ contains
                .not. problems%concern(entry%name)) then
         ! Without any group the deck was already reported to have none.
         if (size(scan%blocks) > 0) call problems%error(0, entry%name, '', &
-          '&'//entry%name//' is missing; `implam explain '//entry%name//'` shows what it takes.')
+          '&'//entry%name//' is missing; `implam explain '//entry%name//'` lists its keys.')
       end if
     end associate
   end subroutine resolve_group
@@ -200,7 +201,7 @@ contains
     type(scan_t), intent(in) :: scan
     !> Index of the group in it; 0: the deck does not have it
     integer, intent(in) :: block
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
@@ -250,7 +251,7 @@ contains
     if (key%has_literal_default()) setting%values(1) = literal_value(key%default)
     if (key%default == 'required' .and. .not. problems%concern(key%group, key%name, setting%place)) then
       call problems%error(setting%line, key%group, key%name, '&'//key%group//' '//key%name//' is missing; '// &
-                          allowed_sentence(key)//'.', setting%place)
+                          ended(allowed_sentence(key)), setting%place)
     end if
   end subroutine take_default
 
@@ -258,7 +259,7 @@ contains
   subroutine check_values(key, place, entry, vocabulary, valid, problems)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry
@@ -294,10 +295,11 @@ contains
     end if
     valid = fault == ''
     if (.not. valid) call problems%error(entry%line, key%group, key%name, message_head(key%group, entry)// &
-                                         fault//'; '//allowed_sentence(key)//limit//'.', place)
+                                         ended(fault//'; '//allowed_sentence(key)//limit), place)
   end subroutine check_values
 
-  !> Writes choices as the table does, as they are accepted in any case. A text with several choices stays as it is.
+  !> Replaces choices by their spelling in the table, as they are accepted in any case. A text with several choices is
+  !> not changed.
   pure subroutine take_spelling(key, values)
     !> The key as the table has it
     type(key_entry_t), intent(in) :: key
@@ -307,7 +309,7 @@ contains
     integer :: i, j
 
     if (key%kind /= 'choice' .and. key%kind /= 'choice or real') return
-    ! Conditions on a real value follow the choices behind a comma.
+    ! In the table, conditions on a real value follow the choices after a comma.
     choices = words_of(key%allowed(:index(key%allowed//',', ',') - 1), ' ')
     do i = 1, size(values)
       do j = 1, size(choices)
@@ -316,11 +318,11 @@ contains
     end do
   end subroutine take_spelling
 
-  !> Which of the groups of its name a group is.
+  !> Index of a group among those of its name.
   pure integer function place_of(scan, accepted, block) result(place)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> Which of its groups count
+    !> True for groups that are used
     logical, intent(in) :: accepted(:)
     !> Index of the group in it
     integer, intent(in) :: block

@@ -23,17 +23,17 @@ module deck_scanner
     type(entry_t), allocatable :: entries(:)
     !> Values found so far
     integer :: values = 0
-    !> True: the last group is not ended yet
+    !> True: the last group has not ended yet
     logical, private :: open = .false.
-    !> True: the last key may still get values
+    !> True: the last key may have further values
     logical, private :: collecting = .false.
-    !> True: a comma or = came last, so a value is due
+    !> True: the last word was a comma or =, so that a value is due
     logical, private :: value_due = .false.
   end type scan_t
 
 contains
 
-  !> Finds groups, keys and values; reports every fault of the writing.
+  !> Finds groups, keys and values; reports every error of syntax.
   subroutine scan_deck(content, scan, problems)
     !> Text of the deck
     character(len=*), intent(in) :: content
@@ -229,7 +229,7 @@ contains
     scan_for = scan(word, characters)
   end function scan_for
 
-  !> The last key gets no more values.
+  !> Ends the list of values of the last key.
   subroutine finish_entry(scan, problems)
     !> The result so far
     type(scan_t), intent(inout) :: scan
@@ -277,7 +277,7 @@ contains
       end if
     end if
     scan%value_due = .false.
-    ! A text that is not closed swallows the slash that may end its line.
+    ! A text that is not closed includes the slash that may end its line.
     if (token%kind == token_cut .and. len_trim(token%text) > 0) then
       if (index(token%text, '/', back=.true.) == len_trim(token%text)) scan%open = .false.
       if (.not. scan%open) scan%collecting = .false.
@@ -309,7 +309,7 @@ contains
     scan%collecting = .true.
   end subroutine report_stray_value
 
-  !> The writing of the last key is wrong: reports it once, and bars the key from further checks.
+  !> Reports an error in the syntax of the last key once, and excludes the key from further checks.
   subroutine mark_faulty(scan, line, fault, problems, keys)
     !> The result so far
     type(scan_t), intent(inout) :: scan

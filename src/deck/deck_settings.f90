@@ -12,7 +12,7 @@ module deck_settings
   type :: setting_t
     !> Names of the group and of the key as the manual writes it
     character(len=:), allocatable :: group, key
-    !> Which of the groups of this name, from 1
+    !> Index among the groups of this name, from 1
     integer :: place = 1
     !> Line of the key, or of its group if it is not given
     integer :: line = 0
@@ -22,9 +22,9 @@ module deck_settings
     logical :: valid = .true.
     !> True: chosen for the accuracy of the deck
     logical :: chosen = .false.
-    !> Table that gave the value as the deck refers to it; unallocated: none
+    !> Table from which the value is taken, as the deck refers to it; unallocated: none
     character(len=:), allocatable :: origin
-    !> True: without effect on this deck, so the echo leaves it out
+    !> True: without effect on this deck, so that the echo omits it
     logical :: idle = .false.
     !> The values; none if the key has no default
     type(value_t), allocatable :: values(:)
@@ -93,7 +93,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Name of the group
     character(len=*), intent(in) :: group
-    !> Which of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i, left
 
@@ -107,12 +107,12 @@ contains
     end do
   end function line_of_group
 
-  !> Index of a key in the list, 0 if it is not there.
+  !> Index of a key in the list; 0: the key is not in it.
   pure integer function find(self, group, key, place) result(index)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: wanted
 
@@ -130,7 +130,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -144,7 +144,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -153,12 +153,12 @@ contains
     if (i > 0) is_known = self%items(i)%valid .and. size(self%items(i)%values) > 0
   end function is_known
 
-  !> Line to name when a key is at fault: its own, or its group's.
+  !> Line to be named when a key has an error: its own, or that of its group.
   pure integer function line_of(self, group, key, place) result(line)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -167,15 +167,15 @@ contains
     if (i > 0) line = self%items(i)%line
   end function line_of
 
-  !> Takes the values of a key; none if there are none that can be used.
-  !> No function, because gfortran 12 loses the memory of texts in a list that a function returns.
+  !> Takes the values of a key; none if no values can be used. Not a function, because gfortran 12 leaks the memory of
+  !> texts in a list that a function returns.
   pure subroutine take_values(self, group, key, values, place)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> The values
     type(value_t), allocatable, intent(out) :: values(:)
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -191,7 +191,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> The text
     character(len=:), allocatable :: word
@@ -224,7 +224,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
@@ -238,7 +238,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> The numbers
     real(wp), allocatable :: numbers(:)
@@ -254,7 +254,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     !> The numbers
     integer, allocatable :: numbers(:)
@@ -270,7 +270,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer, allocatable :: numbers(:)
 
@@ -284,7 +284,7 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Which of the groups of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
 
@@ -293,16 +293,17 @@ contains
     if (size(values) > 0) logical_of = logical_value(values(1))
   end function logical_of
 
-  !> Gives a key that the deck does not give the value of a table that the deck refers to. It counts as given.
+  !> Sets a key that the deck does not give to the value of a table to which the deck refers. The key then counts as
+  !> given.
   pure subroutine adopt(self, group, key, word, origin, place)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The value as it would stand in a deck
+    !> The value as written in a deck
     character(len=*), intent(in) :: word
     !> Name of the table, for the echo
     character(len=*), intent(in) :: origin
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     integer :: i
 
@@ -314,16 +315,16 @@ contains
     self%items(i)%origin = origin
   end subroutine adopt
 
-  !> Sets the value of a key that the deck does not give and that follows from others.
+  !> Sets the value of a key that the deck does not give and that follows from other keys.
   pure subroutine derive(self, group, key, word, quoted, place)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The value as it would stand in a deck, without quotes
+    !> The value as written in a deck, without quotes
     character(len=*), intent(in) :: word
     !> True: it is a text
     logical, intent(in) :: quoted
-    !> Which group of this name
+    !> Index among the groups of this name
     integer, intent(in), optional :: place
     type(value_t), allocatable :: values(:)
     integer :: i
@@ -336,7 +337,7 @@ contains
     call move_alloc(values, self%items(i)%values)
   end subroutine derive
 
-  !> Sets the numbers of a key that the deck does not give and that follow from others.
+  !> Sets the numbers of a key that the deck does not give and that follow from other keys.
   pure subroutine derive_numbers(self, group, key, numbers)
     class(settings_t), intent(inout) :: self
     !> Names of group and key
@@ -360,7 +361,7 @@ contains
     class(settings_t), intent(inout) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The values as they would stand in a deck, without quotes
+    !> The values as written in a deck, without quotes
     type(line_t), intent(in) :: words(:)
     !> True: they are texts
     logical, intent(in), optional :: quoted
@@ -379,7 +380,7 @@ contains
     self%items(place)%chosen = .true.
   end subroutine choose
 
-  !> Leaves a group that the deck does not have out of the echo.
+  !> Omits a group that the deck does not have from the echo.
   pure subroutine set_aside(self, group)
     class(settings_t), intent(inout) :: self
     !> Name of the group

@@ -4,7 +4,7 @@ module deck_tokens
   private
   public :: token_t, cursor_t, next_token, skip_blanks, skip_to_group
 
-  !> Kinds of tokens; a truncated text is one whose closing quote is not in its line.
+  !> Kinds of tokens; a truncated text is one without a closing quote in its line.
   integer, parameter, public :: token_end = 0, token_group = 1, token_slash = 2, token_key = 3, token_word = 4, &
                                 token_quoted = 5, token_cut = 6, token_comma = 7, token_equals = 8
 
@@ -69,11 +69,11 @@ contains
     end select
   end subroutine next_token
 
-  !> Passes blanks, ends of lines and comments.
+  !> Skips blanks, ends of lines and comments.
   pure subroutine skip_blanks(deck, cursor)
     !> Text of the deck
     character(len=*), intent(in) :: deck
-    !> Moved to the next character that counts
+    !> Moved to the next significant character
     type(cursor_t), intent(inout) :: cursor
     logical :: comment
 
@@ -91,7 +91,7 @@ contains
     end do
   end subroutine skip_blanks
 
-  !> Passes everything up to the next group or the end, between groups.
+  !> Between groups, skips everything up to the next group or the end.
   pure subroutine skip_to_group(deck, cursor, unknown_word, unknown_line)
     !> Text of the deck
     character(len=*), intent(in) :: deck
@@ -121,7 +121,7 @@ contains
     end do
   end subroutine skip_to_group
 
-  !> True: an & with a name behind it is at this place.
+  !> True: at this position is an & followed by a name.
   pure logical function starts_group(deck, at)
     !> Text of the deck
     character(len=*), intent(in) :: deck
@@ -174,7 +174,7 @@ contains
     cursor%at = finish + 1
   end subroutine take_group
 
-  !> Takes a text between quotes; a doubled quote stands for one.
+  !> Takes a text between quotes; a doubled quote represents one.
   pure subroutine take_quoted(deck, cursor, token)
     !> Text of the deck
     character(len=*), intent(in) :: deck

@@ -1,5 +1,5 @@
-!> Typographic characters of word processors and web pages: each is reported with its line, and replaced for the rest of
-!> the check. They are allowed in texts and comments.
+!> Typographic characters of word processors and web pages: each is reported with its line, and replaced for the
+!> remaining checks. They are allowed in texts and comments.
 module deck_typography
   use deck_problems, only: problems_t
   implicit none
@@ -69,7 +69,7 @@ contains
     clean = clean//deck(copied + 1:)
   end subroutine take_plain
 
-  !> Which of the characters stands here, 0: none.
+  !> Index of the typographic character at a position; 0: there is none.
   pure integer function kind_at(deck, at) result(kind)
     !> Text of the deck
     character(len=*), intent(in) :: deck
@@ -85,9 +85,9 @@ contains
 
   !> True: the character would be read as part of the deck's grammar.
   pure logical function counts(place, kind)
-    !> Where it stands
+    !> Position in the deck
     type(place_t), intent(in) :: place
-    !> Which it is
+    !> Index of the character
     integer, intent(in) :: kind
 
     counts = .false.
@@ -97,7 +97,7 @@ contains
 
   !> Effect of a plain character: ends of lines, starts and ends of texts and comments.
   pure subroutine pass(place, next)
-    !> Where it stands
+    !> Position in the deck
     type(place_t), intent(inout) :: place
     !> The character
     character(len=1), intent(in) :: next

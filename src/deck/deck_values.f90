@@ -1,12 +1,13 @@
-!> Checks single values of a deck: type, choice, range, and the allowed values for messages.
+!> Checks single values of a deck: type, choice and range.
 module deck_values
+  use allowed_values, only: branch_of
   use deck_entries, only: value_t, shown
   use deck_vocabulary, only: key_entry_t
   use kinds, only: wp
-  use text, only: line_t, append, words_of, lower_case, joined, nearest_name, to_text
+  use text, only: line_t, append, words_of, lower_case, nearest_name, to_text
   implicit none
   private
-  public :: fault_of_value, fault_of_count, decimal_commas, allowed_sentence, limit_of_size, literal_value, &
+  public :: fault_of_value, fault_of_count, decimal_commas, limit_of_size, literal_value, &
             real_value, integer_value, logical_value
 
   !> Range of numbers, so that their products remain finite and nonzero: the size of reals other than 0 is at least
@@ -48,23 +49,6 @@ contains
       if (value%quoted) fault = fault_of_text(key, value%text)
     end select
   end function fault_of_value
-
-  !> One side of a key that takes a choice or a number; in the table its choices stand before the conditions.
-  pure function branch_of(key, kind) result(branch)
-    !> The key as the table has it
-    type(key_entry_t), intent(in) :: key
-    !> `choice` or `real`
-    character(len=*), intent(in) :: kind
-    !> A key of that kind alone
-    type(key_entry_t) :: branch
-    integer :: comma
-
-    branch = key
-    branch%kind = kind
-    comma = index(key%allowed, ',')
-    branch%allowed = key%allowed(:comma - 1)
-    if (kind == 'real') branch%allowed = key%allowed(comma + 2:)
-  end function branch_of
 
   !> Error of a number, or of a word that the key accepts in its place, or an empty text.
   pure function fault_of_number(key, value) result(fault)
@@ -200,35 +184,6 @@ contains
     hint = ' (a comma separates values; for a decimal write '//whole//'.'//fraction//')'
   end function decimal_commas
 
-  !> Allowed values of a key, for the end of a message.
-  pure recursive function allowed_sentence(key) result(sentence)
-    !> The key as the table has it
-    type(key_entry_t), intent(in) :: key
-    !> Such as `allowed: 2 real values > 0`
-    character(len=:), allocatable :: sentence
-    type(line_t), allocatable :: choices(:)
-
-    if (key%kind == 'choice or real') then
-      sentence = allowed_sentence(branch_of(key, 'real'))
-      sentence = allowed_sentence(branch_of(key, 'choice'))//' or'//sentence(len('allowed:') + 1:)
-      return
-    end if
-    sentence = 'allowed: '//key%values//' '//key%kind//trim(merge('  ', 's ', key%values == '1'))
-    if (key%kind == 'real' .or. key%kind == 'text') sentence = 'allowed: '//key%values//' '//key%kind// &
-                                                               trim(merge(' value ', ' values', key%values == '1'))
-    if (key%kind == 'choice') then
-      choices = words_of(key%allowed, ' ')
-      sentence = 'allowed: '//key%values//' of '''//joined(choices, ''', ''')//''''
-    else if (key%kind == 'name') then
-      sentence = sentence//' of up to 80 characters: '//key%allowed//', the first a letter or digit'
-    else if (key%kind /= 'logical' .and. key%allowed /= 'any' .and. key%allowed /= 'any text') then
-      sentence = sentence//' '//key%allowed
-    else if (key%kind == 'logical') then
-      sentence = 'allowed: .true. or .false.'
-    end if
-    if (key%kind == 'text') sentence = sentence//' in quotes'
-  end function allowed_sentence
-
   !> Limit by the size of numbers, if a value exceeds it; else an empty text.
   pure function limit_of_size(key, value) result(limit)
     !> The key as the table has it
@@ -309,11 +264,11 @@ contains
     is_not_finite = bare == 'nan' .or. bare == 'inf' .or. bare == 'infinity' .or. index(bare, 'nan(') == 1
   end function is_not_finite
 
-  !> Whether a word is a number, and its decimal magnitude, found without a chance to overflow.
+  !> Whether a word is a number, and its decimal magnitude, determined without overflow.
   pure subroutine measure_number(word, is_number, decade)
     !> The word
     character(len=*), intent(in) :: word
-    !> True: sign, digits, point and exponent are as they should be
+    !> True: sign, digits, point and exponent are valid
     logical, intent(out) :: is_number
     !> Power of ten of its first digit that is not 0; 0 for the number 0
     integer, intent(out) :: decade

@@ -5,16 +5,16 @@ module deck_vocabulary
   private
   public :: group_entry_t, key_entry_t, vocabulary_t, load_vocabulary
 
-  !> Characters of a row of a group and of a key, enough for the longest.
+  !> Characters of a row of a group and of a key, sufficient for the longest.
   integer, parameter, public :: group_row_length = 220, key_row_length = 240
 
   !> A group of the deck.
   type :: group_entry_t
     !> Name without &
     character(len=:), allocatable :: name
-    !> required; repeatable: required and may come again; settings: in effect even if left out; optional: physics that
-    !> is only modelled if the group is there; several: optional and may come again; hidden: optional, for studies, and
-    !> in no list of groups
+    !> required; repeatable: required, may be given several times; settings: in effect even if left out; optional:
+    !> physics that is modelled only if the group is given; several: optional, may be given several times; hidden:
+    !> optional, for studies, and in no list of groups
     character(len=:), allocatable :: presence
     !> One sentence
     character(len=:), allocatable :: meaning
@@ -97,7 +97,7 @@ contains
     key%meaning = column(8)%text
   end subroutine set_key
 
-  !> True: the default is a value that could stand in the deck.
+  !> True: the default is a value that may be written in the deck.
   pure logical function has_literal_default(self)
     class(key_entry_t), intent(in) :: self
 

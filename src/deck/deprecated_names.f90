@@ -1,4 +1,4 @@
-!> Keys and values of the deck that go: they are still read for one minor version, with a warning.
+!> Deprecated keys and values of the deck: they are still read for one minor version, with a warning.
 module deprecated_names
   use deck_entries, only: entry_t, shown, shown_values
   use deck_problems, only: problems_t
@@ -10,7 +10,7 @@ module deprecated_names
 
   !> Characters of a row.
   integer, parameter, public :: deprecation_row_length = 120
-  !> Stands in a row for no value and for no replacement.
+  !> Entry of a row for no value and for no replacement.
   character(len=*), parameter :: none = '-'
 
   !> A deprecated key, or a deprecated value.
@@ -45,7 +45,7 @@ contains
     if (deprecation%replacement == none) deprecation%replacement = ''
   end function deprecation_of
 
-  !> Puts replacements for deprecated keys and values of a scanned deck and warns of each.
+  !> Replaces deprecated keys and values of a scanned deck and warns of each.
   subroutine replace_deprecated(rows, scan, problems)
     !> Rows of deprecated names
     character(len=*), intent(in) :: rows(:)
@@ -66,7 +66,7 @@ contains
     end do
   end subroutine replace_deprecated
 
-  !> Puts the replacement in an entry of the deck, if it has the deprecated name.
+  !> Replaces the key or value of an entry of the deck if it is deprecated.
   subroutine replace_entry(deprecation, entry, problems)
     !> The deprecation
     type(deprecation_t), intent(in) :: deprecation
@@ -112,7 +112,7 @@ contains
     end if
   end function sentence
 
-  !> The minor version after the one that warns first.
+  !> The minor version after the first one that warns.
   pure function first_version_without(since) result(version)
     !> MAJOR.MINOR.PATCH
     character(len=*), intent(in) :: since

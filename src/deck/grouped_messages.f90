@@ -1,4 +1,4 @@
-!> Messages that differ in numbers alone, reported as one, with ranges of numbers and lists of plies.
+!> Messages that differ only in numbers are reported as one, with ranges of numbers and lists of plies.
 module grouped_messages
   use text, only: line_t, listed
   implicit none
@@ -35,7 +35,7 @@ contains
   pure function merged(messages) result(message)
     !> The messages, at least one
     type(line_t), intent(in) :: messages(:)
-    !> The first, with the numbers of the others behind its own
+    !> The first message, with the numbers of the others next to its own
     character(len=:), allocatable :: message
     type(line_t) :: numbers(size(messages))
     integer :: next(size(messages)), start, from, to, i
@@ -62,7 +62,7 @@ contains
     message = message//messages(1)%text(start:)
   end function merged
 
-  !> Place of the next number that is a word of its own.
+  !> Position of the next number that is a separate word.
   pure subroutine find_number(message, start, from, to)
     !> The message
     character(len=*), intent(in) :: message
@@ -79,7 +79,7 @@ contains
       if (digit == 0) return
       from = to + digit
       to = from + span(message(from:))
-      ! Two points make a version.
+      ! A number with two points is a version.
       if (index(message(from:to), '.') /= index(message(from:to), '.', .true.)) cycle
       if (from == 1) exit
       if (message(from - 1:from - 1) == '-') from = from - 1
@@ -88,7 +88,7 @@ contains
     end do
   end subroutine find_number
 
-  !> Characters behind the first one that belong to a number.
+  !> Number of characters after the first that belong to a number.
   pure integer function span(rest)
     !> Text that begins with a digit
     character(len=*), intent(in) :: rest

@@ -1,5 +1,6 @@
 !> Growth criterion of an interface: energy release rate over toughness (Eq. 7 of the paper), with one toughness or with
-!> the mixed-mode one of M. L. Benzeggagh and M. Kenane, Composites Science and Technology 56 (1996) 439-449.
+!> the mixed-mode one of M. L. Benzeggagh and M. Kenane, Composites Science and Technology 56 (1996) 439-449; theory
+!> (D1).
 module benzeggagh_kenane
   use delamination_parameters, only: delamination_t
   use kinds, only: wp
@@ -9,7 +10,7 @@ module benzeggagh_kenane
 
 contains
 
-  !> Toughness of a mixture of modes minus that of opening, (G_IIc - G_Ic) B**eta, for fronts and cohesive laws.
+  !> Toughness of a mixture of modes minus that of opening, (G_IIc - G_Ic) B**eta, for fronts and for cohesive laws.
   elemental real(wp) function toughness_gain(opening, shear, exponent, share) result(gain)
     !> Toughness of pure opening and of pure shear
     real(wp), intent(in) :: opening, shear

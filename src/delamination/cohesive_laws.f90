@@ -1,8 +1,8 @@
-!> Cohesive law of an interface: parameters of the traction against the jumps between two surfaces.
+!> Cohesive law of an interface, theory (D1) to (D3): parameters of the traction against the jumps between two surfaces.
 !>
-!> The curve is bilinear: linear up to the onset, then linear softening to zero at N times the jump of the onset. The
+!> The curve is bilinear: linear up to the onset, then linear softening to zero at N times the jump at the onset. The
 !> area under it is the toughness of the present mixture of modes (M. L. Benzeggagh and M. Kenane, Composites Science
-!> and Technology 56 (1996) 439-449). N is the same for every mixture if stiffnesses and strengths keep K_s/K_n =
+!> and Technology 56 (1996) 439-449). N is the same for every mixture if stiffnesses and strengths satisfy K_s/K_n =
 !> (G_Ic/G_IIc) (tau/sigma)**2 (A. Turon et al., Composite Structures 92 (2010) 1857-1864); the damage is then the only
 !> history variable of a point.
 module cohesive_laws
@@ -15,8 +15,8 @@ module cohesive_laws
   !> Stiffness of the law over that of the adjacent layer, K_n h/E3. A factor of ten up or down changes the radius of a
   !> grown delamination by 0.3 to 1.4 %; 5 instead of 50 saves a third of the iterations of a step.
   real(wp), parameter :: usual_stiffness = 5
-  !> Least jump at failure over jump at onset. Its inverse is the part of the toughness that is stored at the
-  !> onset: 5 %.
+  !> Smallest ratio of the jump at failure to the jump at the onset. Its inverse is the part of the toughness that is
+  !> stored at the onset: 5 %.
   real(wp), parameter :: min_ratio = 20
 
   !> The law of one interface.
@@ -47,7 +47,7 @@ contains
     real(wp), intent(in) :: stiffness
     !> Through-thickness modulus of the adjacent plies, E3
     real(wp), intent(in) :: modulus
-    !> Thickness of the thinner layer
+    !> Thickness of the laminate on the thinner side of the interface
     real(wp), intent(in) :: thickness
     !> The law
     type(cohesive_law_t) :: law

@@ -25,17 +25,17 @@ module cohesive_points
     type(sliding_t) :: sliding
   end type cohesive_point_t
 
-  !> Position of jumps on the curve.
+  !> Position of a jump on the curve of traction against separation.
   type :: separation_t
-    !> Largest jump, without closing
+    !> Largest component of the jumps, closing taken as zero
     real(wp) :: size = 0
-    !> The jumps over their size
+    !> The jumps divided by this size
     real(wp) :: unit(3) = 0
-    !> Energy per area of these unit jumps in an undamaged interface, and its fraction of shear B
+    !> Energy per area of the undamaged interface under these normalised jumps, and its fraction of shear B
     real(wp) :: unit_energy = 0, shear_share = 0
     !> Toughness G_c of this mixture of modes
     real(wp) :: toughness = 0
-    !> Jump over that of the onset, x, at most N
+    !> Jump over the jump at the onset, x, at most N
     real(wp) :: ratio = 0
   end type separation_t
 
@@ -61,7 +61,7 @@ contains
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
-  !> Position of jumps on the curve: x = sqrt(N Y/G_c).
+  !> Position of jumps on the curve: x = sqrt(N Y/G_c), theory (D2).
   pure function separation_of(law, jumps) result(separation)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -92,7 +92,7 @@ contains
     separation%unit_energy = energy
     separation%shear_share = share
     separation%toughness = toughness
-    ! No product beyond failure, where very large jumps would overflow. NaN is passed on.
+    ! No product beyond failure, where very large jumps would cause overflow. NaN is passed on.
     if (size >= law%failure_ratio/unit_ratio) then
       separation%ratio = law%failure_ratio
     else
@@ -100,7 +100,7 @@ contains
     end if
   end function separation_of
 
-  !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, not decreasing.
+  !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, not decreasing, theory (D2).
   pure real(wp) function grown_damage(law, separation, old) result(damage)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -131,7 +131,7 @@ contains
     if (new%damage >= 1) class_of_point = point_failed
   end function point_class
 
-  !> Jumps of the cohesive law.
+  !> Jumps that enter the cohesive law.
   pure function opened(jumps) result(opening_jumps)
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -176,7 +176,7 @@ contains
     share = separation%shear_share
   end function mode_mixity
 
-  !> Dissipated fraction of the toughness at a damage: phi(d) = d/(N (1 - d) + d), from 0 to 1.
+  !> Dissipated fraction of the toughness at a damage: phi(d) = d/(N (1 - d) + d), from 0 to 1, theory (D3).
   pure real(wp) function dissipated_fraction(law, damage) result(share)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -186,7 +186,7 @@ contains
     share = damage/(law%failure_ratio*(1 - damage) + damage)
   end function dissipated_fraction
 
-  !> Damage for a dissipated fraction of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi).
+  !> Damage for a dissipated fraction of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi), theory (D14).
   pure real(wp) function damage_at_fraction(law, share) result(damage)
     !> The law
     type(cohesive_law_t), intent(in) :: law

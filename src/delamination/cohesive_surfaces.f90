@@ -1,7 +1,7 @@
-!> Surfaces at a point of a cohesive interface: cohesive law in opening, penalty stiffness of the undamaged interface
-!> in closing, and friction on the damaged part of the area under pressure. Without contact the damaged part, with the
-!> damage at the start of the step, has no stiffness in closing, so that tractions have a potential within a step; the
-!> undamaged part acts in both directions, and growing damage releases the energy stored in closing.
+!> Surfaces at a point of a cohesive interface: cohesive law in opening, penalty stiffness of the undamaged interface in
+!> closing, and friction on the damaged part of the area under pressure. Without contact the part of the area that was
+!> damaged at the start of the step has no stiffness in closing, so that tractions have a potential within a step. The
+!> undamaged part acts in opening and closing, and growing damage releases the energy stored in closing.
 module cohesive_surfaces
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use cohesive_points, only: cohesive_point_t, separation_of, cohesive_traction, fraction_growth, grown_damage, &
@@ -28,7 +28,7 @@ module cohesive_surfaces
     procedure :: stored
     !> Work per area on the cohesive law in a step.
     procedure :: work
-    !> Energy per area that growing damage takes from closed surfaces without contact.
+    !> Energy per area that closed surfaces without contact lose by growing damage.
     procedure :: closing_loss
     !> Derivative of the traction.
     procedure :: slopes
@@ -76,8 +76,8 @@ contains
   end function stored
 
   !> Work per area on the cohesive law in a step: change of the stored energy without that of friction and contact,
-  !> energy dissipated, and loss in closing. It begins from the law at the first jumps: where flaws or a mapping have
-  !> weakened the point, damage at fixed jumps takes no work.
+  !> energy dissipated, and loss in closing. It starts from the energy of the law at the first jumps: where flaws or a
+  !> mapping have weakened the point, damage at constant jumps requires no work.
   pure real(wp) function work(self, from, to, old, damage)
     !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
@@ -104,7 +104,7 @@ contains
            + self%closing_loss(from(3), to(3), damage - first)
   end function work
 
-  !> Energy per area that growing damage takes from closed surfaces without contact, by the trapezoidal rule.
+  !> Energy per area that closed surfaces without contact lose by growing damage, by the trapezoidal rule.
   pure real(wp) function closing_loss(self, from, to, growth)
     !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
@@ -153,7 +153,7 @@ contains
   end function diagonal
 
   !> Friction limit of an accepted state: coefficient of friction times pressure times damaged fraction of the area (G.
-  !> Alfano, E. Sacco 2006).
+  !> Alfano, E. Sacco, Int. J. Numer. Meth. Eng. 68 (2006) 542-582; theory (D4)).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
     !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self

@@ -11,9 +11,9 @@ module cohesive_tangents
 
 contains
 
-  !> Derivative of the traction: (1 - d) diag(K), where damage grows less (K v) (x) dd/dv with dd/dx = N/((N - 1) x**2)
-  !> and dx/dv = (dY/Y - dG_c/G_c) x/2. Closed surfaces have no normal part. It is unsymmetric for growth in a mixed
-  !> mode with G_Ic /= G_IIc.
+  !> Derivative of the traction: (1 - d) diag(K) and, where damage grows, minus (K v) (x) dd/dv, with dd/dx = N/((N - 1)
+  !> x**2) and dx/dv = (dY/Y - dG_c/G_c) x/2. Closed surfaces have no normal part. It is unsymmetric for growth in a
+  !> mixed mode with G_Ic /= G_IIc.
   pure function traction_slopes(law, jumps, separation, old) result(slopes)
     !> The law
     type(cohesive_law_t), intent(in) :: law
@@ -101,9 +101,9 @@ contains
     slopes = slopes*law%mixing_exponent*mixture*strengthening/separation%unit_energy
   end function toughness_slopes
 
-  !> Diagonal for a factored operator, constant within a class of points: K if undamaged, (1 - d) K if damaged, with
-  !> growing damage 0 along the jump and (1 - d) K across it, 0 after failure. It is not negative and does not depend on
-  !> closing: contact is added separately.
+  !> Diagonal for a factored operator, constant within a class of points: K if undamaged, (1 - d) K if damaged; with
+  !> growing damage 0 in the direction of the jump and (1 - d) K normal to it; 0 after failure. It is not negative and
+  !> does not depend on closing: contact is added separately.
   pure function operator_stiffness(law, jumps, old) result(diagonal)
     !> The law
     type(cohesive_law_t), intent(in) :: law

@@ -30,8 +30,8 @@ module delaminated_regions
 
 contains
 
-  !> The region of a zone with the starter as its only delamination. The starter consists of the cells with the centre
-  !> in its square or circle; one smaller than a cell consists of the cells that touch its centre.
+  !> The region of a zone with the starter as its only delamination. The starter consists of the cells whose centre is
+  !> in its square or circle; a starter smaller than a cell consists of the cells that touch its centre.
   pure function create_region(mesh, zone, starter, strip, round, at) result(self)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -64,11 +64,11 @@ contains
     rows = [max(rows(1), self%rows(1)), min(rows(2), self%rows(2))]
     self%delaminated(columns(1):columns(2), rows(1):rows(2)) = .true.
     if (.not. present(round)) return
-    if (round) call round_off(self, mesh, centre, starter)
+    if (round) call keep_circle(self, mesh, centre, starter)
   end function create_region
 
-  !> Reduces a square starter to the cells with the centre in its circle, and those that touch its centre.
-  pure subroutine round_off(self, mesh, centre, diameter)
+  !> Reduces a square starter to the cells whose centre is in its circle, and those that touch the centre of the circle.
+  pure subroutine keep_circle(self, mesh, centre, diameter)
     !> The region, with the square
     type(delaminated_region_t), intent(inout) :: self
     !> The mesh
@@ -98,7 +98,7 @@ contains
       distance = rounding*diameter
       touches = edges(1) < distance .and. edges(2) > -distance
     end function touches
-  end subroutine round_off
+  end subroutine keep_circle
 
   !> Delaminates the cells of a zone with the centre in a strip across it.
   pure subroutine delaminate_strip(self, x_edges, strip)
@@ -117,7 +117,7 @@ contains
     end do
   end subroutine delaminate_strip
 
-  !> First and last cell with the centre within an extent centred on the struck point; at least those that touch the
+  !> First and last cell whose centre is within an extent centred on the struck point; at least those that touch the
   !> struck point.
   pure function cells_within(edges, extent) result(range)
     !> Edges of the cells along one direction, the struck point at 0
@@ -132,7 +132,7 @@ contains
 
     cells = size(edges) - 1
     distance = rounding*(edges(cells + 1) - edges(1))
-    ! A centre on the border is outside, independent of round-off in any units.
+    ! A centre exactly on the border counts as outside, by a tolerance that does not depend on units.
     taken = abs(edges(:cells) + edges(2:)) < extent - distance .or. &
             (edges(:cells) < distance .and. edges(2:) > -distance)
     range = [findloc(taken, .true., dim=1), cells]
@@ -151,7 +151,7 @@ contains
 
     range = cells_within(edges, extent)
     taken = edges(range(2) + 1) - edges(range(1))
-    ! A model that begins at the plate's centre and is struck there is half of the line.
+    ! A model that begins at the plate's centre and is struck there contains half of the extent.
     if (edges(1) > -rounding*edges(size(edges))) taken = 2*taken
   end function extent_of_cells
 

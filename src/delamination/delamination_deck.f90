@@ -58,8 +58,8 @@ module delamination_deck
       &Strength of the cohesive law in pure opening.', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure shear.', &
-    'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner layer | > 0 | &
-      &Stiffness of the undamaged cohesive law in opening.', &
+    'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner side | > 0 | &
+      &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the thinner side.', &
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
       &Coulomb''s coefficient of friction of damaged surfaces that are closed.', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
@@ -73,7 +73,7 @@ module delamination_deck
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
       &Connection of intact surfaces: exact elimination, or penalty springs as by Li et al.', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
-      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner layer.', &
+      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner side.', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
@@ -183,7 +183,7 @@ contains
     call fill_strength(settings, place, key_strength_shear, weaker(2), delamination%strength_shear)
   end subroutine fill_law
 
-  !> True if a cohesive law is the default: no key of a front is given, and strengths are known.
+  !> True if a cohesive law is the default: no key of a front is given, and the strengths are known.
   pure logical function suits_cohesive(settings, place, of_plies) result(suits)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -257,7 +257,7 @@ contains
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i)%group) .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i - 1)%group)) &
-        call report(settings, problems, group, key_below_ply, 'is not below the interface before it; give each '// &
+        call report(settings, problems, group, key_below_ply, 'is not below the preceding interface; give each '// &
                   'interface once, in order from the struck face.', delaminations(i)%group)
     end do
   end subroutine check_delaminations
@@ -298,11 +298,11 @@ contains
       call report(settings, problems, group, '', toughness_objection(delamination)//'.', place)
     else if (delamination%energy_release == release_two_state .and. delamination%toughness <= 0) then
       call report(settings, problems, group, 'energy_release', &
-                  'Eq. 11 does not separate the modes; give G_c, or take ''vcct''.', place)
+                  'Eq. 11 of the paper does not separate the modes; give G_c, or energy_release = ''vcct''.', place)
     end if
   end subroutine check_toughness
 
-  !> Checks the strengths of a cohesive law, by default others for each interface; remarks on a front in its place.
+  !> Checks the strengths of a cohesive law, whose defaults may differ between interfaces; warns of a front by default.
   subroutine check_strengths(settings, delamination, place, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -320,7 +320,7 @@ contains
       return
     end if
     call check_law(settings, delamination, place, problems)
-    ! Without a position there are no adjacent plies with strengths.
+    ! Without a position of the interface its adjacent plies, whose strengths are the defaults, are not known.
     if (delamination%below_ply < 1) return
     if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
     if (.not. delamination%strength_shear > 0) call require(key_strength_shear, 'or S12 of the materials.')
@@ -374,7 +374,7 @@ contains
     associate (d => delamination)
       if (d%law == law_cohesive) call idle(fronts_only, 'with law = ''cohesive''')
       if (d%law /= law_cohesive) call idle(law_only, 'without law = ''cohesive''')
-      if (d%contact == contact_none) call idle('friction', 'as surfaces pass through each other')
+      if (d%contact == contact_none) call idle('friction', 'as contact = ''none'' lets surfaces penetrate')
       if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
       if (d%toughness > 0) call idle('eta', 'as G_c is given')
       if (d%law == law_cohesive) return

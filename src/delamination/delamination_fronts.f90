@@ -76,7 +76,7 @@ contains
     segment%sign = sum(step)
     segment%at_border = .not. region%in_zone(segment%outside(1), segment%outside(2))
     do line = 1, 3
-      ! The edge is one line of nodes beyond the centre of the cell.
+      ! The line of nodes on the edge is next to that through the centre of the cell.
       place = middle_line(inside) + step + (line - 2)*along
       segment%edge(line) = region%node_at(place(1), place(2))
     end do

@@ -12,8 +12,8 @@ module delamination_parameters
   !> Methods for the energy release rate: strain states on both sides of the front (Eq. 11 with corrected sign), or
   !> virtual crack closure.
   integer, parameter, public :: release_two_state = 1, release_vcct = 2
-  !> Growth: cells are released at frozen time until no front exceeds its toughness, or one cell per step (section 3.3.3
-  !> of the paper).
+  !> Growth: cells are released while time is held constant until no front exceeds its toughness, or one cell per step
+  !> (section 3.3.3 of the paper).
   integer, parameter, public :: growth_equilibrium = 1, growth_one_per_step = 2
   !> Ties of intact surfaces: jumps are eliminated, or penalised as in the paper.
   integer, parameter, public :: tie_eliminate = 1, tie_penalty = 2
@@ -35,7 +35,7 @@ module delamination_parameters
     real(wp) :: toughness_opening = 0, toughness_shear = 0
     !> Exponent eta of Benzeggagh and Kenane
     real(wp) :: mixing_exponent = 1.75_wp
-    !> Full extents of the layered rectangle along x and y, centred on the struck point; of an adaptive one the present
+    !> Full extents of the layered rectangle along x and y, centred on the struck point; if it is adaptive, the present
     !> extents
     real(wp) :: zone(2) = 0
     !> True: the layered rectangle is adaptive
@@ -58,9 +58,10 @@ module delamination_parameters
     real(wp) :: friction = 0
     !> True: reduced strengths beside cracks of the adjacent plies
     logical :: cracks_as_flaws = .false.
-    !> True: beside cracks by transverse shear in the adjacent plies damage starts at the shear stress that opens these
+    !> True: beside cracks by transverse shear in an adjacent ply, damage of the interface starts at the shear stress at
+    !> which the ply cracks
     logical :: shear_cracks = .false.
-    !> Strength factor of cracks_as_flaws: the fraction of the strengths that the cells resolve
+    !> Strength factor of cracks_as_flaws: the fraction of the strengths for which the cells resolve the process zone
     real(wp) :: flaw_strength = 1
     !> release_two_state or release_vcct
     integer :: energy_release = release_vcct
@@ -81,11 +82,11 @@ module delamination_parameters
   end type delamination_t
 
   !> Smallest number of cells over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about
-  !> their mean, with 3 cells by 4 to 13 %; a cross-ply with cells of 1 mm releases .97 of the recorded energy, with 2.6
-  !> cells .84.
+  !> their mean, with 3 cells by 4 to 13 %. In a cross-ply with cells of 1 mm fronts release .97 of the energy recorded
+  !> as fracture energy, with a distance of 2.6 cells .84 of it.
   integer, parameter, public :: min_smoothed_cells = 5
 
-  !> Keys with values that must be equal for a run to start with the damage of another one.
+  !> Keys whose values must be equal in two runs for one to start with the damage of the other.
   character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
     'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
 

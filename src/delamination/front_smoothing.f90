@@ -2,8 +2,8 @@
 !>
 !> A stepped front concentrates tie forces at its corners: their products with the openings, cell by cell, scatter by
 !> half of their mean on any mesh. Forces and openings are therefore averaged along the smooth front before they are
-!> multiplied. The line is a parabola fitted to the midpoints of the edges around each edge; the length of an edge is
-!> its projection on the line.
+!> multiplied (doc/theory/interfaces.md, virtual crack closure). The line is a parabola fitted to the midpoints of the
+!> edges around each edge; the length of an edge is its projection on the line.
 module front_smoothing
   use delamination_fronts, only: front_segment_t
   use dense_systems, only: solve_dense
@@ -16,15 +16,16 @@ module front_smoothing
   !> Cells within which edges contribute to the parabola of an edge. With 4 in place of 3 the rates of stepped discs
   !> change by at most 1.5 %.
   integer, parameter :: cells_of_line = 3
-  !> Lines of nodes to each side of an edge's midpoint in the search for its nodes: two and a half cells.
+  !> Lines of nodes on each side of an edge's midpoint in the search for nodes near the edge: two and a half cells.
   integer, parameter :: lines_beside = 5
-  !> Relative tolerance of equal distances: far above 1e-16, and distances differ by parts of a cell.
+  !> Relative tolerance of equal distances: far above round-off, 1e-16, and far below the differences of distances,
+  !> which are parts of a cell.
   real(wp), parameter :: distance_tolerance = 1.0e-6_wp
-  !> Stiffness of the parabola against slope and bend relative to that of one edge, for a front of one edge or two: a
-  !> fit of three changes by 1e-6.
+  !> Stiffness added to the fit of the parabola against slope and curvature, relative to the weight of one edge, so that
+  !> a front of one or two edges has a solution: a fit of three edges changes by 1e-6.
   real(wp), parameter :: regularisation = 1.0e-6_wp
-  !> Sum of normals relative to one edge below which they cancel: far above 1e-16, and the sum of a bent front is of the
-  !> order of one.
+  !> Magnitude of the sum of normals, relative to one edge, below which they cancel: far above round-off, 1e-16, while
+  !> the sum on a curved front is of the order of one.
   real(wp), parameter :: cancellation = 1.0e-6_wp
 
   !> The edges of a front.
@@ -178,8 +179,8 @@ contains
     end do
   end function neighbours_of
 
-  !> Mean normal of the edges around an edge. It is the edge's own where the others cancel, as on a front that faces
-  !> another part of itself across one cell.
+  !> Mean normal of the edges around an edge. It is the normal of the edge itself where the others cancel, as on a front
+  !> that faces another part of itself across one cell.
   pure function mean_normal(near, own, width) result(normal)
     !> The edges around it
     type(neighbours_t), intent(in) :: near
@@ -242,7 +243,7 @@ contains
     if (weight > 0) weight = weight*max(0.0_wp, dot_product(signs(image)*self%normal(:, t), self%normal(:, s)))
   end function weight
 
-  !> Nodes within some cells of the front.
+  !> Nodes within a few cells of the front.
   pure function nodes_near(self, segments, mesh) result(nodes)
     !> The front
     class(smooth_front_t), intent(in) :: self

@@ -24,7 +24,7 @@ contains
     integer, intent(in) :: materials(:)
     !> Plies, ascending
     integer, allocatable :: below(:)
-    ! Degrees: decks have at most three decimals, and rounding gives 1e-13.
+    ! Degrees: decks have at most three decimals, and round-off is about 1e-13.
     real(wp), parameter :: same_angle = 1.0e-6_wp
     integer :: ply
 

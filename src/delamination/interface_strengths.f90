@@ -11,8 +11,8 @@ module interface_strengths
 
 contains
 
-  !> Strengths of the interface below each ply: those of its cohesive law, else S12 and YT of the weaker adjacent ply;
-  !> none between equal plies.
+  !> Strengths of the interface below each ply: those of its cohesive law, otherwise S12 and YT of the weaker adjacent
+  !> ply; none between plies of equal material and angle.
   pure function interlaminar_strengths(plies, materials, delaminations) result(strengths)
     !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)

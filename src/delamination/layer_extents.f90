@@ -7,8 +7,8 @@ module layer_extents
   private
   public :: largest_extents, widened_extent
 
-  !> Onset index from which a cell is layered: interfaces exist before their stress has doubled. With .25 the force of
-  !> an impact changes by .09 to .16 % (doc/studies/interfaces.md).
+  !> Onset index from which a cell is layered, so that layers are inserted before the stress has doubled to the
+  !> strength. With .25 the force of an impact changes by .09 to .16 % (doc/studies/interfaces.md).
   real(wp), parameter, public :: onset_of_layers = 0.5_wp
   !> Layered cells required ahead of damage, and additional cells of each extension, so that extensions are few. The
   !> effect of other numbers is given in doc/studies/interfaces.md.
@@ -17,7 +17,7 @@ module layer_extents
   !> shear decays within one (Saint-Venant's principle). More cells ahead change the force of an impact by .09 to .16 %
   !> (doc/studies/interfaces.md).
   real(wp), parameter, public :: thicknesses_ahead = 2
-  !> Part of a cell that rounding may take away or add: far above 1e-16, and extents are compared in whole cells.
+  !> Tolerance of round-off, in cells: far above 1e-16, and extents are compared in whole cells.
   real(wp), parameter :: rounding = 1.0e-6_wp
 
 contains
@@ -34,12 +34,12 @@ contains
     largest = merge(max(extents, core), length, cell > 0)
   end function largest_extents
 
-  !> Extent widened by a number of cells of the size of its outermost ones on each side: fewer where cells grow with the
-  !> distance, at least one more cell if there is one.
+  !> Extent widened on each side by a number of cells of the size of its outermost ones: by fewer cells where their size
+  !> increases with the distance, but by at least one if there is one.
   pure real(wp) function widened_extent(edges, extent, cells, least) result(wider)
     !> Edges of the cells along one direction, the struck point at 0
     real(wp), intent(in) :: edges(:)
-    !> The other extent
+    !> The extent to be widened
     real(wp), intent(in) :: extent
     !> Cells on each side
     integer, intent(in) :: cells
@@ -51,7 +51,7 @@ contains
     last = size(edges) - 1
     range = cells_within(edges, extent)
     side = edges(range(2) + 1) - edges(range(2))
-    ! A model that begins at the struck point has there its innermost cell.
+    ! In a model that begins at the struck point, the first cell of the range is the innermost one.
     if (edges(1) < -rounding*edges(last + 1)) side = min(side, edges(range(1) + 1) - edges(range(1)))
     reach = extent/2 + (cells - rounding)*side
     if (present(least)) reach = max(reach, extent/2 + least*(1 - rounding))

@@ -1,10 +1,10 @@
 !> Process zone of a cohesive interface: the length ahead of a front over which traction decreases from the strength to
 !> zero, its resolution by a mesh, and the warning of the check.
 !>
-!> Between plates the length depends on their thickness h and bending modulus E', not on the interface alone:
-!> sqrt(E' G_IIc h)/tau in shear, (E' G_Ic/sigma**2)**(1/4) h**(3/4) in opening. Strips under end moments gave, as
-!> largest moment over the exact one, 1.012, 1.04 and 1.33 with 3.4, 1.7 and 0.9 cells in it in shear; in opening
-!> 2 to 5 % above with 3.3 cells, 4 to 5 % with 2.3 and 7 to 19 % with 1.6.
+!> Between plates the length depends on their thickness h and bending modulus E', not on the interface alone: sqrt(E'
+!> G_IIc h)/tau in shear, (E' G_Ic/sigma**2)**(1/4) h**(3/4) in opening. In strips under end moments the ratio of the
+!> largest moment to the exact one was 1.012, 1.04 and 1.33 with 3.4, 1.7 and 0.9 cells in the process zone in shear; in
+!> opening it was 2 to 5 % too large with 3.3 cells, 4 to 5 % with 2.3 and 7 to 19 % with 1.6.
 module process_zones
   use kinds, only: wp
   use short_numbers, only: short_text, text_at_most
@@ -14,11 +14,11 @@ module process_zones
   public :: process_zone_t, shear_zone_length, opening_zone_length, resolved_shear_strength, &
             resolved_opening_strength, resolved_part, resolving_cell, is_resolved, process_zone_warning
 
-  !> Cells in a process zone that resolve it: the moment at growth is then about 2.5 % too large in shear and 4 % in
-  !> opening, by the figures above.
+  !> Number of cells in a process zone that resolve it: the moment at growth is then about 2.5 % too large in shear and
+  !> 4 % in opening, by the figures above.
   real(wp), parameter, public :: resolving_cells = 2.5_wp
-  !> Strengths over those that the cells resolve, above which the check warns: of shear, of opening. The zones then have
-  !> 2.5/1.5 = 1.7 and 2.5/sqrt(1.2) = 2.3 cells, and the moments are 4 and 5 % too large.
+  !> Ratios of the strengths to those that the cells resolve above which the check warns, in shear and in opening. The
+  !> process zones then have 2.5/1.5 = 1.7 and 2.5/sqrt(1.2) = 2.3 cells, and the moments are 4 and 5 % too large.
   real(wp), parameter :: tolerated_shear = 1.5_wp, tolerated_opening = 1.2_wp
 
   !> Data of the process zone of an interface.
@@ -33,8 +33,9 @@ module process_zones
     real(wp) :: strength_opening = 0, strength_shear = 0
     !> Longest side of a cell in the layered zone
     real(wp) :: cell = 0
-    !> True: loads may open the interface, so that opening may govern. Under an impactor growth is in shear: .9 cells in
-    !> the zone of opening keep the force within 2 % of the closed form (input/verify/cohesive_threshold.nml).
+    !> True: loads may open the interface, so that opening may govern. Under an impactor delaminations grow in shear:
+    !> with .9 cells in the process zone of opening the force is within 2 % of the closed form
+    !> (input/verify/cohesive_threshold.nml).
     logical :: is_pulled = .true.
   end type process_zone_t
 
@@ -90,8 +91,8 @@ contains
     if (zone%is_pulled) cell = min(cell, opening_zone_length(zone)/resolving_cells)
   end function resolving_cell
 
-  !> False: the check warns of cells that are too long, with fewer than 1.7 in the zone of shear or 2.3 in that of
-  !> opening.
+  !> False: the check warns of cells that are too long, with fewer than 1.7 in the process zone in shear or 2.3 in that
+  !> in opening.
   pure logical function is_resolved(zone)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -130,7 +131,7 @@ contains
               ' (strength_opening <= '//text_at_most(resolved_opening_strength(zone))//').'
   end function process_zone_warning
 
-  !> A length in cells, to a tenth, or to three digits where that were none.
+  !> A length in cells, to one decimal, or to three digits if that would be zero.
   pure function in_cells(length, cell) result(number)
     !> The length and the side of a cell
     real(wp), intent(in) :: length, cell

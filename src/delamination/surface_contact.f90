@@ -1,4 +1,4 @@
-!> Contact of two delaminated surfaces at one node: pressure against gap, frictionless.
+!> Contact of two delaminated surfaces at one node: pressure against gap, frictionless, theory (D11) to (D13).
 !>
 !> Both methods keep an estimate of the pressure, the multiplier, constant while the equations of motion are solved with
 !> the pressure as a function of the gap. The outer loop sets the multiplier to this pressure until the gap is zero
@@ -15,22 +15,22 @@ module surface_contact
   private
   public :: contact_law_t, create_contact_law, contact_pressure, updated_multiplier, updated_decay, contact_residual
 
-  !> Stiffness of the contact over the transverse stiffness of the layers. On random and plate-like
-  !> compliances of 40 nodes a factor of 1 left 40 to over 80 factorizations, 100 about 5 multiplier updates
-  !> and 10 factorizations, 1000 to 1e6 2 to 5 updates and 4 to 10 (augmented Lagrangian; the continuous
-  !> penalty with q = 1 the same updates and 4 to 14, with q = 1.5 2 to 4 updates and 15 to 30).
+  !> Stiffness of the contact over the transverse stiffness of the layers. On random and plate-like compliance matrices
+  !> of 40 nodes a ratio of 1 required 40 to over 80 factorizations, 100 about 5 multiplier updates and 10
+  !> factorizations, 1000 to 1e6 2 to 5 updates and 4 to 10 factorizations (augmented Lagrangian; the continuous penalty
+  !> with q = 1 the same updates and 4 to 14 factorizations, with q = 1.5 2 to 4 updates and 15 to 30).
   real(wp), parameter :: usual_stiffness = 1.0e3_wp
-  !> The same for the augmented Lagrangian between the steps of a motion, whose pressures change little: it leaves
-  !> gaps so small that the first pressures found mostly stand. A factor of ten either way changes the cost of impacts
-  !> by 1 to 12 % and the force by less than .001 % (doc/studies/solution_controls.md).
+  !> The same for the augmented Lagrangian in steps in time, where pressures change little from step to step: the gaps
+  !> are then so small that the first pressures found usually need no update. A factor of ten either way changes the
+  !> cost of impacts by 1 to 12 % and the force by less than .001 % (doc/studies/solution_controls.md).
   real(wp), parameter :: moving_stiffness = 2.0e6_wp
-  !> Decay of the pressure times the mean gap (section 3.4 of the paper).
+  !> Product of the decay of the pressure and the mean gap (section 3.4 of the paper, theory (D13)).
   real(wp), parameter :: decay_factor = 1.5_wp
-  !> Largest slope of the tail over the stiffness: rounding of the gap is still less than the pressures' own error. A
-  !> factor of ten either way changes nothing (doc/studies/solution_controls.md).
+  !> Largest ratio of the slope of the exponential tail to the stiffness: the effect of round-off of the gap is still
+  !> below the error of the pressures. A factor of ten either way has no effect (doc/studies/solution_controls.md).
   real(wp), parameter :: max_tail_slope = 1.0e5_wp
-  !> A pressure below this part of stiffness times gap is none: the surfaces are open. A factor of ten either way
-  !> changes nothing (doc/studies/solution_controls.md).
+  !> Surfaces are open where the pressure is below this fraction of stiffness times gap. A factor of ten either way has
+  !> no effect (doc/studies/solution_controls.md).
   real(wp), parameter :: open_fraction = 1.0e-9_wp
 
   !> Pressure against gap.
@@ -73,8 +73,8 @@ contains
     law%length = thickness
   end function create_contact_law
 
-  !> Decay for given gaps: 1.5 over the mean gap (section 3.4 of the paper, where it is printed as proportional to it),
-  !> weighted by the pressures. The unweighted mean is dominated by widely open surfaces, with which most pressures have
+  !> Decay for given gaps: 1.5 over the mean gap weighted by the pressures (section 3.4 of the paper prints it as
+  !> proportional to the mean gap). The unweighted mean is dominated by widely open surfaces; with it most pressures had
   !> not converged after 80 updates. The weighted mean decreases as surfaces under pressure close, and 2 to 6 updates
   !> suffice, in load steps and in steps in time. A new step starts with the slope of the tail equal to the contact
   !> stiffness.

@@ -1,12 +1,12 @@
 !> Energy release rates at the front of a delamination.
 !>
-!> Virtual crack closure. When a front advances by b, the tie forces F over this length are released, and the jumps
-!> there become those now behind the front: a force at distance d ahead acts on the jump at b - d behind. The work to
-!> close them again gives G b = 1/2 sum of F.d per unit length of the front. The jump is a parabola fitted to the nodes
-!> behind the smooth line of the front, on which it vanishes. Both enter as moments of forces and jumps at the nodes,
-!> which are averaged along the front before they are multiplied. On a straight front with equal cells, b one of them,
-!> this is the closure of nine-node elements: the force on the front with the jump one cell behind, and the force half a
-!> cell ahead with the jump half a cell behind.
+!> Virtual crack closure, theory (D9). When a front advances by b, the tie forces F over this length are released, and
+!> the jumps there become those now behind the front: a force at distance r ahead acts on the jump J at b - r behind.
+!> The work to close them again gives G b = 1/2 sum of F.J per unit length of the front. The jump is a parabola fitted
+!> to the nodes behind the smooth line of the front, on which it vanishes. Both enter as moments of forces and jumps at
+!> the nodes, which are averaged along the front before they are multiplied. On a straight front with equal cells and b
+!> equal to the side of a cell, this is the closure of nine-node elements: the force on the front acts on the jump one
+!> cell behind, and the force half a cell ahead on the jump half a cell behind.
 module virtual_crack_closure
   use dense_systems, only: solve_dense
   use kinds, only: wp
@@ -23,16 +23,17 @@ module virtual_crack_closure
   logical, parameter, public :: closure_odd(closure_figures) = &
     [.false., .true., .false., .false., .true., .false., .false., .true., .false., .false., .false., .false., &
      .false., .true., .false., .false., .true., .false.]
-  !> Cells behind the front whose nodes the jump is fitted to, times the cell: the diagonal of a square cell, so that on
-  !> slanting fronts too a whole cell counts, and an allowance for round-off.
+  !> Distance behind the front, in cells, of the nodes to which the jump is fitted: the diagonal of a square cell, so
+  !> that a whole cell is included on inclined fronts too, and a tolerance of round-off.
   real(wp), parameter :: fitted = sqrt(2.0_wp)*(1 + 1.0e-6_wp)
 
 contains
 
   !> Energy release rate at a node of the front from the strains on both of its sides, Eq. 11 with the sign of Eq. 9
-  !> corrected: with the same stiffness on both sides, the sum of N'(E' - E) - (N'E' - NE)/2 is half the square of the
-  !> jump of strain. The stiffness is that of the plies with their damage, the same for both sides: two different ones
-  !> would count damage as released energy. Strains of cells of another stiffness are converted first.
+  !> corrected, theory (D10): with the same stiffness on both sides, the sum of N'(E' - E) - (N'E' - NE)/2 is the strain
+  !> energy of the jump of strain. The stiffness is that of the plies with their damage, the same for both sides: with
+  !> two different ones the energy of damage would count as released. Strains of cells of another stiffness are
+  !> converted first.
   pure real(wp) function two_state_release(stiffness, delaminated, intact) result(rate)
     !> Section stiffness of the layers above and below the interface, (21, layers)
     real(wp), intent(in) :: stiffness(:, :)
@@ -51,7 +52,7 @@ contains
   end function two_state_release
 
   !> Strains of a layer converted across a straight border to plies of another stiffness. Forces and moments on the
-  !> border and strains along it are continuous; the strains across it differ. A jump of stiffness alone then causes no
+  !> border and strains along it are continuous; the other strains differ. A jump of the stiffness alone then causes no
   !> difference between converted states.
   function converted_strains(strains, from, to, direction) result(carried)
     !> Membrane strains, curvatures, transverse shear strains of the layer
@@ -127,7 +128,7 @@ contains
     real(wp), intent(in) :: force(3)
     !> Jump of the displacements x, y, z
     real(wp), intent(in) :: jump(3)
-    !> The figures
+    !> The moments
     real(wp) :: figures(closure_figures)
     real(wp) :: turn(3, 3)
 
@@ -155,8 +156,8 @@ contains
     real(wp), intent(in) :: length, extension
     !> G_I, G_II, G_III, none negative
     real(wp) :: modes(3)
-    !> Determinant, relative, below which nodes at one distance leave a straight line only: round-off gives 1e-15, two
-    !> distances of which one is half the other .01 and more.
+    !> Relative determinant below which the nodes are at one distance from the front, so that only a straight line is
+    !> fitted: round-off is 1e-15, and two distances of which one is half the other give .01 and more.
     real(wp), parameter :: one_distance = 1.0e-9_wp
     real(wp) :: slope(3), bend(3), det, work(3)
 

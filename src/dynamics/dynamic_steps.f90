@@ -1,5 +1,5 @@
-!> One time step of plate and impactor together. Each equilibrium iteration solves for the impact force by the
-!> compliance of impactor and plate.
+!> One time step of plate and impactor together, theory (T1), (T2) and (F10). Each equilibrium iteration solves for the
+!> impact force by the compliance of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -32,14 +32,15 @@ module dynamic_steps
     real(wp) :: step = 0
     !> Number of changed ties and contacts at which the operator is factorized again
     integer :: renewal = huge(1)
-    !> True: factorized again before the next correction, by the step control or as the last one cost as many solves
+    !> True: factorized again before the next correction, as the step control requires or as the last correction took as
+    !> many solves as a factorization costs
     logical :: factor_is_due = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
     !> Predictor of the displacement, (5, points); unallocated: constant velocity
     real(wp), allocatable :: guess(:, :)
-    !> True: the predictor is the initial displacement, so that internal forces are known; or constant velocity, so that
-    !> inertia forces are
+    !> keeps_displacement: the predictor is the initial displacement, so that internal forces are known; keeps_velocity:
+    !> it has the initial velocity, so that inertia forces are known
     logical :: keeps_displacement = .false., keeps_velocity = .false.
     !> True: internal forces follow from the equation of motion, as one correction solves the step
     logical :: skips_elements = .false.
@@ -60,8 +61,9 @@ module dynamic_steps
 
 contains
 
-  !> Predictor. An exact operator keeps the displacement, which saves element loops. Otherwise the velocity is kept: an
-  !> acceleration would add energy where contact is stiff. Closed contacts stay closed; tied jumps keep their values.
+  !> Predictor. If the operator is exact the predictor keeps the displacement, which saves element loops. Otherwise it
+  !> keeps the velocity: an acceleration would add energy where contact is stiff. Closed contacts stay closed; tied
+  !> jumps keep their values.
   subroutine begin(self, at)
     !> The problem
     class(dynamic_step_t), intent(inout) :: self
@@ -134,7 +136,7 @@ contains
         else
           call new%find_internal(model, old, at%energy)
           if (self%keeps_velocity .and. new%iterations == 0) then
-            ! Newmark's acceleration with the velocity of the start.
+            ! Newmark's acceleration if the velocity at the end is that at the start.
             new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
           else
             call model%inertia(new%motion%acceleration, new%motion%inertia)
@@ -180,8 +182,8 @@ contains
     end associate
     energy = model%product(new%motion%displacement, new%motion%internal)/2
     if (.not. model%setup%has_thermal) return
-    ! Residual stresses store energy that these forces did not: their work is added to that before. For all decks this
-    ! would make linear steps 6 % slower.
+    ! Residual stresses store energy that is not the work of these forces: their work is added to the energy at the
+    ! start. Done for all decks this would make linear steps 6 % slower.
     energy = model%product(new%motion%displacement - old%motion%displacement, &
                            new%motion%internal + old%motion%internal)/2
     if (model%communicator%is_root()) energy = energy + old%ledger%strain/model%mesh%multiplicity

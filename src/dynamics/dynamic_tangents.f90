@@ -12,8 +12,8 @@ module dynamic_tangents
   private
   public :: find_tangent, add_force_slope, is_exact
 
-  !> Relative change of the factor of mass by which an operator counts as exact: the last digits of the step, as times
-  !> of 1e6 steps are known to 1e-10 of a step.
+  !> Relative change of the factor of mass up to which an operator counts as exact: the last digits of the step, as
+  !> after 1e6 steps the time is known to 1e-10 of a step.
   real(wp), parameter :: mass_precision = 1.0e-9_wp
 
 contains

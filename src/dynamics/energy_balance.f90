@@ -1,5 +1,5 @@
-!> Energy balance of a step. Algorithmic dissipation is computed from the formulas of the integrators, not as the
-!> remainder, so that the imbalance shows every other error.
+!> Energy balance of a step, theory (E1) to (E4). Algorithmic dissipation is computed from the formulas of the
+!> integrators, not as the remainder, so that the energy error shows every other error.
 module energy_balance
   use cohesive_energies, only: stored_beyond_work
   use kinds, only: wp
@@ -85,7 +85,7 @@ contains
       + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
   end subroutine record_step
 
-  !> Records the strain energy dissipated by failed plies, and computes the remaining forces. An energy error of
+  !> Records the strain energy dissipated by failed plies, and computes the remaining forces. The energy error of
   !> softening plies by the lag of damage is recorded as algorithmic dissipation.
   subroutine record_failures(model, now, trial)
     type(model_t), intent(in) :: model
@@ -109,7 +109,7 @@ contains
     trial%ledger%strain = energy
   end subroutine record_failures
 
-  !> Energy that the plate's integrator adds to a linear plate in a step: the Newmark formulas and the
+  !> Energy that the plate's integrator adds to a linear plate in a step, theory (E2): the Newmark formulas and the
   !> weighted equation of motion combined. Zero for alpha_m = alpha_f = gamma = 1/2, beta = 1/4.
   pure real(wp) function integrator_gain(integrator, step, products, pressure_change) result(gain)
     !> Integrator of the plate

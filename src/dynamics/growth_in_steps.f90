@@ -48,7 +48,7 @@ contains
       free = trial%interfaces%contact%free
       fracture = trial%ledger%delamination
       call grow_fronts(model, trial%plies%stiffness, trial%motion, trial%interfaces, trial%ledger%delamination, grown)
-      ! The integrators cannot distinguish the energy dissipated by fracture from their own losses.
+      ! The integrators cannot distinguish the energy dissipated by fracture from their own dissipation.
       trial%ledger%algorithmic = trial%ledger%algorithmic - (trial%ledger%delamination - fracture)
       if (.not. grown .or. grows_by_steps(model)) exit
       call ties%release(model, free, trial%interfaces%contact%free, &
@@ -70,7 +70,7 @@ contains
     call model%profile%leave()
   end subroutine grow_in_step
 
-  !> True if all delaminations grow from step to step, none at frozen time.
+  !> True if all delaminations grow in the next step, none while time is held constant.
   pure logical function grows_by_steps(model)
     type(model_t), intent(in) :: model
 

@@ -1,4 +1,4 @@
-!> Coupling of the impactor to the plate in a step.
+!> Coupling of the impactor to the plate in a step, theory (F2) and (F10).
 module impact_coupling
   use kinds, only: wp
   use errors, only: error_t
@@ -39,8 +39,8 @@ module impact_coupling
     procedure :: slope
   end type impact_coupling_t
 
-  !> Increment of the deflection, relative to the indentation, for the derivative of the force. The derivative is then
-  !> good to 1e-6 by its curvature and to 1e-10 by round-off; it is used in a tangent.
+  !> Increment of the deflection, relative to the indentation, for the derivative of the force. Its truncation error is
+  !> then 1e-6 and its round-off 1e-10, which is sufficient for a tangent.
   real(wp), parameter :: deflection_increment = 1.0e-6_wp
 
 contains
@@ -88,8 +88,8 @@ contains
 
   !> Solves for the impact force, given the correction of the plate for the force assumed. Where the tangent is the
   !> factored operator, the plate's response to the change of the force is known and added. Otherwise the correction
-  !> includes the slope of the force, and what the law leaves of it is in the next residual: the response of the
-  !> factored operator would open contacts that have closed since.
+  !> includes the slope of the force, and the remaining difference to the indentation law is part of the next residual:
+  !> the response of the factored operator would open contacts that have closed since the factorization.
   subroutine solve(self, at, is_factored, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self

@@ -16,8 +16,8 @@ module initial_equilibrium
   private
   public :: has_initial_motion, find_initial_equilibrium, find_acceleration
 
-  !> Residual over the forces of the suppressed strains: loads 1e-5 times as large still get the usual tolerance of
-  !> 1e-6, and round-off, 1e-16, is far below it.
+  !> Residual relative to the forces of the suppressed strains: loads 1e-5 times as large are still solved to the usual
+  !> tolerance of 1e-6, and round-off, 1e-16, is far below it.
   real(wp), parameter :: tolerance = 1.0e-11_wp
   integer, parameter :: max_iterations = 100
 
@@ -140,8 +140,8 @@ contains
   end subroutine equilibrate
 
   !> Moves the nodes of prescribed lines to their displacement of time 0, the first guess of the equilibrium. Where a
-  !> line moves a lower layer, the layers above move with it: from a guess with open interfaces the iteration would find
-  !> a torn plate, or none.
+  !> line moves a lower layer, the layers above move with it: from a guess with open interfaces the iteration would
+  !> converge to a delaminated plate, or not at all.
   subroutine guess_motion(model, state)
     type(model_t), intent(in) :: model
     !> The state; receives the displacement
@@ -272,8 +272,8 @@ contains
     end do
   end function square_of_forces
 
-  !> Mass in the operator: it makes that of a free plate definite, and an iteration leaves a thousandth of the lowest
-  !> mode.
+  !> Mass in the operator: with it the operator of a free plate is definite, and each iteration reduces the error in the
+  !> lowest mode to a thousandth.
   pure real(wp) function mass_factor(model) result(factor)
     type(model_t), intent(in) :: model
 

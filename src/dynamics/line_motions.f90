@@ -1,7 +1,7 @@
 !> Prescribed motion of lines in a run in time.
 !>
 !> Springs enforce the displacement at the end of each step by a force that is constant over the step, for any
-!> integrator, as contact does. Velocity and acceleration are prescribed, too: Newmark's formulas applied to the
+!> integrator, as in contact. Velocity and acceleration are prescribed, too: Newmark's formulas applied to the
 !> displacements would give values that alternate about the prescribed ones from step to step, undamped for a spectral
 !> radius of 1.
 module line_motions

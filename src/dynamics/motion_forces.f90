@@ -1,5 +1,5 @@
-!> Forces of the equation of motion (Eq. 1, generalised alpha), weighted between the start and the end of a step; all
-!> unknowns in one array, so that the compiler vectorises the loops.
+!> Forces of the equation of motion (Eq. 1 of the paper, generalised alpha, theory (T1)), weighted between the start and
+!> the end of a step; all unknowns in one array, so that the compiler vectorises the loops.
 module motion_forces
   use kinds, only: wp
   implicit none

@@ -1,5 +1,5 @@
-!> One-step time integration of the plate: Newmark's method and the generalised-alpha method are one
-!> family with four coefficients (Chung and Hulbert, J. Appl. Mech. 60 (1993) 371).
+!> One-step time integration of the plate, theory (T2): Newmark's method and the generalised-alpha method are one family
+!> with four coefficients (J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371-375).
 module newmark_integrators
   use kinds, only: wp
   use motions, only: motion_t

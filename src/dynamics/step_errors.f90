@@ -1,7 +1,8 @@
-!> Estimate of the error that a step in time adds to the motion of plate and impactor. The phase error of a second-order
-!> method for a harmonic of frequency w is c (w h)**3 in a step h, so the error is c h**3 times the third derivative,
-!> computed from the last four states by divided differences. Unlike h**2 (beta - 1/6) times the change of acceleration
-!> (Zienkiewicz and Xie 1991) it is finite for modes that the step does not resolve, whose acceleration alternates.
+!> Estimate of the error of motion of plate and impactor in a step in time, theory (T3). The phase error of a
+!> second-order method for a harmonic of frequency w is c (w h)**3 in a step h, so the error is c h**3 times the third
+!> derivative, computed from the last four states by divided differences. Unlike h**2 (beta - 1/6) times the change of
+!> acceleration (Zienkiewicz and Xie 1991) it is finite for modes that the step does not resolve, whose acceleration
+!> alternates.
 module step_errors
   use archives, only: archive_t
   use kinds, only: wp
@@ -51,7 +52,7 @@ contains
     !> The estimate
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> A step: the spacing of the states before the first
+    !> A step: the spacing of the states before the first contact
     real(wp), intent(in) :: step
     real(wp), allocatable :: unit(:, :), mass(:, :)
     real(wp) :: total

@@ -50,7 +50,8 @@ module time_deck
     'time | settle | real | 1 | time | 0 | >= 0 | &
     &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
 
-  !> Most steps of a run: with twenty iterations each, their count still fits a default integer, up to 2.1e9.
+  !> Largest number of steps of a run: with twenty iterations each, the number of iterations still fits a default
+  !> integer, up to 2.1e9.
   real(wp), parameter, public :: max_steps = 1.0e8_wp
 
 contains
@@ -147,7 +148,7 @@ contains
     end function clear
   end subroutine check_time
 
-  !> Checks the parameters of the integrator, and that none of another integrator is given.
+  !> Checks the parameters of the integrator, and warns of parameters of other integrators.
   subroutine check_parameters(settings, time, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

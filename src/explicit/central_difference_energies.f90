@@ -1,4 +1,4 @@
-!> Energy ledger of central differences, by the exact energy identity of the method.
+!> Energy ledger of central differences, by the exact energy identity of the method, theory (E5) and (E6).
 !>
 !> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, with the mid-step velocity v. T
 !> changes by the work of the mean force of both ends, so that T plus strain energy of a linear plate without interfaces
@@ -73,7 +73,7 @@ contains
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    !> Part of its velocities that damping has left
+    !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
     type(exact_sum_t) :: kinetic, scaled
 
@@ -81,14 +81,14 @@ contains
     energy = total_of(model%communicator, kinetic)*model%mesh%multiplicity
   end function kinetic_energy
 
-  !> Adds the kinetic energy of this rank's points, and the part of it in motions whose inertia is scaled.
+  !> Adds the kinetic energy of this rank's points, and the part of it that belongs to scaled inertia.
   subroutine add_kinetic(method, model, now, kept, kinetic, scaled)
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(in) :: now
-    !> Part of its velocities that damping has left
+    !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
     !> Total kinetic energy, and that of in-plane motion and rotation
     type(exact_sum_t), intent(inout) :: kinetic, scaled

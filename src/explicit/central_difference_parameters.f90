@@ -7,7 +7,7 @@ module central_difference_parameters
 
   !> Parameters of central differences.
   type :: central_difference_parameters_t
-    !> Step over the stable step
+    !> Ratio of the step to the stable step
     real(wp) :: step_factor = 0.9_wp
     !> Mean factor of rotary inertia
     real(wp) :: mass_scaling = 1

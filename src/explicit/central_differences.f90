@@ -31,16 +31,18 @@ module central_differences
   public :: central_difference_t
 
   !> Steps between two updates of the highest frequency by slopes and membrane tension, and relative allowance for its
-  !> growth in between: a slope changes by less than velocity times time over element length, far below a hundredth.
+  !> increase in between: in these steps a slope changes by less than velocity times time over element length, far below
+  !> a hundredth.
   integer, parameter :: steps_between_frequencies = 16
   real(wp), parameter :: stiffened_reserve = 1.01_wp
-  !> Fraction of the allowed frequency below which that is lowered again, and of the longest step below which steps are
-  !> lengthened: steps are up to a fifth too short.
+  !> Ratio of the present to the allowed frequency below which the latter is reduced, and of the present to the longest
+  !> step below which steps are lengthened: steps are up to a fifth shorter than necessary.
   real(wp), parameter :: lengthening_ratio = 0.8_wp
-  !> Fraction of a step by which a sum of steps may miss an event: n steps lose up to n**2/1e16 of one by round-off.
+  !> Fraction of a step by which a sum of steps may miss an event: the sum of n steps has a round-off of up to n**2/1e16
+  !> steps.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data besides the state.
+  !> Data of the method that are not part of the state.
   type, extends(nodal_steps_t) :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters
@@ -74,7 +76,7 @@ module central_differences
     !> Finds the forces on the layers.
     procedure :: find_forces
     procedure :: add_loads
-    !> Computes them again after a change of stiffness or layers.
+    !> Computes the forces again after a change of stiffness or layers.
     procedure :: renew_forces
     !> Records the energy dissipated by failed plies.
     procedure :: record_failures
@@ -132,8 +134,8 @@ contains
     self%constrained = pack(self%stacks%single, constrained)
   end subroutine separate_constrained_points
 
-  !> Stable step of elements and contact times step_factor. Frequencies of springs added to
-  !> each other are at most the root of the sum of their squares.
+  !> Stable step of elements and contact times step_factor, theory (T6). The highest frequency with added springs is at
+  !> most the root of the sum of the squares of the frequencies.
   real(wp) function longest_step(self, model, now) result(step)
     !> The method
     class(central_difference_t), intent(inout) :: self
@@ -155,13 +157,13 @@ contains
   end function longest_step
 
   !> Takes one step. Its length changes only where the stable step requires it, as alternating lengths excite the
-  !> highest modes (R. D. Skeel, BIT 33 (1993) 172-175); so events are met by the first step that reaches them.
-  !> Collective.
+  !> highest modes (R. D. Skeel, BIT 33 (1993) 172-175); steps therefore do not end exactly at events, but an event is
+  !> handled by the first step that reaches it. Collective.
   subroutine advance(self, model, event, kept, now)
     !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time not to be passed, and part of the velocities that damping has left before the step
+    !> Time not to be exceeded, and factor by which damping has multiplied the velocities before the step
     real(wp), intent(in) :: event, kept
     !> The state
     type(state_t), intent(inout) :: now
@@ -205,8 +207,9 @@ contains
   end subroutine advance
 
   !> Records the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
-  !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the energy
-  !> then is that of the method's initial state, -h^2 F M^-1 F/8 at rest, and no dissipation. Collective.
+  !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the change is
+  !> then the energy of the initial state, -h^2 F M^-1 F/8 at rest, and is recorded as external work, not as
+  !> dissipation. Collective.
   subroutine change_length(self, model, v, sign)
     !> The method
     type(central_difference_t), intent(inout) :: self

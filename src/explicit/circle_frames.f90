@@ -1,7 +1,7 @@
 !> Frames with a circular window in steps by central differences: w is constrained where the edge of the window crosses
 !> the sides of cells, as a weighted mean of three nodes each. The frame holds both faces, so that the layers of a node
 !> move together. The reactions at all of these points are found together, from a constant matrix. A node that moves as
-!> an image of another one stands for that one, whose inertia is that of both.
+!> the image of another one is replaced by that one, whose inertia is that of both.
 module circle_frames
   use dense_systems, only: pseudo_inverse
   use dependent_points, only: find_masters
@@ -65,8 +65,8 @@ contains
     allocate (self%inverse(3, size(self%rig)), self%forces(size(self%rig)), source=0.0_wp)
   end function create_circle_frames
 
-  !> Replaces points that move as images by those that they depend on; w is the same at both. The masters in
-  !> `nodal_inertia` are of this rank's points only, these here of all ranks.
+  !> Replaces points that move as images by those that determine their motion; w is the same at both. The masters in
+  !> `nodal_inertia` are those of this rank's points only, the masters here those of all ranks.
   subroutine replace_dependents(model, points)
     type(model_t), intent(in) :: model
     !> Mesh points, (3, crossings)
@@ -122,7 +122,7 @@ contains
     end do
   end subroutine prepare
 
-  !> Inverse inertia of w of all layers of a node together, at its first point.
+  !> Inverse inertia of w of all layers of a node that move together, at its first point.
   pure function inverse_of_nodes(above, inverse) result(together)
     !> Point of the layer above each point; 0: none
     integer, intent(in) :: above(:)

@@ -1,9 +1,10 @@
 !> Forces in stacks of layers with damaged interfaces.
 !>
 !> Tractions are those of the damage at the start of the step and of weighted jumps. Where damage grows, the trapezoidal
-!> rule misses the corners of the law at onset, failure and reloading, and softening releases energy of the weighting.
-!> The force along the motion of the jumps is then corrected, so that its work is what the law stores and dissipates: a
-!> discrete gradient, as in O. Gonzalez, Journal of Nonlinear Science 6 (1996) 449-467.
+!> rule misses the corners of the law at onset, failure and reloading, and softening changes the energy that the
+!> weighted jumps store. The force along the motion of the jumps is then corrected, so that its work is the energy that
+!> the law stores and dissipates, theory (T10): a discrete gradient, as in O. Gonzalez, Journal of Nonlinear Science 6
+!> (1996) 449-467.
 module damaged_stacks
   use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -119,7 +120,7 @@ contains
     real(wp) :: moved(3), motion(3), force(3)
 
     moved = jumps - work%start(:, j)
-    ! Jumps that are held, as between prescribed layers, do no work, though flaws may damage them.
+    ! Jumps that are prescribed, as between prescribed layers, do no work, though flaws may damage the interface.
     if (.not. sum(moved**2) > 0) return
     motion = (moved + change)/2
     force = work%secant([1, 1, 2], j)*opened(jumps) + work%given(:, j)
@@ -128,7 +129,7 @@ contains
     else if (jumps(3) < 0) then
       motion(3) = 0
     end if
-    ! Where a jump has turned, its mean motion is small; the motion of this step limits the correction.
+    ! Where a jump has reversed, its mean motion is small; the motion of this step limits the correction.
     work%given(:, j) = work%given(:, j) + motion*((energy - sum(force*motion))/max(sum(motion**2), sum(moved**2)/4))
   end subroutine correct_force
 end module damaged_stacks

@@ -11,16 +11,16 @@ module damped_motions
   private
   public :: damp_motion
 
-  !> What is left of an amplitude at the end: of energies a ten-millionth, below the usual tolerance of 1e-6.
+  !> Ratio of the final to the initial amplitude. That of energies is 1e-7, below the usual tolerance of 1e-6.
   real(wp), parameter :: final_ratio = 3.0e-4_wp
-  !> Periods of a vibration that its damping to this ratio lasts at least: in fewer it is damped beyond the critical
-  !> value and returns more slowly.
+  !> Smallest duration of the damping in periods of a vibration: in fewer periods the vibration is overdamped and
+  !> returns more slowly.
   real(wp), parameter, public :: min_periods = -log(final_ratio)/(2*pi)
 
 contains
 
-  !> Reduces the velocities at the start of a step. Changes of coordinates in the last step, over half of which forces
-  !> act in the kinetic energy (central_difference_energies), are reduced by the same factor there. Collective.
+  !> Reduces the velocities at the start of a step. The changes of coordinates in the last step, half of which enter the
+  !> kinetic energy with the forces (central_difference_energies), are reduced by the same factor there. Collective.
   subroutine damp_motion(method, model, now, duration, kept)
     !> Central differences, after a step
     type(central_difference_t), intent(inout) :: method
@@ -29,7 +29,7 @@ contains
     type(state_t), intent(inout) :: now
     !> Duration of the damping; motions with a longer period are damped less
     real(wp), intent(in) :: duration
-    !> Part of the velocities that is left, for the next step
+    !> Factor by which the velocities have been multiplied, for the next step
     real(wp), intent(out) :: kept
     real(wp) :: before
 

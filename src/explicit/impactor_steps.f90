@@ -13,8 +13,8 @@ module impactor_steps
   private
   public :: impactor_steps_t, create_impactor_steps
 
-  !> Growth of the contact's stiffness that a new length of the step allows for, so that it changes a few times only. A
-  !> step that the contact limits is shorter by a factor of sqrt(2) at most.
+  !> Factor of the contact stiffness for which a new step length is chosen, so that the length changes only a few times.
+  !> A step limited by contact is shorter by a factor of sqrt(2) at most.
   real(wp), parameter :: slope_reserve = 2
 
   !> The impactor.
@@ -54,8 +54,8 @@ contains
     self%velocity = velocity
   end function create_impactor_steps
 
-  !> Square of the frequency of the contact spring, with its largest stiffness so far times a reserve, between the mass
-  !> under the patch and the impactor.
+  !> Square of the frequency of the contact spring between the impactor and the mass under the patch, with the largest
+  !> stiffness so far times this factor, theory (T6).
   real(wp) function contact_frequency_square(self, model, indentation) result(square)
     !> The impactor
     class(impactor_steps_t), intent(inout) :: self

@@ -1,12 +1,12 @@
 !> Scaling of in-plane and rotary inertia, more in short elements and thin layers, so that all have about the same
 !> stable step.
 !>
-!> In-plane waves of speed c limit the step of an element of shorter side L to L/c/sqrt(6), and to sqrt(f) times that
-!> with the inertia times f: L sqrt(f) is the side of an unscaled element with the same step. So one such side tau for
-!> all elements means the factors max(1, tau**2/L**2). Rotations against the transverse shear stiffness limit the step
-!> of layers much thinner than long, whose rotary inertia is raised until they have that step, too (T. J. R. Hughes,
-!> M. Cohen, M. Haroun, Nuclear Engineering and Design 46 (1978) 203-222). The deck gives the mean factor of the
-!> laminate's rotary inertia, from which tau follows: waves much longer than elements are slowed by this mean.
+!> In-plane waves of speed c limit the step of an element of shorter side L to L/c/sqrt(6), and to sqrt(f) times that if
+!> its inertia is multiplied by f: L sqrt(f) is the side of an unscaled element with the same step. If this side is to
+!> be tau for all elements, the factors are max(1, tau**2/L**2). Rotations against the transverse shear stiffness limit
+!> the step of layers much thinner than long, whose rotary inertia is increased until they have the same step (T. J. R.
+!> Hughes, M. Cohen, M. Haroun, Nuclear Engineering and Design 46 (1978) 203-222). The deck gives the mean factor of the
+!> laminate's rotary inertia, from which tau follows: waves much longer than elements are slowed according to this mean.
 module inertia_scaling
   use cell_grids, only: cell_edges
   use element_batches, only: batch_of, lane_of
@@ -18,16 +18,16 @@ module inertia_scaling
   private
   public :: inertia_scaling_t, create_inertia_scaling
 
-  !> Square of the highest frequency of an element over (c/L)**2, with three nodes on a line and Simpson's masses.
+  !> Square of the highest frequency of an element divided by (c/L)**2, for three nodes on a line with Simpson's masses.
   real(wp), parameter :: of_waves = 24
-  !> Bisections for tau, to round-off.
+  !> Number of bisections for tau, to round-off.
   integer, parameter :: bisections = digits(1.0_wp)
 
   !> Factors of in-plane and rotary inertia.
   type :: inertia_scaling_t
     !> Square of tau; 0: no scaling
     real(wp) :: side_square = 0
-    !> Square of the radius of gyration by which the rotary inertia of every layer is raised besides
+    !> Square of the radius of gyration that is added to the rotary inertia of every layer
     real(wp) :: radius_square = 0
   contains
     !> Scaled masses of the sections of a model.
@@ -60,9 +60,9 @@ contains
     real(wp), intent(in) :: x(:), y(:)
     !> The mean factor
     real(wp), intent(in) :: mean
-    !> Added square of the radius of gyration over that of tau
+    !> Square of the added radius of gyration over that of tau
     real(wp), intent(in) :: ratio
-    !> That of the laminate
+    !> Square of the radius of gyration of the laminate
     real(wp), intent(in) :: radius_square
     !> The scaling
     type(inertia_scaling_t) :: self
@@ -103,8 +103,8 @@ contains
                  < max(setup%mesh%core(direction), setup%mesh%patch)/2)
   end function core_sides
 
-  !> Largest transverse shear modulus over the largest in-plane modulus. A radius of gyration r limits rotations to the
-  !> step 2 r sqrt(rho/G), elements of side tau in-plane waves to 2 tau sqrt(rho/(24 E)).
+  !> Largest transverse shear modulus over the largest in-plane modulus. A radius of gyration r limits the step by
+  !> rotations to 2 r sqrt(rho/G), a side tau of the elements that by in-plane waves to 2 tau sqrt(rho/(24 E)).
   pure real(wp) function ratio_of_moduli(setup) result(ratio)
     !> Laminate and materials
     class(setup_t), intent(in) :: setup
@@ -124,8 +124,8 @@ contains
     square = mass(3)/mass(1) - (mass(2)/mass(1))**2
   end function laminate_radius_square
 
-  !> Scaled masses of the sections of a model: the factor times I0, I1, I2, and the raised rotary inertia. The sum over
-  !> layers is that of the joined layers, so that the insertion of layers keeps the kinetic energy.
+  !> Scaled masses of the sections of a model: the factor times I0, I1, I2, and the added rotary inertia. The sum over
+  !> layers is the mass of the joined layers, so that the insertion of layers does not change the kinetic energy.
   function sections(self, model) result(masses)
     !> The scaling
     class(inertia_scaling_t), intent(in) :: self

@@ -28,8 +28,8 @@ module interface_stacks
     real(wp), allocatable :: min_onset(:)
     !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
-    !> Square of the step times the compliance of the layers, its diagonal and the off-diagonal entries, along x, y and
-    !> z, (3, points)
+    !> Square of the step times the compliance of the layers, diagonal and off-diagonal entries, along x, y and z, (3,
+    !> points); theory (T8)
     real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
     !> Factors of the undamaged stacks, (2, 3, points)
     real(wp), allocatable :: factors(:, :, :)
@@ -190,7 +190,7 @@ contains
     end do
   end subroutine prepare
 
-  !> Displacement of a layer at one height by a unit force at another, over the square of the time.
+  !> Displacement of a layer at one height by a unit force at another, divided by the square of the time, theory (T8).
   pure real(wp) function coupling(inverse, z1, z2)
     !> Inverse inertia of displacement, of both, of rotation
     real(wp), intent(in) :: inverse(3)

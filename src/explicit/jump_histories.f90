@@ -1,4 +1,4 @@
-!> What the motion of jumps needs of earlier steps, and the energy that they have lost.
+!> Data of earlier steps required for the motion of jumps, and the energy dissipated at the jumps.
 module jump_histories
   use archives, only: archive_t
   use kinds, only: wp
@@ -6,13 +6,13 @@ module jump_histories
   private
   public :: jump_history_t, friction_history_t, create_jump_history
 
-  !> Earlier steps of the friction at a point, for its heat.
+  !> Data of earlier steps of the friction at a point, for its heat.
   type :: friction_history_t
-    !> Number of steps to come whose forces depend on the last slip
+    !> Number of further steps whose forces depend on the last slip
     integer :: steps = 0
-    !> Change of the energy stored by sticking in the last step, per area
+    !> Change of the elastic energy of sticking surfaces in the last step, per area
     real(wp) :: stored = 0
-    !> Negative heat of earlier steps, by which later heat is reduced, per area
+    !> Negative heat of earlier steps, which is subtracted from later heat, per area
     real(wp) :: deficit = 0
   end type friction_history_t
 
@@ -28,14 +28,14 @@ module jump_histories
     type(friction_history_t), allocatable :: friction(:)
     !> Work on the cohesive law of damaged surfaces in the last step, (points)
     real(wp), allocatable :: work(:)
-    !> Energy dissipated by contact of surfaces, and numerically by the tractions, (2, points)
+    !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
-    !> Takes over force and change of a step.
+    !> Stores force and change of a step.
     procedure :: record
     !> Reduces the work done in the last step.
     procedure :: damp
-    !> Change of a jump in the last step by the velocity that damping has left.
+    !> Change of a jump in the last step with the damped velocity.
     procedure :: last_change
     !> Checkpoint.
     procedure :: visit
@@ -55,7 +55,7 @@ contains
     allocate (self%friction(points))
   end function create_jump_history
 
-  !> Takes over force and change of a step.
+  !> Stores force and change of a step.
   pure subroutine record(self, p, force, change)
     !> The history
     class(jump_history_t), intent(inout) :: self
@@ -69,25 +69,25 @@ contains
     self%change(:, p) = change
   end subroutine record
 
-  !> Reduces the work done in the last step. Changes stay those of the motion: their weighted mean is stable for springs
-  !> of any stiffness, and with reduced changes it is not.
+  !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
+  !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
   pure subroutine damp(self, ratio)
     !> The history
     class(jump_history_t), intent(inout) :: self
-    !> Part that is left
+    !> Factor of the work
     real(wp), intent(in) :: ratio
 
     self%work = ratio*self%work
     self%friction%stored = ratio*self%friction%stored
   end subroutine damp
 
-  !> Change of a jump in the last step by the velocity that damping has left, for the kinetic energy and works.
+  !> Change of a jump in the last step with the damped velocity, for the kinetic energy and works.
   pure function last_change(self, p, kept) result(change)
     !> The history
     class(jump_history_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
-    !> Part of the velocity that is left
+    !> Factor by which damping has multiplied the velocity
     real(wp), intent(in) :: kept
     !> The change
     real(wp) :: change(3)

@@ -1,8 +1,8 @@
 !> Jumps between layers in a step: update, damage, and work of the tractions.
 !>
 !> The kinetic energy of the layers at whole steps changes by -(F dJ + (F - F_old) dJ_old/2) with the forces F on the
-!> jumps J (doc/theory/energy.md). What contact neither stores nor returns is lost in contact; what the other forces
-!> neither store nor dissipate is numerical dissipation.
+!> jumps J, theory (E6). Work of the contact pressure beyond the energy it stores is recorded as dissipated by contact;
+!> work of the other forces beyond the energy they store and dissipate is algorithmic dissipation.
 module jump_motions
   use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -123,7 +123,7 @@ contains
     end associate
   end subroutine advance_points
 
-  !> Energy that the forces on a jump take from the kinetic energy at whole steps.
+  !> Decrease of the kinetic energy at whole steps by the forces on a jump.
   pure real(wp) function work_of(stacks, p, steps, force, change)
     !> The stacks, with force and change of the step before
     type(interface_stacks_t), intent(in) :: stacks
@@ -139,7 +139,7 @@ contains
     work_of = sum(force*(change + steps%shift(last, change)) + (force - stacks%history%forces(:, p))*last/2)
   end function work_of
 
-  !> The same for the pressure of closed surfaces, a spring at the end of each step, beyond what it stores.
+  !> The same for the pressure of closed surfaces, a spring at the end of each step, beyond the energy that it stores.
   pure real(wp) function lost_in_contact(stacks, p, steps, before, change) result(lost)
     !> The stacks, with the change of the step before
     type(interface_stacks_t), intent(in) :: stacks
@@ -180,12 +180,13 @@ contains
       new%slip = jumps - friction%elastic
     end if
     sticking = [change, sticking(1:2)]
-    ! Forces of surfaces that slip do not depend on what they were before.
+    ! Forces of slipping surfaces do not depend on the forces before the slip.
     if (friction%slips .or. .not. friction%limit > 0) sticking = 0
   end subroutine slip_surfaces
 
-  !> Heat of slipping surfaces: the work of friction beyond what sticking stores in halves of this step and the one
-  !> before, while forces depend on a slip. Where this is negative, that much less heat follows.
+  !> Heat of slipping surfaces, theory (T11): the work of friction less half of the change of the energy of sticking in
+  !> this step and half of that in the step before, while forces depend on a slip. Negative values are subtracted from
+  !> later heat.
   pure subroutine add_heat(stiffness, from, to, work, old, new, history)
     !> Stiffness of sticking surfaces, pressure per jump
     real(wp), intent(in) :: stiffness

@@ -169,8 +169,8 @@ contains
     end do
   end subroutine start_from
 
-  !> Sorts prescribed components by point, displacements before rotations: the moment of a line that turns a layer is
-  !> what the forces of displaced lines at the layer's middle leave.
+  !> Sorts prescribed components by point, displacements before rotations: the moment of a line that rotates a layer
+  !> excludes the moments of the forces of lines that displace the layer at its middle.
   pure subroutine sort_dofs(self, dofs)
     !> The lines
     class(line_steps_t), intent(inout) :: self

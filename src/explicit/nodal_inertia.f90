@@ -1,4 +1,4 @@
-!> Lumped inertia of the layers at each node, and its inverse.
+!> Lumped inertia of the layers at each node, theory (P7), and its inverse.
 !>
 !> In each in-plane direction a layer has a displacement u of the mid-plane z = 0 and a rotation theta, coupled
 !> where the layer lies off the mid-plane: M = [I0 I1; I1 I2]. In-plane and rotary inertia may be scaled, which
@@ -38,7 +38,7 @@ module nodal_inertia
     !> Adds forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: move_dependents
-    !> Inverse inertia of w where each image moves by itself.
+    !> Inverse inertia of w as if each image moved independently.
     procedure :: inverse_of_images
   end type nodal_inertia_t
 
@@ -85,7 +85,7 @@ contains
     end associate
   end subroutine find_dependents
 
-  !> Adds the inertia of dependent points to that of their masters, which have the same kinetic energy.
+  !> Adds the inertia of dependent points to that of their masters, so that the kinetic energy is that of both.
   pure subroutine fold_mass(self, mass)
     !> The inertia
     type(nodal_inertia_t), intent(in) :: self
@@ -170,8 +170,8 @@ contains
     end if
   end function inverse_block
 
-  !> Inverse inertia of w at each point, as if images of a point moved by themselves: that of their master times their
-  !> number, since images have the same inertia.
+  !> Inverse inertia of w at each point, as if images of a point moved independently: that of their master times the
+  !> number of images, since images have the same inertia.
   pure function inverse_of_images(self) result(inverse)
     !> The inertia
     class(nodal_inertia_t), intent(in) :: self

@@ -1,4 +1,5 @@
-!> What moves the nodes in a step by central differences: inertia, forces, interfaces, and what constrains them.
+!> Data that determine the motion of the nodes in a step by central differences: inertia, forces, interfaces, and
+!> constraints.
 module nodal_steps
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
@@ -15,7 +16,7 @@ module nodal_steps
   type :: nodal_steps_t
     !> Lumped inertia of the points, inverted for the step
     type(nodal_inertia_t) :: inertia
-    !> Forces on the layers without tractions, (5, points); at the end of a step loads less internal forces
+    !> Forces on the layers without tractions, (5, points); at the end of a step loads minus internal forces
     real(wp), allocatable :: force(:, :)
     !> Nodes with several layers
     type(interface_stacks_t) :: stacks

@@ -17,7 +17,8 @@ module rig_steps
     logical, allocatable :: on_frame(:)
     !> Reaction of the frame in the last step, force, and change of w of the lowest layer in it
     real(wp), allocatable :: reaction(:), approach(:)
-    !> Energy dissipated so far on frames, and numerically by implicit springs and by changes of the step length
+    !> Energy dissipated so far on frames, and algorithmic dissipation of implicit springs and of changes of the step
+    !> length
     real(wp), allocatable :: frame_loss(:), step_loss(:)
   contains
     !> Stops a node at its frame.
@@ -45,7 +46,7 @@ contains
               source=0.0_wp)
   end function create_rig_steps
 
-  !> Stops a layer that would pass its frame, and records the energy dissipated.
+  !> Stops a layer that would penetrate its frame, and records the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
     !> The frames
     class(rig_steps_t), intent(inout) :: self

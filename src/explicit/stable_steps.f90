@@ -1,9 +1,9 @@
 !> Stable step of central differences: 2/omega with the highest frequency of the elements with lumped inertia.
 !>
-!> No frequency of the assembled plate lies above the highest of a single element with its own part of the inertia
-!> (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). That of an element is found by
-!> the Lanczos iteration (G. H. Golub, C. F. Van Loan, Matrix Computations, 2013, section 10.1). Interfaces, clamps and
-!> frames are implicit and set no limit.
+!> No frequency of the assembled plate lies above the highest frequency of a single element with its own part of the
+!> inertia (I. Fried, 1972; T. J. R. Hughes, The Finite Element Method, 1987, section 9.4.2). The frequency of an
+!> element is found by the Lanczos iteration (G. H. Golub, C. F. Van Loan, Matrix Computations, 2013, section 10.1).
+!> Interfaces, clamps and frames are implicit and do not limit the step.
 module stable_steps
   use batch_resultants, only: in_plane_resultants
   use batch_strains, only: strains_of_batch
@@ -26,8 +26,9 @@ module stable_steps
   integer, parameter :: bisections = digits(1.0_wp)
   !> Smallest divisor, for padding elements of a batch, which have no mass.
   real(wp), parameter :: smallest_divisor = tiny(1.0_wp)**0.25_wp
-  !> Largest integral of the squared gradient of nine-node shapes over that of their square, lumped by Simpson's rule,
-  !> in an element of sides 2: 6 of the waves along one side, 1.2 of those along the other.
+  !> Largest ratio of the integral of the squared gradient of a deflection of nine nodes to the integral of its square,
+  !> lumped by Simpson's rule, in an element of sides 2: 6 by the derivative along one side, 1.2 by that along the
+  !> other.
   real(wp), parameter :: gradient_bound = 7.2_wp
 
 contains

@@ -1,8 +1,8 @@
 !> Forces between the layers of one node at the end of a step.
 !>
-!> Contact is a function of the jumps at the end of the step, cohesive tractions and friction of weighted jumps with the
-!> damage at the start. Their stiffness therefore does not limit the step. Openings are solved first; their pressure
-!> limits friction in the same step (return mapping of the trial shear traction).
+!> Contact is a function of the jumps at the end of the step; cohesive tractions and friction are functions of weighted
+!> jumps, with the damage at the start, theory (T7) to (T9). Their stiffness therefore does not limit the step. Openings
+!> are solved first; their pressure limits friction in the same step (return mapping of the trial shear traction).
 module stack_solutions
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
@@ -18,7 +18,7 @@ module stack_solutions
     real(wp) :: coefficient = 0
     !> Friction limit of this step, force
     real(wp) :: limit = 0
-    !> Part of earlier elastic jumps in the weighted mean, and elastic jumps at the end of the step
+    !> Part of earlier elastic jumps in the weighted mean; elastic jumps at the end of the step
     real(wp) :: past(2) = 0, elastic(2) = 0
     !> Friction force
     real(wp) :: force(2) = 0

@@ -9,7 +9,7 @@ module step_lengths
   type :: step_lengths_t
     !> Length of the step, and of the one before; 0: there was none
     real(wp) :: now = 0, last = 0
-    !> Part of the velocities of the step before that damping has left
+    !> Factor by which damping has multiplied the velocities of the step before
     real(wp) :: kept = 1
   contains
     !> Time between the mid-step velocities of both steps.
@@ -44,7 +44,7 @@ contains
     shift = (self%now - self%last)/4*shift
   end function shift
 
-  !> Largest step length not above a bound of which an integer number equals a time.
+  !> Longest step, not longer than a bound, of which an integer number equals a time.
   pure real(wp) function commensurate_step(time, longest) result(step)
     !> The time, and the longest step
     real(wp), intent(in) :: time, longest

@@ -2,7 +2,7 @@
 !>
 !> The points are listed in the order of the mesh on every rank, so that mean deflection and force distribution are
 !> identical on any number of ranks. The force of a nose is distributed by the deflection at the end of each step
-!> (`contact_areas`): a lagged distribution would feed energy into the motion.
+!> (`contact_areas`): a lagged distribution would add energy to the motion.
 module struck_patches
   use archives, only: archive_t
   use contact_areas, only: edge_gap
@@ -16,11 +16,12 @@ module struck_patches
   type :: struck_patch_t
     !> Index of each point among those of this rank; 0: on another rank, (reached)
     integer, allocatable :: local(:)
-    !> Weights of the deck's patch, area beside it, and height of the nose's surface above its tip, (reached)
+    !> Weights of the deck's patch, area of the point outside the patch, and height of the nose's surface above its tip,
+    !> (reached)
     real(wp), allocatable, private :: under(:), beside(:), rise(:)
     !> Weights of the force distribution, and inverse inertia of w, (reached)
     real(wp), allocatable :: weights(:), inverse(:)
-    !> Offset of the mean deflection by earlier changes of the weights
+    !> Offset of the mean deflection due to earlier changes of the weights
     real(wp) :: offset = 0
     !> True: the distribution follows the shape of the nose
     logical, private :: depends_on_deflection = .false.

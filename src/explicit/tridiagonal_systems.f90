@@ -1,8 +1,8 @@
 !> Tridiagonal systems of the interfaces of one node.
 !>
-!> A traction at one interface accelerates the layers above and below it, and so changes the jumps there and at the
-!> two interfaces next to it. With force lambda = k s + g on the jump s at the end of a step, s = s* - H C lambda,
-!> where s* is the jump without tractions and H the square of the step: (1 + k H C) lambda = k s* + g.
+!> A traction at one interface accelerates the layers above and below it, and so changes the jumps there and at the two
+!> adjacent interfaces. With the force lambda = k s + g on the jump s at the end of a step, s = s* - H C lambda, where
+!> s* is the jump without tractions and H the square of the step: (1 + k H C) lambda = k s* + g, theory (T7).
 module tridiagonal_systems
   use kinds, only: wp
   implicit none

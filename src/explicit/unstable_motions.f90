@@ -10,8 +10,9 @@ module unstable_motions
   private
   public :: check_stability
 
-  !> Energy error over the largest of initial energy, external work and their sum, above which a run ends. An unstable
-  !> mode grows exponentially, so the value matters little. The check of the ledger warns from a tenth of it, 1 %.
+  !> Ratio of the energy error to the largest of initial energy, external work and their sum above which a run ends. An
+  !> unstable mode grows exponentially, so the exact value is not important. The check of the ledger warns from a tenth
+  !> of it, 1 %.
   real(wp), parameter :: max_energy_error = 0.1_wp
 
 contains
@@ -33,7 +34,7 @@ contains
     if (abs(created) <= huge(created)) &
       amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
     call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
-              ': '//amount//'; the fastest point is '//fastest_point(model, now%motion%velocity)// &
+              ': '//amount//'; the largest velocity is '//fastest_point(model, now%motion%velocity)// &
               '. Take a smaller &time step_factor.')
   end subroutine check_stability
 

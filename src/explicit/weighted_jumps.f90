@@ -1,18 +1,19 @@
 !> Jumps of interfaces at whole steps as weighted means of four.
 !>
-!> With the traction k J_n the stiffness of an interface would limit the step; with k J_(n+1) a spring dissipates
-!> k dJ**2 in each. Instead the traction is k times a mean of J_(n+1), J_n, J_(n-1) and J_(n-2), which equals J_n but
-!> for terms of second order. The polynomial of the weights has the roots -r, -r and -q, so that motions of springs that
-!> are stiff in the step decay by r a step, and slow ones dissipate in proportion to the third power of the step.
-!> The conditions are derived in doc/theory/time_integration.md.
+!> With the traction k J_n the stiffness of an interface would limit the step; with k J_(n+1) a spring dissipates k
+!> dJ**2 in each step. Instead the traction is k times a mean of J_(n+1), J_n, J_(n-1) and J_(n-2), theory (T9), which
+!> differs from J_n by terms of second order. The polynomial of the weights has the roots -r, -r and -q, so that motions
+!> of springs too stiff for the step decay by a factor r per step, and slow motions dissipate in proportion to the third
+!> power of the step. The conditions are derived in doc/theory/time_integration.md.
 module weighted_jumps
   use kinds, only: wp
   implicit none
   private
   public :: memory, newest, past_jumps, past_openings
 
-  !> Spectral radius of stiff springs. With 0.5 and 0.8 instead of 0.9 `energy_algorithmic` is up to 3 and 1.5 times
-  !> larger, with the same areas and forces (doc/studies/central_differences.md).
+  !> Factor per step by which motions of stiff springs decay, the spectral radius. With 0.5 and 0.8 instead of 0.9
+  !> `energy_algorithmic` is up to 3 and 1.5 times larger, with the same areas and forces
+  !> (doc/studies/central_differences.md).
   real(wp), parameter :: r = 0.9_wp
   !> The third root, which gives weights without a first moment
   real(wp), parameter :: q = (1 - r)/(2*r)
@@ -25,17 +26,17 @@ module weighted_jumps
 
 contains
 
-  !> The part of earlier jumps in the weighted mean.
+  !> Contribution of earlier jumps to the weighted mean.
   elemental real(wp) function past_jumps(start, change, earlier)
-    !> Jump at the start of the step, its change in the step before, and that in the one before that
+    !> Jump at the start of the step, its change in the step before, and its change in the step before that
     real(wp), intent(in) :: start, change, earlier
 
     past_jumps = (1 - weights(0))*start - (weights(2) + weights(3))*change - weights(3)*earlier
   end function past_jumps
 
-  !> The same for openings, of which contact leaves none that is negative.
+  !> The same for openings. Negative openings are carried by contact and do not contribute.
   elemental real(wp) function past_openings(start, change, earlier)
-    !> Opening at the start of the step, its change in the step before, and that in the one before that
+    !> Opening at the start of the step, its change in the step before, and its change in the step before that
     real(wp), intent(in) :: start, change, earlier
 
     past_openings = weights(1)*max(0.0_wp, start) + weights(2)*max(0.0_wp, start - change) &

@@ -1,6 +1,6 @@
-!> Contact force in first loading: Hertz, or Hertz up to yield of the struck face and linear beyond, where the pressure
-!> at the centre is constant (C. Thornton, Journal of Applied Mechanics 64 (1997) 383-386; for laminates A. S. Yigit, A.
-!> P. Christoforou, Composites Engineering 4 (1994) 1143-1152).
+!> Contact force in first loading, theory (F5) and (F7): Hertz, or Hertz up to yield of the struck face and linear
+!> beyond, where the pressure at the centre is constant (C. Thornton, Journal of Applied Mechanics 64 (1997) 383-386;
+!> for laminates A. S. Yigit, A. P. Christoforou, Composites Engineering 4 (1994) 1143-1152).
 module contact_loading
   use hertz_contact, only: hertz_exponent, hertz_force, hertz_stiffness, mean_power
   use impact_parameters, only: indentation_law_t, law_thornton

@@ -1,5 +1,5 @@
 !> Gear's method for the impactor: the backward differentiation formula of fourth order, with coefficients for steps of
-!> unequal length (Eq. 6 of the paper if they are equal).
+!> unequal length, theory (F3) (Eq. 6 of the paper if they are equal).
 module gear_integrator
   use impactors, only: impactor_t, past => past_points
   use kinds, only: wp
@@ -10,9 +10,9 @@ module gear_integrator
   !> Largest ratio of a step to the one before: with steps that keep growing, variable-step BDF4 is
   !> zero-stable up to 1.28; at 1.2 its largest parasitic root is 0.86.
   real(wp), parameter, public :: largest_growth_ratio = 1.19_wp
-  !> Largest omega*step of this method. For undamped oscillation its principal root grows as (omega*step)**6: 2.1e-5 a
-  !> step at 0.2, 1.3e-3 at 0.4, 11 % at 1, worst 19 % at 1.86. At 0.2 the amplitude over a contact (omega*time = 4,
-  !> some 20 steps) has an error of at most 4e-4.
+  !> Largest omega*step of this method. For undamped oscillation the amplitude grows as (omega*step)**6: by 2.1e-5 per
+  !> step at 0.2, 1.3e-3 at 0.4, 11 % at 1, and at most 19 %, at 1.86. At 0.2 the amplitude over a contact (omega*time =
+  !> 4, about 20 steps) has an error of at most 4e-4.
   real(wp), parameter, public :: gear4_limit = 0.2_wp
 
 contains

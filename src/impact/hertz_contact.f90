@@ -1,4 +1,4 @@
-!> Hertz' contact of a sphere with a plate, F = k alpha**1.5, and Sun's formula for k on a laminate.
+!> Hertz' contact of a sphere with a plate, F = k alpha**1.5, and Sun's formula for k on a laminate, theory (F8).
 module hertz_contact
   use kinds, only: wp
   implicit none

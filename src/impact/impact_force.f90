@@ -1,4 +1,4 @@
-!> The impact force of a step: the scalar unknown that couples impactor and plate.
+!> The impact force of a step, the scalar unknown that couples impactor and plate, theory (F10).
 module impact_force
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, fail, exit_internal
@@ -10,7 +10,7 @@ module impact_force
   private
   public :: contact_step_t, solve_impact_force
 
-  !> Largest number of iterations; the worst case found takes 154, at a compliance of 1e100, usual steps 3 to 6.
+  !> Largest number of iterations: the worst case found takes 154, at a compliance of 1e100; usual steps take 3 to 6.
   integer, parameter :: max_iterations = 500
 
   !> Contact of impactor and plate in a step.
@@ -53,7 +53,7 @@ contains
     iterations = 0
     if (.not. (all(ieee_is_finite([step%start, step%free, step%compliance, step%law%k, step%state%alpha_max, &
                                    step%state%dent])) .and. step%compliance >= 0)) then
-      call fail(error, exit_internal, 'The contact force was asked for with a number that is not finite or negative.')
+      call fail(error, exit_internal, 'The contact force is requested for a number that is not finite or negative.')
       return
     end if
     zero_force = zero_force_indentation(step%law, step%state)
@@ -74,7 +74,7 @@ contains
     real(wp), intent(in) :: zero_force
     !> Mean force
     real(wp), intent(out) :: x
-    !> On entry that for a zero force, on return the indentation at the end of the step
+    !> On entry the indentation for a zero force, on return that at the end of the step
     real(wp), intent(inout) :: alpha_end
     real(wp) :: work, way, root
 
@@ -150,8 +150,8 @@ contains
     real(wp), intent(in) :: alpha_end
     !> Force of the step
     real(wp), intent(in) :: x
-    ! Relative change of the indentation below which the slope is taken at its end: the quotient loses six digits there,
-    ! and the slope changes by a part of 1e-6.
+    ! Relative change of the indentation below which the derivative is that at the end of the step: there the difference
+    ! quotient loses six digits, and the derivative differs by a part of 1e-6.
     real(wp), parameter :: min_relative_change = 1e-6_wp
 
     slope = indentation_stiffness(step%law, step%state, alpha_end)

@@ -47,7 +47,7 @@ module impact_parameters
     real(wp) :: reload = 1.5_wp
     !> Slope of Tan and Sun's dent
     real(wp) :: beta = 0.094_wp
-    !> Indentation above which a dent remains, with Thornton's law that at the yield of the struck face
+    !> Indentation above which a dent remains; with Thornton's law that at which the struck face yields
     real(wp) :: alpha_critical = 0
     !> dent_tan_sun or dent_yang_sun
     integer :: dent = dent_tan_sun

@@ -1,9 +1,9 @@
 !> The impactor's integrators in time: Gear's method, the trapezoidal rule, central differences and one that conserves
 !> energy.
 !>
-!> Every integrator gives the displacement at the end of a step as an affine function of the one
-!> unknown contact force of the step, w_end = w_free - compliance*force. What that force means is
-!> given by `takes_mean_force`.
+!> Every integrator gives the displacement at the end of a step as an affine function of the one unknown contact force
+!> of the step, w_end = w_free - compliance*force, theory (F2). Which force this is depends on the integrator, see
+!> `takes_mean_force`.
 module impactor_integrators
   use gear_integrator, only: advance_gear4, gear4_slope, gear4_limit
   use impact_parameters, only: impactor_parameters_t, indentation_law_t, integrator_gear4, &
@@ -15,8 +15,8 @@ module impactor_integrators
   private
   public :: takes_mean_force, predict, advance, largest_safe_step
 
-  !> Largest omega*step of the integrators other than Gear's, for resolution, not stability: at least some six steps per
-  !> contact, with an error of the rebound of one per cent.
+  !> Largest omega*step of the integrators other than Gear's, theory (F4), for accuracy, not stability: with at least
+  !> six steps per contact the error of the rebound velocity is one per cent.
   real(wp), parameter, public :: resolution_limit = 0.5_wp
 
 contains
@@ -66,7 +66,7 @@ contains
     type(impactor_t), intent(in) :: impactor
     !> Step
     real(wp), intent(in) :: dt
-    !> The force of the step, as given by `takes_mean_force`
+    !> The force of the step, see `takes_mean_force`
     real(wp), intent(in) :: step_force
     !> Contact force at the end of the step
     real(wp), intent(in) :: force_end

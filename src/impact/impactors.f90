@@ -1,5 +1,5 @@
-!> The rigid impactor, m w'' = m g - F with w positive towards the plate (Eq. 2 of the paper with the sign of this
-!> program): state and energy.
+!> The rigid impactor, m w'' = m g - F with w positive towards the plate (Eq. 2 of the paper with this sign, theory
+!> (F1)): state and energy.
 module impactors
   use archives, only: archive_t
   use impact_parameters, only: impactor_parameters_t
@@ -19,7 +19,7 @@ module impactors
     real(wp) :: velocity = 0
     !> Contact force at the end of the last step
     real(wp) :: force = 0
-    !> True once Gear's method has a history of its own; before that it assumes free flight
+    !> True once Gear's method has past states from the run; before, free flight is assumed
     logical :: has_history = .false.
     !> Lengths of the last steps, latest first
     real(wp) :: past_step(past_points) = 0

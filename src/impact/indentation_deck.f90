@@ -138,7 +138,7 @@ contains
     if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return
     if (law%reload > law%q) &
       call report(settings, problems, indentation_group, 'reload', &
-                  'reloading would take less energy than unloading '// &
-                'gave back; allowed: >= 1.5, <= q = '//to_text(law%q)//'.')
+                  'reloading would require less energy than unloading '// &
+                'released; allowed: >= 1.5, <= q = '//to_text(law%q)//'.')
   end subroutine check_exponents
 end module indentation_deck

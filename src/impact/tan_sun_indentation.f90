@@ -1,12 +1,12 @@
-!> Contact force between impactor and struck face as a function of the indentation: Tan and Sun's law (Eq. 3 of the
-!> paper) with a reloading branch, Hertz's and Thornton's, with all energies in closed form.
+!> Contact force between impactor and struck face as a function of the indentation, theory (F5) to (F7): Tan and Sun's
+!> law (Eq. 3 of the paper) with a reloading branch, Hertz's and Thornton's, with all energies in closed form.
 !>
 !> For a given committed state the force is one continuous, non-decreasing function of the indentation: zero up to the
-!> dent, a power law from the dent to the largest indentation so far, and that of `contact_loading` beyond it. After Tan
-!> and Sun the exponent is `q` until the bodies separate, so that a reversal during contact follows the unloading curve,
-!> and `reload` after a separation. The reloading curve is reversible: a second contact that does not reach the largest
-!> indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck. After
-!> Thornton it is 1.5 in unloading and reloading.
+!> dent, a power law from the dent to the largest indentation so far, and that of `contact_loading` beyond. In the law
+!> of Tan and Sun the exponent is `q` until the bodies separate, so that a reversal during contact follows the unloading
+!> curve, and `reload` after a separation. The reloading curve is reversible: a second contact that does not reach the
+!> largest indentation is elastic. Energy is never created if 1.5 <= reload <= q, see `check_indentation` of the deck.
+!> In Thornton's law the exponent is 1.5 in unloading and reloading.
 module tan_sun_indentation
   use archives, only: archive_t
   use contact_loading, only: loading_force, loading_stiffness, loading_indentation, mean_loading_force
@@ -184,7 +184,7 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
-    !> At least 1; the steepest point is the top of the unloading or reloading curve
+    !> At least 1; the steepest point is the upper end of the unloading or reloading curve
     real(wp) :: ratio
     type(branch_t) :: branch
 
@@ -259,8 +259,8 @@ contains
     s = (alpha - branch%start)/(branch%finish - branch%start)
   end function position
 
-  !> Permanent dent after unloading from an indentation (Tan and Sun 1985; Yang and Sun 1982; Thornton 1997, with the
-  !> larger radius of the deformed face in unloading).
+  !> Permanent dent after unloading from an indentation, theory (F6) and (F7) (Tan and Sun 1985; Yang and Sun 1982;
+  !> Thornton 1997, with the larger radius of the deformed face in unloading).
   pure function permanent_dent(law, alpha_max) result(dent)
     !> The law
     type(indentation_law_t), intent(in) :: law

@@ -1,8 +1,8 @@
 !> Cohesive interfaces: tractions between layers, damage and dissipated energy.
 !>
-!> Tractions act at nodal points as internal forces on the jumps. Closing surfaces touch by the penalty stiffness
-!> of the undamaged interface, independent of the damage: contact is conservative, and the factored operator is
-!> unchanged where undamaged surfaces change between pressure and tension.
+!> Tractions act at nodal points as internal forces on the jumps. Closing surfaces touch by the penalty stiffness of the
+!> undamaged interface, independent of the damage: contact is conservative, and the factored operator does not change
+!> where undamaged surfaces change between pressure and tension.
 module cohesive_interfaces
   use kinds, only: wp
   use archives, only: archive_t

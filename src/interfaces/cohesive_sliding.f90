@@ -15,9 +15,8 @@ module cohesive_sliding
 
 contains
 
-  !> Updates the friction limits by pressures and damage. A time step uses them in the next step; a load step is
-  !> repeated
-  !> until they have converged.
+  !> Updates the friction limits by pressures and damage. A time step uses the limits in the next step; a load step is
+  !> repeated until the limits have converged.
   subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces

@@ -42,8 +42,8 @@ module contact_and_ties
   end type contact_and_ties_t
 
   !> Penalty of a tied jump relative to the diagonal of the operator: stiff enough for five digits in a preconditioner,
-  !> soft enough to be removed again without a factorization. A factor of ten either way changes the cost by up to 3 %
-  !> (doc/studies/solution_controls.md).
+  !> soft enough for the tie to be released without a new factorization. A factor of ten either way changes the cost by
+  !> up to 3 % (doc/studies/solution_controls.md).
   real(wp), parameter, public :: held_stiffness = 1.0e5_wp
 
 contains
@@ -112,7 +112,7 @@ contains
     end select
   end function force
 
-  !> Updates the multipliers by the pressures found, which have converged once they agree with the gaps.
+  !> Updates the multipliers by the pressures found, which have converged once they are consistent with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     !> The state
     class(contact_and_ties_t), intent(inout) :: self
@@ -163,7 +163,7 @@ contains
     self%peak = max(self%peak, maxval(largest))
   end subroutine update_multipliers
 
-  !> Violation of complementarity: no pressure on open surfaces, no negative pressure. Relative to the largest so
+  !> Violation of complementarity: pressure on open surfaces or negative pressure, relative to the largest pressure so
   !> far. The same on every rank.
   real(wp) function complementarity(self, model, displacement)
     !> The state
@@ -215,7 +215,7 @@ contains
     integer, allocatable :: points(:)
 
     if (.not. model%map%layered) return
-    ! Pressures are known to a point's owner only.
+    ! Pressures are known only on the rank that owns a point.
     points = self%in_contact(model)
     guess(3, points) = merge(0.0_wp, max(0.0_wp, guess(3, points)), self%multiplier(points) > 0)
     call model%halo%update(guess)

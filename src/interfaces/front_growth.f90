@@ -11,8 +11,8 @@ module front_growth
   private
   public :: grow_fronts, find_release_ratio
 
-  !> Segments within this part of the largest ratio delaminate together, so that a symmetric front stays so. With .9 and
-  !> .99 histories are the same (doc/studies/solution_controls.md).
+  !> Segments whose ratio is within this fraction of the largest delaminate together, so that a symmetric front remains
+  !> symmetric. With .9 and .99 histories are the same (doc/studies/solution_controls.md).
   real(wp), parameter :: together = 0.95_wp
 
 contains
@@ -85,10 +85,11 @@ contains
     logical :: enters(size(front%segments))
     integer :: s, foremost
 
-    ! At the border of the layers there is no tie force for virtual crack closure, so a rate cannot show blocked growth.
+    ! At the border of the layers there is no tie force for virtual crack closure, so the rate cannot indicate that
+    ! growth is blocked there.
     state%border_reached(zone) = state%border_reached(zone) .or. any(front%segments%at_border)
     foremost = maxloc(front%ratio, mask=.not. front%segments%at_border, dim=1)
-    ! A delamination that fills its zone has no front but the border; surfaces that are glued cannot delaminate.
+    ! A delamination that fills its zone has no front except the border; glued surfaces cannot delaminate.
     if (foremost == 0) return
     if (state%contact%glued .and. model%setup%delaminations(zone)%unloading == unloading_glued) return
     largest = front%ratio(foremost)
@@ -125,8 +126,7 @@ contains
   end subroutine release_cells
 
   !> Of the candidate cells within the averaging length, those whose centre is closest to the front: a rate averaged
-  !> over
-  !> that length cannot distinguish them.
+  !> over that length cannot distinguish between them.
   pure function closest_to_front(front, open, reach) result(first)
     !> The front
     type(front_energy_release_t), intent(in) :: front
@@ -136,7 +136,8 @@ contains
     real(wp), intent(in) :: reach
     !> True for the closest ones
     logical :: first(size(open))
-    !> Tolerance of equal distances, relative to a cell: far above 1e-16, and distances differ by parts of a cell.
+    !> Tolerance of equal distances, relative to a cell: far above round-off, 1e-16, and far below the differences of
+    !> distances, which are parts of a cell.
     real(wp), parameter :: distance_tolerance = 1.0e-6_wp
     integer :: s, t, image
 

@@ -1,5 +1,5 @@
-!> Matrix cracks of adjacent plies as flaws of a cohesive interface: within a distance of a crack the strengths are
-!> reduced, at the same toughness.
+!> Matrix cracks of adjacent plies as flaws of a cohesive interface (doc/theory/interfaces.md, flaws beside cracked
+!> plies): within a distance of a crack the strengths are reduced, at the same toughness.
 !>
 !> The law of a damaged point is not changed, so that its dissipated energy remains consistent.
 module interface_flaws
@@ -15,9 +15,9 @@ module interface_flaws
 
 contains
 
-  !> Reduces the strengths of the undamaged points of an interface near cracks of a ply. With mirror symmetry image
-  !> cells are farther away than the cells; with point symmetry cells beyond the cut are images of cells of the modelled
-  !> part.
+  !> Reduces the strengths of the undamaged points of an interface near cracks of a ply. With mirror symmetry the image
+  !> of a cracked cell is farther away than the cell itself and need not be considered; with point symmetry cells beyond
+  !> the cut are images of cells of the modelled part.
   pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
@@ -113,7 +113,7 @@ contains
     distance = (1 + rounding)*reach
     associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
       near = x(2:) + distance >= x(columns(1)) .and. x(:size(near)) - distance <= x(columns(2) + 1)
-      ! With point symmetry only cells near the cut have an image in reach.
+      ! With point symmetry only cells near the cut have an image within the distance.
       beside_cut = mesh%halved(1) .and. .not. mesh%mirrored(1) .and. x(:size(near)) <= distance
       do row = 1, mesh%cells(2)
         first = (row - 1)*size(near)

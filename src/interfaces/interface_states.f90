@@ -243,7 +243,7 @@ contains
     end function in_delaminated_cell
   end function delaminated_areas
 
-  !> Energy recorded as fracture energy but not released by fronts in equilibrium, which is not an error of the
+  !> Energy recorded as fracture energy but not yet released by fronts in equilibrium, which is not an error of the
   !> integrator.
   pure real(wp) function unreleased(self, model)
     !> The state

@@ -20,7 +20,7 @@ module interface_ties
     type(delaminated_region_t), allocatable :: regions(:)
     !> True where a lower point's jumps are free, (local points); allocated only with layers
     logical, allocatable :: free(:)
-    !> True: separated surfaces move together (the paper's shortcut for unloading)
+    !> True: separated surfaces move together (unloading = 'glued', Eq. 13b of the paper)
     logical :: glued = .false.
     !> Fracture energy of the cells that fronts have released, of the full plate, (zones), the same on every rank
     real(wp), allocatable :: fracture(:)

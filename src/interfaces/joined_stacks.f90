@@ -20,8 +20,8 @@ module joined_stacks
 
 contains
 
-  !> Stacks of a state. Layers count as tied in a cell if less than half of their area has delaminated. Collective; the
-  !> same on every rank.
+  !> Stacks of a state. Layers are treated as tied in a cell if less than half of the area between them has delaminated.
+  !> Collective; the same on every rank.
   function joined_stacks_of(model, stiffness, delaminated, displacement) result(self)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)

@@ -1,5 +1,6 @@
-!> Cohesive interfaces in the transfer to another mesh, by weighted means of old points: the dissipated fraction of the
-!> toughness is transferred instead of the damage variable, since its mean conserves dissipated area and energy.
+!> Cohesive interfaces in the transfer to another mesh, by weighted means of old points, theory (D14): the dissipated
+!> fraction of the toughness is transferred instead of the damage variable, since its mean conserves dissipated area and
+!> energy.
 module mapped_interfaces
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: stiffness_of
@@ -41,7 +42,7 @@ contains
   end subroutine set_damage
 
   !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
-  !> and elastic energy beyond the limit would be spurious.
+  !> and the elastic energy of forces above the limit would be spurious.
   pure subroutine set_slips(interfaces, model, displacement)
     !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces

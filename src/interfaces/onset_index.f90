@@ -1,4 +1,5 @@
-!> Onset index of delamination: interlaminar stresses from equilibrium through the thickness over the strengths.
+!> Onset index of delamination: interlaminar stresses from equilibrium through the thickness over the strengths, theory
+!> (D7) and (D8).
 module onset_index
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of

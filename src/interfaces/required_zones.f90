@@ -1,5 +1,5 @@
-!> Required extents of adaptive layers: some cells ahead of damage, further adjacent cells with an onset index of at
-!> least a half, and any cell with an index of 1.
+!> Required extents of adaptive layers: some cells ahead of damage, all cells adjacent to these with an onset index of
+!> at least a half, and any cell with an index of 1.
 module required_zones
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t

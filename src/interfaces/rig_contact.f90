@@ -1,4 +1,5 @@
-!> Contact with rigs: pressure where it rests on a frame that it may lift off, springs of clamps, and reactions.
+!> Contact with rigs: pressure where the plate rests on a frame from which it may lift off, springs of clamps, and
+!> reactions.
 !>
 !> A frame is rigid and constrains w at its nodes by an inequality. The law is that of surfaces (`surface_contact`)
 !> with the gap -w and one multiplier per node, updated until it converges.
@@ -189,7 +190,7 @@ contains
 
     if (.not. (model%rig%unilateral .or. model%rig%elastic)) return
     open = 0
-    ! An iteration of load steps may lift the plate off its frame, so that nothing else holds it.
+    ! An iteration of load steps may lift the plate off all its frames, so that nothing supports it.
     if (.not. model%setup%has_inertia()) open = model%negligible_stiffness()
     do i = 1, model%distribution%owned
       added(:, i) = added(:, i) + stiffness_factor*model%rig%springs(:, i)

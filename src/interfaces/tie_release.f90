@@ -1,8 +1,9 @@
 !> Released ties: their forces are ramped down, and the energy released is summed.
 !>
-!> Sudden removal of a tie would excite the plate: the energy would remain as kinetic energy, and the shorter the steps,
-!> the less of it would appear as work against the tie. The force is therefore ramped down linearly in time, while shear
-!> waves cross a few elements, or within one step if that is longer. The work against it is the energy released.
+!> Sudden removal of a tie would excite vibrations: the energy would remain as kinetic energy, and the shorter the
+!> steps, the less of it would appear as work against the tie. The force is therefore ramped down linearly in time,
+!> while a shear wave crosses a few elements, or within one step if that is longer. The work against it is the energy
+!> released.
 module tie_release
   use kinds, only: wp
   use archives, only: archive_t
@@ -46,9 +47,9 @@ contains
     type(model_t), intent(in) :: model
     !> The ties
     type(tie_release_t) :: self
-    !> Elements that waves of shear cross while a tie fades. With 10 the energy released is the same to some percent
-    !> for all shorter steps. With 5 and 20 the force history changes by up to 8 and 5 % of its peak
-    !> (doc/studies/solution_controls.md).
+    !> Number of elements that a shear wave crosses while the force of a released tie decreases to zero. With 10 the
+    !> energy released is the same within a few per cent for all shorter steps. With 5 and 20 the force history changes
+    !> by up to 8 and 5 % of its peak (doc/studies/solution_controls.md).
     real(wp), parameter :: elements_crossed = 10
     real(wp) :: slowness
     integer :: points, zones, zone
@@ -64,8 +65,8 @@ contains
     end do
   end function new_tie_release
 
-  !> Releases the ties whose jumps have become free; where surfaces press on each other contact takes over at once, if
-  !> there is any.
+  !> Releases the ties whose jumps have become free. Where surfaces are under pressure, contact, if it is modelled,
+  !> carries the normal force at once, so that only the shear forces are ramped down.
   pure subroutine release(self, model, free_before, free, forces)
     !> The ties
     class(tie_release_t), intent(inout) :: self

@@ -1,4 +1,5 @@
-!> Energy release rates along a front by Eq. 11 with its sign corrected, from the states on both sides of it.
+!> Energy release rates along a front by Eq. 11 of the paper with its sign corrected, theory (D10), from the states on
+!> both sides of the front.
 !>
 !> The steps are those of section 3.3.3 of the paper: strains are extrapolated to the nodes of the front from the cells
 !> on either side and smoothed along the front, not across it; the smooth states give G at the nodes, and the mean of
@@ -8,8 +9,8 @@
 !>
 !> If plies have cracked on one side only, strains across the front are discontinuous without any delamination. The
 !> states are then compared with the stiffness of the stiffer side, to which they are converted by equal forces across
-!> the front. With the softer stiffness a force not yet released by the crack would be overestimated in energy, up to 18
-!> times G_c for one or two steps after each crack.
+!> the front. With the softer stiffness the energy of a force that the crack has not yet released would be
+!> overestimated, by up to 18 times G_c for one or two steps after each crack.
 module two_state_energy_release
   use kinds, only: wp
   use element_batches, only: lanes, batch_of, lane_of
@@ -69,7 +70,7 @@ contains
       do layer = 1, 2
         common(:, layer, s) = common_stiffness(segments(s), stiffness(:, layer, :, s))
         do side = 1, 2
-          ! At the border of the zone follows a single layer, with another stiffness than these two.
+          ! Beyond the border of the zone there is a single layer, with another stiffness than these two.
           known = stiffness(:, layer, merge(1, side, segments(s)%at_border), s)
           do line = 1, 3
             states(:, line, layer, side, s) = &

@@ -1,5 +1,5 @@
-!> Limits of softening plies: the strain below which none is damaged, and the longest elements that keep the fracture
-!> energies.
+!> Limits of softening plies: the strain below which no ply is damaged, and the longest elements that dissipate no more
+!> than the fracture energies.
 module crack_band_limits
   use crack_bands, only: crack_band_t
   use kinds, only: wp
@@ -13,8 +13,8 @@ module crack_band_limits
 
 contains
 
-  !> A strain below which a ply cannot be damaged, for any direction: in-plane strains are measured by the root of e1**2
-  !> + e2**2 + g12**2/2, which is invariant under rotation. Nonlinear shear acts from zero on.
+  !> A strain below which a ply cannot be damaged, in any direction. The measure of in-plane strains is the root of
+  !> e1**2 + e2**2 + g12**2/2, which is invariant under rotation. With nonlinear shear the limit is zero.
   pure real(wp) function onset_strain(band)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -30,8 +30,9 @@ contains
       exposure = max(exposure, matrix_exposure(band%matrix, cos(angle)*band%elasticity%e2*sqrt(1 + nu12**2), &
                                                sin(angle)*band%elasticity%g12*sqrt(2.0_wp)))
     end do
-    ! On each side of pure shear envelopes of failure are convex, and pure shear lies midway between two directions. So
-    ! from one direction to the next the exposure is at most the larger of theirs over the cosine of half the angle.
+    ! The envelopes of failure are convex on each side of pure shear, which lies midway between two of the directions.
+    ! Between two adjacent directions the exposure is therefore at most the larger of their exposures over the cosine of
+    ! half the angle between them.
     onset_strain = (1 - nu12*nu21)*cos(pi/(2*directions))/exposure
     if (band%shear_beta > 0) onset_strain = 0
   end function onset_strain

@@ -1,13 +1,13 @@
 !> Plies that soften by their fracture energies: one crack band per element (Z. P. Bazant, B. H. Oh, Materials and
-!> Structures 16
-!> (1983) 155-177), damage along and across the fibres.
+!> Structures 16 (1983) 155-177), damage along and across the fibres, theory (M10) to (M12).
 !>
-!> Damage d_f leaves (1 - d_f) E1 and (1 - d_f) nu12, damage d_m leaves (1 - d_m) E2 and (1 - d_m) G12, down to a
-!> residual stiffness. The compliance between both directions is constant, so reciprocity holds and the stiffness is
-!> positive definite. Each damage variable depends on its uniaxial strain s11/((1 - d_f) E1). The energy that d
-!> dissipates is then half the undamaged modulus times the square of that strain, independent of the other damage
-!> (P. Maimi et al., Mechanics of Materials 39 (2007) 897-908, for the energy and its variables). Before the matrix
-!> cracks shear may take a part of G12 throughout the element, as Hahn and Tsai have it.
+!> With the damage d_f the moduli are (1 - d_f) E1 and Poisson's ratio (1 - d_f) nu12, with the damage d_m the moduli
+!> are (1 - d_m) E2 and (1 - d_m) G12, down to a residual stiffness. The compliance that couples both directions is
+!> constant, so reciprocity holds and the stiffness is positive definite. Each damage variable depends on its uniaxial
+!> strain, s11/((1 - d_f) E1) along the fibres. The energy that d dissipates is then half the undamaged modulus times
+!> the square of that strain, independent of the other damage (P. Maimi et al., Mechanics of Materials 39 (2007)
+!> 897-908, for the energy and its variables). Before the matrix cracks, nonlinear shear may reduce G12 throughout the
+!> element by the law of Hahn and Tsai.
 module crack_bands
   use crack_closures, only: band_strains_t, remaining_t, remaining_stiffness_under, find_strain_alone, &
                             compressed_share, find_recovered
@@ -41,7 +41,7 @@ module crack_bands
     real(wp) :: toughness(energy_modes) = 0
     !> Residual stiffness, as a fraction
     real(wp) :: remainder = 0
-    !> Hahn and Tsai's beta; 0: shear is linear
+    !> Coefficient beta of Hahn and Tsai; 0: shear is linear
     real(wp) :: shear_beta = 0
     !> True: shear strain beyond s12/G12 is permanent
     logical :: permanent_shear = .false.
@@ -59,9 +59,9 @@ module crack_bands
     real(wp) :: shear_damage = 0
     !> Permanent shear strain, and its accumulated magnitude
     real(wp) :: permanent = 0, accumulated = 0
-    !> Part of the damage of fibres and matrix that stays when cracks close
+    !> Part of the damage of fibres and matrix that remains when cracks close
     real(wp) :: closed(2) = 0
-    !> Stresses of closed cracks, and half their product with the mean strains
+    !> Stresses carried by closed cracks, and half their product with the mean strains
     real(wp) :: recovered(3) = 0
   end type band_state_t
 
@@ -71,7 +71,7 @@ contains
   pure function create_crack_band(material, damage) result(band)
     !> The material, with strengths and fracture energies
     type(material_t), intent(in) :: material
-    !> Criteria and remainder
+    !> Criteria, and residual stiffness as a fraction
     type(ply_damage_t), intent(in) :: damage
     !> The law
     type(crack_band_t) :: band
@@ -86,7 +86,7 @@ contains
     band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0
   end function create_crack_band
 
-  !> Permanent shear strain of a ply under trial strains, which is removed from these. The opening of a crack is no
+  !> Permanent shear strain of a ply under trial strains, which is subtracted from these. The opening of a crack is no
   !> strain of the ply: after cracking the permanent strain is constant.
   pure subroutine flow_band(band, strains, state)
     !> The law
@@ -124,7 +124,7 @@ contains
 
   !> Damage of fibres and matrix under trial strains, both found together, and the energy that it dissipates.
   pure subroutine find_damage(band, lengths, strains, old, new)
-    !> The law, with the fraction of G12 that shear has left
+    !> The law, with G12 reduced by nonlinear shear
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)
@@ -166,7 +166,7 @@ contains
       new%recovered = find_recovered(band%elasticity, strains%mean, remaining_fractions(band, strains, new))
   end subroutine find_damage
 
-  !> Energy per volume that permanent shear strains of a ply have taken.
+  !> Energy per volume dissipated by permanent shear strains of a ply.
   elemental real(wp) function energy_of_shear(band, state) result(energy)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -177,7 +177,7 @@ contains
     if (band%permanent_shear) energy = energy_of_flow(band%shear_beta, state%accumulated)
   end function energy_of_shear
 
-  !> Loss of G12 by shear before matrix cracking: for the strains up to the onset of the crack.
+  !> Loss of G12 by nonlinear shear before matrix cracking, found for the strains up to the onset of the crack.
   pure subroutine shear_band(band, strains, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
@@ -351,7 +351,7 @@ contains
       call find_strain_alone(c, strains, left, 2, size, weights)
       shear_energy = c%g12*strains%shear_square/2
       energy = c%e2*size**2/2 + shear_energy
-      ! Linear interaction of the modes (E. M. Wu, R. C. Reuter, 1965): G_I/G_mt + G_II/G_mc = 1.
+      ! Linear interaction of the modes (E. M. Wu, R. C. Reuter, 1965): G_I/G_mt + G_II/G_mc = 1, theory (M12).
       toughness = g(matrix_compression)
       if (energy > 0) &
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))

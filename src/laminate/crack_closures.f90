@@ -1,4 +1,4 @@
-!> Crack closure: stiffness lost in tension is recovered in compression.
+!> Crack closure: stiffness lost in tension is recovered in compression, theory (M13) and (M14).
 !>
 !> The mean stress along or across the fibres over a ply of an element decides. If it is compressive, the stiffness lost
 !> in tension acts on the mean strains; deviations from the mean keep the stiffness of open cracks. The recovered stress
@@ -58,7 +58,7 @@ contains
     left%mean = open
   end function remaining_stiffness_under
 
-  !> Mean strains that s11 and s22 would have alone: s11/(E1 left) and s22/(E2 left).
+  !> Mean uniaxial strains, those that s11 or s22 alone would cause: s11/(E1 left) and s22/(E2 left).
   pure function uniaxial_strains(elasticity, mean, left) result(strains)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
@@ -80,13 +80,13 @@ contains
     type(elasticity_t), intent(in) :: elasticity
     !> Remaining fractions of the stiffness
     real(wp), intent(in) :: left(2)
-    !> Part of the other strain in that of each direction
+    !> Factor of the strain in the other direction in the uniaxial strain of each direction
     real(wp) :: part(2)
 
     part = [left(2)*elasticity%nu12*elasticity%e2/elasticity%e1, left(1)*elasticity%nu12]
   end function coupling
 
-  !> Strain that s11 or s22 would have alone: e1 + part e2, e2 + part e1, over a common divisor.
+  !> Uniaxial strain, that s11 or s22 alone would cause: e1 + part e2, e2 + part e1, over a common divisor.
   pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
@@ -98,7 +98,7 @@ contains
     integer, intent(in) :: direction
     !> Its root mean square
     real(wp), intent(out) :: size
-    !> Parts that tension and compression have in it
+    !> Weights of tension and compression in it
     real(wp), intent(out) :: weights(2)
     real(wp) :: part(2), means(2), spread(3)
 

@@ -1,4 +1,4 @@
-!> Elastic constants of a failed ply (Table 2 of the paper).
+!> Elastic constants of a failed ply (Table 2 of the paper, theory (M9)).
 module degradation
   use kinds, only: wp
   use plies, only: elasticity_t
@@ -11,10 +11,10 @@ contains
 
   !> Elastic constants left after some modes of failure, each of which acts once.
   !>
-  !> Table 2 divides a constant c by d at each mode that touches it and keeps it above a floor, here e times its
-  !> undamaged value c0. Whatever the order of the modes, n of them leave max(c0/d**n, e c0): the failed modes alone are
-  !> the state. E2 is never cut less than E1, so nu12**2 E2/E1 only falls and the reduced stiffness stays positive
-  !> definite.
+  !> Table 2 divides a constant c by d at each mode that affects it and keeps it above a floor, here e times its
+  !> undamaged value c0. Whatever the order of the modes, n of them leave max(c0/d**n, e c0): the failed modes are the
+  !> only history variables. E2 is never reduced less than E1, so nu12**2 E2/E1 does not increase and the reduced
+  !> stiffness remains positive definite.
   pure function degraded(original, failed, damage) result(elasticity)
     !> Constants without damage
     type(elasticity_t), intent(in) :: original
@@ -22,7 +22,7 @@ contains
     logical, intent(in) :: failed(failure_modes)
     !> Divisor and floor
     type(ply_damage_t), intent(in) :: damage
-    !> Constants that are left
+    !> The reduced constants
     type(elasticity_t) :: elasticity
     real(wp) :: fibre, in_plane_shear, matrix
 
@@ -39,7 +39,7 @@ contains
 
   !> Fraction of a constant that is left.
   pure real(wp) function left(modes, damage)
-    !> Number of modes that have occurred and touch the constant
+    !> Number of modes that have occurred and affect the constant
     integer, intent(in) :: modes
     !> Divisor and floor
     type(ply_damage_t), intent(in) :: damage

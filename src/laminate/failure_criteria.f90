@@ -39,7 +39,7 @@ contains
     end do
   end function chosen_indices
 
-  !> Squares of Puck's exposures: of the fibres to the stress along them, of the matrix to in-plane stresses.
+  !> Squares of Puck's exposures: of the fibres by the stress along them, of the matrix by the in-plane stresses.
   pure function puck_indices(material, stress) result(indices)
     !> Material of the ply
     type(material_t), intent(in) :: material
@@ -54,7 +54,7 @@ contains
       puck_exposure(matrix_strengths(material, criteria_puck), stress(2), stress(3))**2
   end function puck_indices
 
-  !> Names of the strengths that the criteria need and a material lacks, separated by commas; empty: none.
+  !> Names of the strengths that the criteria require and a material lacks, separated by commas; empty: none.
   pure function needed_strengths(criteria, bands, material) result(names)
     !> criteria_hou, criteria_hashin or criteria_puck
     integer, intent(in) :: criteria

@@ -1,5 +1,5 @@
-!> Resultants that keep a section with stress-free strains flat: thermal strains from the curing temperature, and
-!> permanent shear strains.
+!> Section forces and moments of stress-free strains, which are thermal strains from the curing temperature and
+!> permanent shear strains: sums of stiffness times stress-free strain, theory (M21).
 module free_strains
   use kinds, only: wp
   use plies, only: ply_t, elasticity_t, reduced_stiffness
@@ -9,7 +9,7 @@ module free_strains
 
 contains
 
-  !> Forces and moments of the strains that go without stress, and the energy of suppressing them.
+  !> Forces and moments of the stress-free strains, and the energy of suppressing these strains.
   pure function free_resultants(plies, elasticity) result(resultants)
     !> Neighbouring plies: all of the laminate or those of one layer
     type(ply_t), intent(in) :: plies(:)

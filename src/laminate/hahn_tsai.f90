@@ -1,6 +1,6 @@
-!> Nonlinear in-plane shear of a ply: strain s12/G12 + beta s12**3 (H. T. Hahn, S. W. Tsai, Journal of Composite
-!> Materials 7 (1973) 102-118). Unloading leads back to the origin, so that what stiffness the shear has lost stays
-!> lost; or it follows the initial modulus, so that beta s12**3 stays as a permanent strain.
+!> Nonlinear in-plane shear of a ply, theory (M18) to (M20): the strain is s12/G12 + beta s12**3 (H. T. Hahn, S. W.
+!> Tsai, Journal of Composite Materials 7 (1973) 102-118). Unloading either leads back to the origin, so that the loss
+!> of shear stiffness is permanent, or has the initial modulus, so that beta s12**3 remains as a permanent strain.
 module hahn_tsai
   use kinds, only: wp
   implicit none
@@ -9,7 +9,8 @@ module hahn_tsai
 
 contains
 
-  !> Coefficient beta with which a strength is reached at a strain; 0: the strain is not given, or shear is linear.
+  !> Coefficient beta with which the strength is reached at a given strain; 0: the strain is not given, or shear is
+  !> linear.
   elemental real(wp) function shear_coefficient(modulus, strength, strain) result(beta)
     !> G12, S12 and the shear strain at S12; 0: not given
     real(wp), intent(in) :: modulus, strength, strain
@@ -41,20 +42,20 @@ contains
     root = 2/sqrt(3.0_wp)*sinh(asinh(1.5_wp*sqrt(3.0_wp)*sum)/3)
   end function cubic_root
 
-  !> Permanent shear strain that a strain leaves behind: elastic by the initial modulus up to the stress (p/beta)**(1/3)
-  !> that the permanent strains so far, added up to p, have hardened the ply to in either direction; beyond it along the
-  !> curve. Backward Euler's return mapping, exact for shear in one direction.
+  !> Permanent shear strain after a strain, by isotropic hardening: elastic with the initial modulus up to the stress
+  !> (p/beta)**(1/3) in either direction, where p is the sum of the magnitudes of all previous changes of the permanent
+  !> strain; beyond it along the curve. Return mapping by backward Euler, exact for shear in one direction.
   elemental subroutine shear_flow(modulus, beta, strain, permanent, accumulated)
     !> G12 and the coefficient, above 0
     real(wp), intent(in) :: modulus, beta
     !> Shear strain
     real(wp), intent(in) :: strain
-    !> Permanent strain with its sign, and the sum p of the sizes of its changes
+    !> Permanent strain with its sign, and the sum p of the magnitudes of its changes
     real(wp), intent(inout) :: permanent, accumulated
     real(wp) :: trial, scale, growth
 
     trial = abs(strain - permanent)
-    ! Elastic where beta (G trial)**3 <= p, which needs no root.
+    ! Elastic if beta (G trial)**3 <= p; no root is needed.
     if (beta*(modulus*trial)**3 <= accumulated) return
     ! The stress t at which t/G + beta t**3 = trial + p.
     scale = 1/sqrt(beta*modulus)
@@ -63,17 +64,17 @@ contains
     accumulated = accumulated + growth
   end subroutine shear_flow
 
-  !> Energy per volume that permanent strains have taken: the integral of (p/beta)**(1/3) over p.
+  !> Energy per volume dissipated by permanent strains: the integral of (p/beta)**(1/3) over p.
   elemental real(wp) function energy_of_flow(beta, accumulated) result(energy)
     !> The coefficient, above 0
     real(wp), intent(in) :: beta
-    !> Sum p of the sizes of the changes of the permanent strain
+    !> Sum p of the magnitudes of the changes of the permanent strain
     real(wp), intent(in) :: accumulated
 
     energy = 0.75_wp*accumulated*(accumulated/beta)**(1/3.0_wp)
   end function energy_of_flow
 
-  !> Energy per volume that a loss has taken: beta s12**4/4.
+  !> Energy per volume dissipated by a loss of the modulus: beta s12**4/4.
   elemental real(wp) function energy_of_loss(modulus, beta, loss) result(energy)
     !> G12 without loss and the coefficient
     real(wp), intent(in) :: modulus, beta

@@ -1,5 +1,5 @@
-!> Stress criteria of ply failure after Hashin (Journal of Applied Mechanics 47 (1980) 329-334), in plane stress with
-!> the transverse shear stresses.
+!> Stress criteria of ply failure after Hashin (Journal of Applied Mechanics 47 (1980) 329-334; theory (M5) and (M6)),
+!> in plane stress with the transverse shear stresses.
 module hashin_criteria
   use kinds, only: wp
   use material_parameters, only: material_t

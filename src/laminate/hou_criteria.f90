@@ -1,4 +1,4 @@
-!> Stress criteria of ply failure after Hou et al. (Table 1 of the paper).
+!> Stress criteria of ply failure after Hou et al. (Table 1 of the paper, theory (M3) and (M4)).
 module hou_criteria
   use kinds, only: wp
   use material_parameters, only: material_t
@@ -9,7 +9,8 @@ module hou_criteria
 
 contains
 
-  !> Value of each criterion; a ply fails where it reaches 1. The strengths must be there (see `needed_strengths`).
+  !> Value of each criterion; a ply fails where it reaches 1. The required strengths must be given (see
+  !> `needed_strengths`).
   pure function failure_indices(material, stress) result(indices)
     !> Material of the ply
     type(material_t), intent(in) :: material

@@ -1,6 +1,6 @@
-!> In-situ strengths of the matrix: plies of another angle constrain its cracks, the more so the thinner the block of
-!> plies of a crack (P. P. Camanho, C. G. Davila, S. T. Pinho, L. Iannucci, P. Robinson, Composites Part A 37 (2006)
-!> 165-176).
+!> In-situ strengths of the matrix, theory (M15) to (M17): plies of another angle constrain its cracks, the more so the
+!> thinner the block of plies with the crack (P. P. Camanho, C. G. Davila, S. T. Pinho, L. Iannucci, P. Robinson,
+!> Composites Part A 37 (2006) 165-176).
 module in_situ_strengths
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -13,14 +13,14 @@ module in_situ_strengths
   private
   public :: strengths_in_place, material_in_place, crack_strengths
 
-  !> Factor of the stress intensity at a crack that reaches a free face, and the factor of the strength of a thin block
-  !> at a face that goes with it, 2/1.12 as printed.
+  !> Factor of the stress intensity at a crack that reaches a free face, and the corresponding factor of the strength of
+  !> a thin block at a face, 2/1.12 as printed.
   real(wp), parameter :: at_free_face = 1.12_wp, thin_at_face = 1.79_wp
 
 contains
 
   !> Material of a ply with the strengths of its failure criteria: in-situ strengths if the deck requests them. A block
-  !> that is the complete laminate has no neighbours; its strengths are the material's.
+  !> that is the complete laminate has no neighbours; its strengths are those of the material.
   pure function material_in_place(plies, ply, materials, damage) result(material)
     !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
@@ -74,7 +74,8 @@ contains
     associate (m => material)
       compliance = 2*(1/m%e2 - (m%nu12*m%e2/m%e1)**2/m%e1)
       opening = sqrt(m%toughness(matrix_tension)/(pi*thickness*compliance))
-      ! phi of the paper for a block at a face; thick, where S12 is unchanged, or thin.
+      ! phi of the paper by Camanho et al. for a block at a face: the first value is that of a thick block, for which
+      ! S12 is unchanged, the second that of a thin one.
       shear = max(6*m%s12**2/m%g12 + 9*m%shear_beta*m%s12**4, 24*m%toughness(matrix_compression)/(pi*thickness))
       strengths(1) = merge(max(m%yt, thin_at_face*opening), sqrt(2.0_wp)*max(at_free_face*m%yt, 2*opening), at_face)
       if (.not. at_face) shear = 2*shear

@@ -1,5 +1,5 @@
-!> Stresses between the plies of a stack that carries shear forces, by equilibrium through its thickness, and the onset
-!> index of its interfaces.
+!> Stresses between the plies of a stack that carries shear forces, by equilibrium through its thickness, theory (D7),
+!> and the onset index of its interfaces, (D8).
 module interlaminar_stresses
   use kinds, only: wp
   use plies, only: ply_t, in_plane_stiffness
@@ -54,7 +54,7 @@ contains
   pure function onset_indices(self, strengths, force, gradient) result(indices)
     !> The stresses
     class(unit_stresses_t), intent(in) :: self
-    !> Strengths in shear and opening of the interface below each ply; 0: none is known, and without that in shear the
+    !> Strengths in shear and opening of the interface below each ply; 0: not known, and without a shear strength the
     !> interface cannot fail, (2, plies - 1)
     real(wp), intent(in) :: strengths(:, :)
     !> Shear forces Qx and Qy of the stack, per length

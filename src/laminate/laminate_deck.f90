@@ -1,4 +1,4 @@
-!> The laminate of the deck: rows of its table, filling, and the checks that decide what its plies are.
+!> The laminate of the deck: rows of its table, filling, and the checks on which its plies depend.
 module laminate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
@@ -81,9 +81,9 @@ contains
     call choose_correction(settings, materials, laminate)
   end subroutine fill_laminate
 
-  !> The reduction of the transverse shear stiffness: the deck's, or the one that suits the plies.
+  !> Shear correction: the choice of the deck, or the default for these plies.
   subroutine choose_correction(settings, materials, laminate)
-    !> Keys in effect; get the one that is chosen
+    !> Keys in effect; receive the chosen one
     type(settings_t), intent(inout) :: settings
     !> The materials
     type(material_t), intent(in) :: materials(:)
@@ -133,7 +133,7 @@ contains
     if (any([(settings%is_given(laminate_group, noted(i)), i=1, 2)])) then
       do i = 1, 2
         if (settings%is_given(laminate_group, listed(i))) call report(settings, problems, laminate_group, &
-          trim(listed(i)), trim(noted(i))//' is its other form; '//either)
+          trim(listed(i)), trim(noted(i))//' is another form of this key; '//either)
       end do
       call require(noted)
       if (.not. are_clear(settings, problems, laminate_group, key_stacking)) return
@@ -185,7 +185,7 @@ contains
     end subroutine require
   end subroutine resolve_stacking
 
-  !> A list that has one value or one a ply.
+  !> Checks that a list has one value, or one per ply.
   subroutine check_number(settings, key, number, plies, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -200,7 +200,7 @@ contains
 
     if (number <= 1 .or. number == plies) return
     call report(settings, problems, laminate_group, key, counted(to_text(number), 'value')// &
-                ', but angles has '//to_text(plies)//'; allowed: 1 value for all plies or 1 a ply.')
+                ', but angles has '//to_text(plies)//'; allowed: 1 value for all plies or 1 per ply.')
   end subroutine check_number
 
   !> Index of a material by its name, 0 if there is none.

@@ -1,4 +1,4 @@
-!> Linear softening of stress over strain, from the onset of damage to failure.
+!> Linear softening of stress over strain, from the onset of damage to failure, theory (M11).
 module linear_softening
   use kinds, only: wp
   use ply_damage_parameters, only: fibre_tension
@@ -6,15 +6,16 @@ module linear_softening
   private
   public :: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by, weights_of_signs
 
-  !> Smallest ratio of failure strain to onset strain: at 1 the stress falls at once, and a longer element would snap
-  !> back. At 1.25 it falls with four times the modulus. The check warns of the energy that is then too large.
+  !> Smallest ratio N of failure strain to onset strain: at 1 the stress would drop at once, and a longer element would
+  !> snap back. At 1.25 the softening modulus is four times the elastic modulus. The check warns that such elements
+  !> dissipate too much energy.
   real(wp), parameter, public :: min_ratio = 1.25_wp
 
   !> A linear softening law.
   type :: softening_t
-    !> Strain relative to the onset
+    !> Exposure f, the strain relative to that at the onset
     real(wp) :: exposure = 0
-    !> Strain at failure over that of the onset, N
+    !> Strain at failure over that at the onset, N
     real(wp) :: ratio = huge(1.0_wp)
     !> Total energy dissipated per volume
     real(wp) :: energy = 0
@@ -89,9 +90,9 @@ contains
 
   !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
   pure real(wp) function dissipated_by(softening, part, damage_from, damage_to) result(energy)
-    !> The fall
+    !> The softening law
     type(softening_t), intent(in) :: softening
-    !> Part of it that counts
+    !> Factor of the energy of the law, at most 1
     real(wp), intent(in) :: part
     !> Damage before and after
     real(wp), intent(in) :: damage_from, damage_to
@@ -100,7 +101,7 @@ contains
     if (damage_to > damage_from) energy = part*softening%energy*fraction_growth(softening%ratio, damage_from, damage_to)
   end function dissipated_by
 
-  !> Growth of the dissipated part d/(N (1 - d) + d) with the damage, free of cancellation.
+  !> Increment of the dissipated fraction d/(N (1 - d) + d) with the damage, without cancellation.
   pure real(wp) function fraction_growth(ratio, damage_from, damage_to) result(growth)
     !> N
     real(wp), intent(in) :: ratio

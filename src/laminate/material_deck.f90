@@ -17,6 +17,7 @@ module material_deck
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
                                          key_density = 'density', &
                                          key_shear_strain = 'shear_failure_strain', &
+                                         key_fibre_shear = 'Sf', key_shear_23 = 'Sm23', &
                                          key_expansion = 'alpha1 alpha2', key_library = 'library'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
@@ -46,7 +47,7 @@ module material_deck
     'material | nu12 | real | 1 | - | none | > -10, < 10 | &
       &Major Poisson''s ratio; its magnitude is below sqrt(E1/E2).', &
     'material | nu23 | real | 1 | - | 0 | > -1, < 1 | &
-      &Transverse Poisson''s ratio; not needed in plane stress.', &
+      &Transverse Poisson''s ratio; it has no effect on results, as plies are in plane stress.', &
     'material | XT | real | 1 | pressure | none | > 0 | &
       &Tensile strength along the fibres.', &
     'material | XC | real | 1 | pressure | none | > 0 | &
@@ -83,10 +84,10 @@ module material_deck
   !> Keys of the fracture energies in the order of the modes.
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 
-  !> Keys of an orthotropic material that have to be there, and all of them.
+  !> Keys that an orthotropic material requires, and all of them.
   character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
-  !> Largest ratio of two moduli of a material; beyond it round-off dominates the result: with the slenderness of a
-  !> plate it leaves few of sixteen digits.
+  !> Largest ratio of two moduli of a material; beyond it round-off dominates the result: together with the slenderness
+  !> of a plate few of sixteen digits remain.
   real(wp), parameter :: max_contrast = 1.0e6_wp
 
 contains
@@ -174,7 +175,7 @@ contains
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
-    !> True: they are
+    !> True: they are complete and valid
     logical, intent(out) :: complete
     type(line_t), allocatable :: given(:), missing(:)
 
@@ -226,7 +227,7 @@ contains
     end do
   end function words_with
 
-  !> True: one of the missing keys is there under a wrong name, which was reported already.
+  !> True: one of the missing keys is given under a misspelt name, which has already been reported.
   logical function is_misspelt(missing, place, problems)
     !> Names of keys
     type(line_t), intent(in) :: missing(:)
@@ -277,7 +278,7 @@ contains
     material%nu23 = settings%real_of(material_group, 'nu23', place)
   end subroutine fill_orthotropic
 
-  !> Every material has a density, which a run in time needs.
+  !> Checks that every material has a density, which a run in time requires.
   subroutine require_densities(settings, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

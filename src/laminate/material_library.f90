@@ -7,11 +7,11 @@ module material_library
 
   !> One value.
   type :: library_value_t
-    !> Group and key that it belongs to
+    !> Group and key to which it belongs
     character(len=:), allocatable :: group, key
-    !> Its figures, SI
+    !> Its significant digits, SI
     character(len=:), allocatable :: figures
-    !> The power of ten behind them
+    !> Its power of ten
     integer :: exponent = 0
     !> Letter of its source
     character(len=1) :: source = ' '
@@ -121,7 +121,7 @@ contains
     end do
   end subroutine library_lines
 
-  !> A cell as it is read: without a power of ten that is zero.
+  !> A cell as printed: a power of ten of zero is omitted.
   pure function plain(cell) result(word)
     !> The cell
     character(len=*), intent(in) :: cell

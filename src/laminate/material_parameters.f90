@@ -5,8 +5,8 @@ module material_parameters
   private
   public :: material_t, first_alike, constants_of
 
-  !> Largest strain that is small: at 5 % the logarithmic strain differs by 2.5 %. Polymers of 1e-4 per degree reach it
-  !> at 500 degrees, fibres break far below.
+  !> Largest strain regarded as small: at 5 % the logarithmic strain differs from it by 2.5 %. Thermal strains of
+  !> polymers, 1e-4 per degree, reach it at 500 degrees; fibres fail at far smaller strains.
   real(wp), parameter, public :: largest_strain = 0.05_wp
   !> Constants of a material, and their names in the deck in the order of the type.
   integer, parameter, public :: constants = 22

@@ -1,5 +1,5 @@
-!> Stress exposure of the matrix by the in-plane stresses of a ply, for each set of criteria: the stress exposure of
-!> Puck, which is 1 at failure and grows in proportion to the stresses.
+!> Stress exposure of the matrix by the in-plane stresses of a ply, for each set of criteria. The exposure is that of
+!> Puck: it is 1 at failure and proportional to the stresses.
 module matrix_exposures
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -10,7 +10,7 @@ module matrix_exposures
   public :: matrix_strengths_t, matrix_strengths, matrix_exposure, puck_exposure, plane_exposure, &
             cracks_on_a_plane, shear_across_strength
 
-  !> Inclinations of Puck's curve at no stress across the fibres, tension and compression, for carbon fibres
+  !> Inclinations of Puck's fracture curve at zero stress across the fibres, tension and compression, for carbon fibres
   !> (A. Puck, J. Kopp, M. Knops, Composites Science and Technology 62 (2002) 371-378).
   real(wp), parameter :: inclination_tension = 0.35_wp, inclination_compression = 0.30_wp
   !> Planes that are evaluated, a degree apart: between two of them the exposure is larger by less than 2e-4.
@@ -26,8 +26,8 @@ module matrix_exposures
 
 contains
 
-  !> Strengths of a material. The set of Hou et al. has S12 where Hashin has the shear strength across the fibres;
-  !> without Sm23 that is YC/2, which leaves of Hashin's crushing (s22/YC)**2 + (s12/S12)**2.
+  !> Strengths of a material. The criteria of Hou et al. have S12 where those of Hashin have the shear strength across
+  !> the fibres. Without Sm23 the latter is YC/2, with which Hashin's crushing becomes (s22/YC)**2 + (s12/S12)**2.
   pure function matrix_strengths(material, criteria) result(strengths)
     !> The material
     type(material_t), intent(in) :: material
@@ -56,14 +56,15 @@ contains
     else if (across >= 0) then
       exposure = hypot(across/strengths%tension, shear/strengths%shear)
     else
-      ! The factor of the stresses that meets square f**2 + linear f = 1, inverted.
+      ! The inverse of the factor f of the stresses at which square f**2 + linear f = 1.
       square = (across/(2*strengths%shear_across))**2 + (shear/strengths%shear)**2
       linear = ((strengths%compression/(2*strengths%shear_across))**2 - 1)*across/strengths%compression
       exposure = (linear + sqrt(linear**2 + 4*square))/2
     end if
   end function matrix_exposure
 
-  !> Exposure after Puck (A. Puck, H. Schuermann, Composites Science and Technology 58 (1998) 1045-1067), modes A, B, C.
+  !> Exposure after Puck (A. Puck, H. Schuermann, Composites Science and Technology 58 (1998) 1045-1067; theory (M8)),
+  !> modes A, B, C.
   pure real(wp) function puck_exposure(strengths, across, shear) result(exposure)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
@@ -87,7 +88,7 @@ contains
     end associate
   end function puck_exposure
 
-  !> Strength of the plane of action to shear across the fibres over S12, from YC.
+  !> Shear strength R of the action plane across the fibres over S12, from YC, theory (M7).
   pure real(wp) function action_plane(strengths) result(plane)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
@@ -97,19 +98,19 @@ contains
     end associate
   end function action_plane
 
-  !> Exposure after Puck with transverse shear: the largest of all planes along the fibres (Puck, Schuermann, 1998). The
-  !> inclination over the strength is the same for shear along and across the fibres, as in modes A, B and C, which
-  !> it reproduces without transverse shear.
+  !> Exposure after Puck with transverse shear: the largest of all planes along the fibres (Puck, Schuermann, 1998;
+  !> theory (D5) and (D6)). The ratio of inclination to strength is the same for shear along and across the fibres, as
+  !> in modes A, B and C, which are reproduced without transverse shear.
   pure real(wp) function plane_exposure(strengths, stress, enough) result(exposure)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
-    !> Exposure at which the search of planes ends; absent: all are evaluated
+    !> Exposure at which the search ends; absent: all planes are evaluated
     real(wp), intent(in), optional :: enough
     real(wp) :: c, s, normal, along, across, strength_across, limit
     integer :: i
-    ! Of the angles of the planes.
+    ! Of the inclinations of the planes.
     real(wp), parameter :: cosines(planes) = [(cos(pi*i/planes), i=1, planes)], &
                            sines(planes) = [(sin(pi*i/planes), i=1, planes)]
 
@@ -130,7 +131,8 @@ contains
     end associate
   end function plane_exposure
 
-  !> True if stresses crack the matrix on a plane. Planes are evaluated only where a bound of their exposures reaches 1.
+  !> True if stresses crack the matrix on a plane. Planes are evaluated only where an upper bound of their exposures
+  !> reaches 1.
   pure logical function cracks_on_a_plane(strengths, stress) result(cracks)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
@@ -160,7 +162,7 @@ contains
     end associate
   end function exposure_of
 
-  !> Transverse shear across the fibres alone that cracks the matrix: in tension at 45 degrees, mostly.
+  !> Transverse shear stress s23 that cracks the matrix if it acts alone, usually in tension on the plane at 45 degrees.
   pure real(wp) function shear_across_strength(strengths) result(strength)
     !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths

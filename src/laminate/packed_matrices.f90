@@ -1,5 +1,5 @@
-!> Small symmetric matrices stored as their upper triangle: (11, 12, 16, 22, 26, 66) of in-plane components,
-!> (xz-xz, xz-yz, yz-yz) across it.
+!> Small symmetric matrices stored as their upper triangle: (11, 12, 16, 22, 26, 66) of in-plane components, (xz-xz,
+!> xz-yz, yz-yz) of transverse shear.
 module packed_matrices
   use kinds, only: wp
   implicit none
@@ -40,7 +40,7 @@ contains
   pure function inverse_of_two(packed) result(inverted)
     !> xz-xz, xz-yz, yz-yz
     real(wp), intent(in) :: packed(3)
-    !> Its inverse, packed alike
+    !> Its inverse, packed in the same way
     real(wp) :: inverted(3)
 
     inverted = [packed(3), -packed(2), packed(1)]/(packed(1)*packed(3) - packed(2)**2)

@@ -33,7 +33,7 @@ module plies
     real(wp) :: cosine = 1, sine = 0
     !> z of the face towards the struck side and of the other one
     real(wp) :: z_top = 0, z_bottom = 0
-    !> Strains that go without stress: along and across the fibres, as by cooling, and shear strain, which is permanent
+    !> Stress-free strains: along and across the fibres, as by cooling, and the permanent shear strain
     real(wp) :: free_strain(3) = 0
   end type ply_t
 
@@ -49,8 +49,8 @@ contains
     elasticity = elasticity_t(material%e1, material%e2, material%g12, material%g13, material%g23, material%nu12)
   end function elasticity_of
 
-  !> Error of the elastic constants of a material, or an empty text: the strain energy must be positive for any strain,
-  !> in plane stress and, where nu23 is given, also in three dimensions with E3 = E2 and nu13 = nu12.
+  !> Objection to the elastic constants of a material, or an empty text: the strain energy must be positive for any
+  !> strain, in plane stress and, where nu23 is given, also in three dimensions with E3 = E2 and nu13 = nu12.
   pure function material_objection(material) result(objection)
     !> The material
     type(material_t), intent(in) :: material
@@ -90,7 +90,7 @@ contains
     real(wp) :: rest, cosine, sine
     integer :: quarter_turns
 
-    ! Quarter turns are taken out first, so that a 90 degree ply has no spurious coupling.
+    ! Quarter turns are removed first, so that a 90 degree ply has no spurious coupling.
     rest = modulo(angle, 360.0_wp)
     quarter_turns = nint(rest/90)
     rest = (rest - 90*quarter_turns)*degree
@@ -113,7 +113,7 @@ contains
     end select
   end subroutine set_angle
 
-  !> Plane-stress stiffness in material axes.
+  !> Plane-stress stiffness in material axes, theory (P3).
   pure function reduced_stiffness(elasticity) result(stiffness)
     !> Elastic constants
     type(elasticity_t), intent(in) :: elasticity

@@ -15,10 +15,11 @@ module ply_damage_parameters
   integer, parameter, public :: fibre_tension = 1, fibre_compression = 2, matrix_tension = 3, matrix_compression = 4, &
                                 energy_modes = 4
 
-  !> Where in a ply the stresses are taken: in its mid-plane, or on the worse of its faces.
+  !> Position in a ply at which the stresses are evaluated: its mid-plane, or both faces, of which the larger index
+  !> applies.
   integer, parameter, public :: stress_at_middle = 1, stress_at_faces = 2
 
-  !> Properties that two runs must have in common for one to start with the damage of the other, by their names in the
+  !> Properties that must be equal in two runs for one to start with the damage of the other, by their names in the
   !> deck.
   character(len=*), parameter, public :: damage_names(*) = [character(len=15) :: 'd', 'e', 'criteria', 'stress', &
     'in_situ', 'permanent_shear', 'crack_closure']

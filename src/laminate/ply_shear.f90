@@ -1,9 +1,9 @@
 !> Transverse shear stresses of plies by equilibrium through the thickness, averaged over each ply.
 !>
 !> The stresses are those of the intact laminate under its shear forces (see `transverse_shear`). Where a stack is
-!> divided into layers, the plies of a layer share its force in the proportions that they have in the laminate. That is
-!> equilibrium where layers are joined. Where their faces are free, the largest stress in a layer of several plies is
-!> too low by a third at most.
+!> divided into layers, the shear force of a layer is distributed over its plies in the proportions of the laminate.
+!> This satisfies equilibrium where layers are joined. Where their faces are free, the largest stress in a layer of
+!> several plies is too low by a third at most.
 module ply_shear
   use kinds, only: wp
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
@@ -12,9 +12,9 @@ module ply_shear
   private
   public :: shear_shares_of, shear_of_plies
 
-  !> Smallest ratio of the determinant of a layer's response to unit forces to the product of its diagonal at which its
-  !> plies share the laminate's response. It is 1 without coupling between the directions. Its inverse is how far
-  !> coupling amplifies the shares of plies; beyond ten a uniform stress is as good.
+  !> Smallest ratio of the determinant of a layer's response to unit forces to the product of its diagonal at which the
+  !> force is distributed over its plies in the proportions of the laminate. The ratio is 1 without coupling between the
+  !> directions. Coupling amplifies the shares of the plies by its inverse; beyond ten a uniform stress is as good.
   real(wp), parameter :: min_determinant = 0.1_wp
 
 contains
@@ -39,11 +39,11 @@ contains
     end do
   end function shear_shares_of
 
-  !> Mean tau_xz and tau_yz of the plies of a layer, or of the whole laminate, that add up to its shear force.
+  !> Mean tau_xz and tau_yz of the plies of a layer, or of the whole laminate, whose integral is its shear force.
   pure function shear_of_plies(plies, shares, force) result(stress)
     !> The plies
     type(ply_t), intent(in) :: plies(:)
-    !> Theirs of shear_shares_of
+    !> Their part of the result of shear_shares_of
     real(wp), intent(in) :: shares(:, :, :)
     !> Qx and Qy of the layer, per length
     real(wp), intent(in) :: force(2)

@@ -1,4 +1,4 @@
-!> Strains of one ply of an element, as its damage sees them: means over its volume, and means of squares.
+!> Strains of one ply of an element that determine its damage: means over its volume, and means of squares.
 module ply_strains
   use crack_bands, only: band_strains_t
   use kinds, only: wp
@@ -7,14 +7,14 @@ module ply_strains
   private
   public :: strain_moments_t, strain_moments, strains_of_ply, values_of, moments_from
 
-  !> Numbers that the means are
+  !> Number of values of the means.
   integer, parameter, public :: moment_values = 33
 
   !> Means over an element's area.
   type :: strain_moments_t
     !> Strains exx, eyy, gxy, kxx, kyy, kxy
     real(wp) :: mean(6) = 0
-    !> Products of membrane strains, of both kinds, and of curvatures
+    !> Products of membrane strains, of membrane strains and curvatures, and of curvatures
     real(wp) :: membrane(3, 3) = 0, mixed(3, 3) = 0, curvature(3, 3) = 0
   end type strain_moments_t
 

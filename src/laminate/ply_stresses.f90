@@ -1,4 +1,4 @@
-!> Stresses of one ply in its material axes from the strains of the plate.
+!> Stresses of one ply in its material axes from the strains of the plate, theory (M1) and (M2).
 !>
 !> In-plane stresses are those of the ply's own strain, exx + z kxx and so on. The transverse shear stresses are
 !> averages over the ply, by equilibrium (see `ply_shear`): in a plate of one ply the true peak is 3/2 of them.
@@ -13,7 +13,7 @@ contains
 
   !> Stresses of a ply at a height.
   pure function ply_stress(ply, elasticity, strains, shear, z) result(stress)
-    !> The ply, for its angle and its strains without stress
+    !> The ply, for its angle and its stress-free strains
     type(ply_t), intent(in) :: ply
     !> Its present elastic constants
     type(elasticity_t), intent(in) :: elasticity

@@ -9,8 +9,9 @@ module shear_corrections
   private
   public :: natural_correction, shear_contrast, shear_excess
 
-  !> Ratio of the plies' shear moduli beyond which one shear strain for all plies is no approximation any more. Plies of
-  !> one fibre composite differ by G13/G23, which is below 3; foam and honeycomb differ from their skins by 30 and more.
+  !> Ratio of the plies' shear moduli beyond which one shear strain for all plies is not accurate. The shear moduli of
+  !> plies of one fibre composite differ by G13/G23, which is below 3; foam and honeycomb differ from their skins by a
+  !> factor of 30 and more.
   real(wp), parameter :: max_contrast = 10
 
 contains

@@ -1,4 +1,5 @@
-!> From a stacking sequence to the stiffness and mass of a section of the plate, or of a layer of some of its plies.
+!> From a stacking sequence to the stiffness and mass of a section of the plate, theory (P4) to (P7), or of a layer of
+!> some of its plies.
 module stacking
   use kinds, only: wp
   use laminate_parameters, only: laminate_t, shear_energy
@@ -11,7 +12,7 @@ module stacking
 
   !> A section of the laminate, or of a layer of it, per unit of area; z from the mid-plane of the whole laminate.
   type :: section_t
-    !> A(11, 12, 16, 22, 26, 66), B and D alike, S(xz-xz, xz-yz, yz-yz)
+    !> A(11, 12, 16, 22, 26, 66), B and D likewise, S(xz-xz, xz-yz, yz-yz)
     real(wp) :: stiffness(21) = 0
     !> Integrals of density, density z and density z**2
     real(wp) :: mass(3) = 0
@@ -86,9 +87,9 @@ contains
   end function section_stiffness
 
   !> Stiffness of a layer of some of a laminate's plies, whose elastic constants may have been reduced. Within the
-  !> laminate its faces carry shear: with shear_energy its stiffness is that of the laminate's equilibrium. A layer in
-  !> which those stresses cancel would have none; below sqrt(epsilon) of the stiffness with free faces, which leaves
-  !> solutions half of their digits, it has the latter.
+  !> laminate the faces of a layer carry shear stress: with shear_energy its stiffness is that of the laminate's
+  !> equilibrium, theory (P6). It would vanish for a layer in which those stresses cancel; below sqrt(epsilon) of the
+  !> stiffness with free faces, with which solutions still have half of their digits, the latter is used.
   pure function layer_stiffness(plies, elasticity, first, last, shear_correction) result(stiffness)
     !> All plies of the laminate
     type(ply_t), intent(in) :: plies(:)

@@ -6,13 +6,13 @@ module stacking_sequences
   private
   public :: read_sequence
 
-  !> Most plies of a laminate.
+  !> Largest number of plies of a laminate.
   integer, parameter, public :: max_plies = 1000
-  !> Largest size of an angle, degrees: a full turn.
+  !> Largest magnitude of an angle, degrees: a full turn.
   real(wp), parameter :: max_degrees = 360
   !> Largest plausible angle; a larger number may be a lost subscript, as in 302 for 30_2.
   real(wp), parameter, public :: usual_degrees = 180
-  !> How plies of one angle are counted.
+  !> Explanation of the notation for several plies of one angle.
   character(len=*), parameter, public :: count_hint = 'a count of plies follows _, as in 0_2'
   character(len=*), parameter :: digits = '0123456789'
   !> The signs of a pair of plies as one character of UTF-8, and the minus of typesetters.
@@ -123,7 +123,7 @@ contains
     call read_suffix(reader, angles, barred)
   end subroutine read_item
 
-  !> Counts, s and T behind a bracket, carried out as they come: 2s repeats, then mirrors.
+  !> Counts, s and T behind a bracket, applied in their order: 2s repeats, then mirrors.
   pure subroutine read_suffix(reader, angles, barred)
     !> Where to read
     type(reader_t), intent(inout) :: reader

@@ -34,7 +34,8 @@ contains
     change = settings%real_of(thermal_group, 'delta_T')
   end subroutine fill_thermal
 
-  !> A change of temperature without effect, or with strains that are not small, as of expansions in 1e-6 per degree.
+  !> Warns of a change of temperature without effect, or with strains that are not small, as when expansions are given
+  !> in 1e-6 per degree.
   subroutine check_thermal(settings, materials, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -52,8 +53,8 @@ contains
       do direction = 1, 2
         if (abs(change*materials(i)%expansion(direction)) > largest_strain) &
           call remark(settings, problems, material_group, merge('alpha1', 'alpha2', direction == 1), &
-                      'strains free plies by '//rounded_text(change*materials(i)%expansion(direction))// &
-                      ' with delta_T, and the model assumes small strains; it is per degree, as 28e-6.', i)
+                      'causes a free strain of '//rounded_text(change*materials(i)%expansion(direction))// &
+                      ' with delta_T, but the model assumes small strains; give it per degree, such as 28e-6.', i)
       end do
     end do
   end subroutine check_thermal

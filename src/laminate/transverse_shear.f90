@@ -1,12 +1,11 @@
 !> Transverse shear stiffness of a stack of plies from the energy of its equilibrium stresses.
 !>
 !> The shear stresses follow from integrating equilibrium through the thickness for moments that vary as in two
-!> cylindrical bendings, Mx,x = Qx and My,y = Qy, without membrane forces (Rolfes and Rohwer, Improved transverse
-!> shear stresses in composite finite elements based on first order shear deformation theory, International
-!> Journal for Numerical Methods in Engineering 40, 1997; on symmetric cross-plies the same as Whitney 1973 and
-!> Rohwer 1988). Their complementary energy equals that of the mean shear strain, Q S**-1 Q / 2. Both faces of the
-!> stack are taken as free of shear. The stresses add up to the shear forces, so S never exceeds the sum of G dz and is
-!> positive definite for any plies that are. The result does not depend on where z starts.
+!> cylindrical bendings, Mx,x = Qx and My,y = Qy, without membrane forces (R. Rolfes, K. Rohwer, Int. J. Numer. Meth.
+!> Eng. 40 (1997) 51-60; for symmetric cross-plies the same as Whitney 1973 and Rohwer 1988). Their complementary energy
+!> equals that of the mean shear strain, Q S**-1 Q / 2, theory (P5). Both faces of the stack are taken as free of shear.
+!> The integral of the stresses is the shear force, so S never exceeds the sum of G dz, and it is positive definite if
+!> the stiffness of the plies is. The result does not depend on the origin of z.
 module transverse_shear
   use kinds, only: wp
   use packed_matrices, only: unpacked, inverse, inverse_of_two
@@ -37,9 +36,9 @@ contains
     stiffness = inverse_of_two(compliance)
   end function shear_stiffness_from_energy
 
-  !> Energy-consistent transverse shear stiffness of a layer within the stack, whose faces are not free of shear: of the
-  !> shear forces Q of the stack it carries T Q and has the complementary energy Q E Q / 2, so that its stiffness is
-  !> T E**-1 T'. By Schwarz's inequality it does not exceed the sum of G dz over the layer.
+  !> Energy-consistent transverse shear stiffness of a layer within the stack, whose faces are not free of shear, theory
+  !> (P6): of the shear forces Q of the stack it carries T Q and has the complementary energy Q E Q / 2, so that its
+  !> stiffness is T E**-1 T'. By Schwarz's inequality it does not exceed the sum of G dz over the layer.
   pure function layer_stiffness_from_energy(z, in_plane, shear, first, last) result(stiffness)
     !> z of the plies' faces, top of the first to bottom of the last, from any origin
     real(wp), intent(in) :: z(0:)
@@ -77,7 +76,7 @@ contains
     real(wp) :: constant(3, 2), slope(3, 2), flow(2, 2), flow_here(2, 2)
     integer :: ply, point
 
-    ! From the middle of this stack, so that a thin layer far from the laminate's mid-plane loses no digits.
+    ! Relative to the middle of this stack, so that a thin layer far from the laminate's mid-plane loses no digits.
     middle = (z(0) + z(ubound(z, 1)))/2
     call strains_of_unit_shear(z - middle, in_plane, constant, slope)
     flow = 0
@@ -129,7 +128,8 @@ contains
     end do
   end subroutine find_unit_stresses
 
-  !> Growth of the in-plane strain, constant + slope z, along x for Qx = 1 (column 1) and along y for Qy = 1 (column 2).
+  !> Derivative of the in-plane strain, constant + slope z, along x for Qx = 1 (column 1) and along y for Qy = 1 (column
+  !> 2).
   pure subroutine strains_of_unit_shear(z, in_plane, constant, slope)
     !> z of the plies' faces
     real(wp), intent(in) :: z(0:)
@@ -160,8 +160,9 @@ contains
     constant = -matmul(release, slope)
   end subroutine strains_of_unit_shear
 
-  !> Shear flow gathered between two heights of one ply: integral of the stress growth that equilibrium turns into
-  !> (tau_xz, tau_yz), columns for Qx = 1 and Qy = 1. The sign is left out, the energy does not see it.
+  !> Shear flow between two heights of one ply: integral of the derivatives of the in-plane stresses, which by
+  !> equilibrium is (tau_xz, tau_yz), columns for Qx = 1 and Qy = 1. The sign is omitted, as the energy does not depend
+  !> on it.
   pure function flow_between(from, to, q, constant, slope) result(flow)
     !> z where the integral starts
     real(wp), intent(in) :: from

@@ -110,7 +110,7 @@ contains
 
     select case (outcome)
     case (factor_singular)
-      sentence = 'The stiffness matrix is singular: a part of the plate can move freely.'
+      sentence = 'The stiffness matrix is singular: a part of the plate can move without resistance.'
     case (factor_not_positive)
       sentence = 'The stiffness matrix is singular or not positive definite.'
     case default

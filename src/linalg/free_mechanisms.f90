@@ -10,13 +10,14 @@ module free_mechanisms
   private
   public :: has_mechanism
 
-  !> Inverse of an eigenvalue that consists of rounding errors: five times the precision of 2.2e-16, as the matrix is
-  !> scaled to a diagonal of 1
+  !> Growth of a vector in one inverse iteration, the inverse of the smallest eigenvalue, above which this eigenvalue is
+  !> round-off: five times the precision of 2.2e-16, as the matrix is scaled to a diagonal of 1
   real(wp), parameter :: largest_growth = 1e15_wp
 
 contains
 
-  !> True if a part of the structure can move freely. Two solves for a first factor, one for later ones. Collective.
+  !> True if a part of the structure can move without resistance. Two solves for the first factor, one for later ones.
+  !> Collective.
   logical function has_mechanism(communicator, solver, matrix, mode) result(found)
     !> All ranks
     type(communicator_t), intent(in) :: communicator

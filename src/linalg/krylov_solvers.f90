@@ -47,7 +47,7 @@ module krylov_solvers
     logical :: defined = .false.
     !> Iterations of the last solve
     integer :: iterations = 0
-    !> True: the last solve reached its tolerance, or met a direction of negative curvature and stopped before it
+    !> True: the last solve reached its tolerance, or ended before a direction of negative curvature
     logical :: converged = .false., indefinite = .false.
     !> PETSc's solver
     type(tKSP), private :: solver
@@ -134,8 +134,8 @@ contains
     self%defined = .true.
   end subroutine define
 
-  !> Solves to a tolerance, or as far as the largest dimension of the space reaches. After a product that failed the
-  !> solver has to be defined anew. Collective.
+  !> Solves to a tolerance, or until the Krylov space has its largest dimension. If a product fails, the solver must be
+  !> defined again. Collective.
   subroutine solve(self, system, row_factors, right_hand_side, tolerance, solution, error)
     !> The solver
     class(krylov_solver_t), intent(inout) :: self

@@ -16,7 +16,7 @@ module linear_solvers
   private
   public :: linear_solver_t
 
-  !> The two factors that a solver may have, and what options for each begin with
+  !> The two factorizations that a solver may have, and the prefixes of the options for each
   integer, parameter :: definite = 1, indefinite = 2
   character(len=11), parameter :: prefixes(2) = [character(len=11) :: '', 'indefinite_']
 
@@ -54,7 +54,7 @@ module linear_solvers
     procedure :: solve
     !> Size of the factor, the same on every rank.
     procedure :: statistics
-    !> Name of what factors the matrix, and how often something else had to.
+    !> Name of the package that factorizes the matrix, and the number of factorizations by the second package.
     procedure :: package_used
     !> Deallocates matrix and factors.
     procedure :: release
@@ -156,7 +156,7 @@ contains
     real(wp), intent(in) :: right_hand_side(:)
     !> Owned part of the solution
     real(wp), intent(out) :: solution(:)
-    !> Raised on all ranks when there is no finite solution, which PETSc does not always say
+    !> Raised on all ranks when the solution is not finite, which PETSc does not always report
     type(error_t), allocatable, intent(inout) :: error
     integer :: reason, ierr(4)
 

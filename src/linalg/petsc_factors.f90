@@ -17,15 +17,15 @@ module petsc_factors
   !> PETSC_ERR_LIB, for lack of memory
   integer, parameter :: bad_pivot = 81, no_memory(*) = [55, 76]
 
-  !> Room beyond MUMPS' estimate in %, ICNTL(14): its own choice and, as its users' guide advises after a failure for
-  !> lack of room, more: twice and five times the estimate
+  !> Memory beyond MUMPS' estimate in %, ICNTL(14): MUMPS' default and, as its users' guide advises after a failure for
+  !> lack of memory, twice and five times the estimate
   integer, parameter :: usual_margin = -1, larger_margins(*) = [100, 400]
 
-  !> A factor and what makes it.
+  !> A factorization of PETSc and its settings.
   type :: petsc_factor_t
     !> True between `define` and `release`
     logical :: defined = .false.
-    !> PETSc's name of the package; empty: none, by options of the user
+    !> PETSc's name of the package; empty: the package is chosen by the user's options
     character(len=:), allocatable :: package
     !> True: one rank factorizes and solves for all of them
     logical, private :: gathered = .false.
@@ -153,8 +153,8 @@ contains
     ierr = maxval(codes)
   end subroutine gather_on_one_rank
 
-  !> Factorizes on the rank that solves for all, before the first solve: a failure within the solve would leave the
-  !> other ranks waiting.
+  !> Factorizes on the rank that solves for all, before the first solve: after a failure within the solve the other
+  !> ranks would wait forever.
   subroutine factorize_gathered(self, ierr)
     class(petsc_factor_t), intent(in) :: self
     !> PETSc's code
@@ -213,7 +213,7 @@ contains
       ! The factors are kept until the next call of this procedure, also while new values are assembled.
       call KSPSetReusePreconditioner(self%solver, PETSC_TRUE, ierr)
     else
-      ! After a failure the packages refuse to go on with the factor that they have.
+      ! After a failure the packages do not accept the existing factor again.
       call self%renew(matrix, usual_margin, error)
     end if
   end subroutine factorize
@@ -234,7 +234,7 @@ contains
     lacks_memory = .false.
     outcome = factor_succeeded
     call KSPSetReusePreconditioner(self%solver, PETSC_FALSE, ierr(1))
-    ! Setting the same matrix again makes the solver check whether its values have changed.
+    ! The same matrix is set again, so that the solver checks whether its values have changed.
     call KSPSetOperators(self%solver, matrix, matrix, ierr(2))
     call KSPSetUp(self%solver, ierr(3))
     if (self%gathered .and. ierr(3) == 0) call self%factorize_gathered(ierr(3))

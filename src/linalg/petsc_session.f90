@@ -42,7 +42,7 @@ module petsc_session
       import :: c_int
     end function quiet_handler
 
-    !> OpenMP: how deep parallel regions may be nested; 0: none are parallel.
+    !> OpenMP: largest depth of nested parallel regions; 0: none are parallel.
     subroutine limit_parallel_regions(levels) bind(c, name='omp_set_max_active_levels')
       import :: c_int
       !> The limit
@@ -89,8 +89,8 @@ contains
     call communicator%agree(error)
   end subroutine start_petsc
 
-  !> Limits OpenMP to one thread per rank, unless the environment requests more. CHOLMOD before SuiteSparse 6 otherwise
-  !> uses four, whatever the environment requests, for loops too short for threads.
+  !> Limits OpenMP to one thread per rank, unless the environment requests more. Otherwise CHOLMOD before SuiteSparse 6
+  !> uses four threads, whatever the environment requests, for loops too short to benefit.
   subroutine set_threads()
     character(len=8) :: threads
     integer :: length

@@ -20,7 +20,7 @@ module cell_grids
     integer :: struck_node = 0
     !> Models that make up the full plate: 4 for a quarter
     integer :: multiplicity = 1
-    !> Directions along which the model begins at the plate's centre, and in which it is mirrored there
+    !> True along directions in which the model begins at the plate's centre, and in which it is mirrored there
     logical :: halved(2) = .false., mirrored(2) = .false.
   contains
     !> Number of nodes.
@@ -30,7 +30,7 @@ module cell_grids
     procedure :: cell_area
     !> True where a cell lies under the loaded patch.
     procedure :: in_patch
-    !> On which side a cell borders on a line through the struck point.
+    !> Side on which a cell borders on a line through the struck point.
     procedure :: struck_side
     !> Node with the same motion as a given node on the cut line of point symmetry.
     procedure :: turned_node
@@ -134,7 +134,7 @@ contains
     end associate
   end function fewest_elements
 
-  !> True: the core is in the middle, with as many elements on both sides.
+  !> True: the core is in the middle, with equal numbers of elements on both sides.
   pure logical function needs_even_elements(plate, mesh, direction) result(even)
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
@@ -148,8 +148,8 @@ contains
     even = mesh%cell > 0 .and. .not. abs(mesh%struck(direction)) > 0 .and. .not. halved(direction)
   end function needs_even_elements
 
-  !> Nodes at the edges and centres of the cells. The struck node is on the line next to the struck point, which has a
-  !> line on every valid mesh.
+  !> Nodes at the edges and centres of the cells. The struck node is on the line closest to the struck point; every
+  !> valid mesh has a line through this point.
   pure subroutine place_nodes(self)
     !> The grid, with its edges known
     class(cell_grid_t), intent(inout) :: self
@@ -172,7 +172,7 @@ contains
   pure subroutine edges_and_middles(edges, coordinates)
     !> Edges, (0:cells)
     real(wp), intent(in) :: edges(0:)
-    !> Edges and middles, one a line of nodes
+    !> Edges and middles, one per line of nodes
     real(wp), intent(out) :: coordinates(0:)
 
     coordinates(0::2) = edges
@@ -208,8 +208,8 @@ contains
     area = product(self%cell_sides(place))
   end function cell_area
 
-  !> Image of a node on the cut line of point symmetry: at (0, -y) for (0, y). There w is the same; in-plane
-  !> displacements and rotations have the opposite sign. The centre is its own image; other nodes have none, 0.
+  !> Image of a node on the cut line of point symmetry: the image of (0, y) is (0, -y). Both have the same w; in-plane
+  !> displacements and rotations have the opposite sign. The centre is its own image; other nodes have no image, 0.
   pure integer function turned_node(self, node) result(image)
     !> The grid
     class(cell_grid_t), intent(in) :: self
@@ -247,8 +247,8 @@ contains
     in_patch = all(abs(self%node_coordinates(:, nodes(5)) - self%struck) < patch/2)
   end function in_patch
 
-  !> Along x and y: -1 where a cell borders with its lower side on the line across that direction through the struck
-  !> point, 1 where with its upper one, 0 elsewhere.
+  !> Along x and y: -1 where the lower side of a cell lies on the line through the struck point normal to that
+  !> direction, 1 where its upper side does, 0 elsewhere.
   pure function struck_side(self, place) result(side)
     !> The grid
     class(cell_grid_t), intent(in) :: self

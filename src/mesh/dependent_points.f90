@@ -1,5 +1,5 @@
-!> Points constrained to the motion of others: on the cut line of point symmetry, and on all of a full plate that keeps
-!> its symmetry.
+!> Points constrained to the motion of others: points on the cut line of point symmetry, and all points of a full plate
+!> whose symmetry is enforced.
 module dependent_points
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -13,7 +13,7 @@ module dependent_points
 
 contains
 
-  !> Finds the master of each point. Components that a point at the centre would reverse are fixed.
+  !> Finds the master of each point. Components that symmetry would reverse at a point on the centre are fixed.
   pure subroutine find_masters(mesh, master, signs, fixed, images)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

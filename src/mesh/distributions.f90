@@ -41,7 +41,7 @@ contains
     type(distribution_t), intent(out) :: self
     !> Set if METIS fails
     type(error_t), allocatable, intent(out) :: error
-    !> First of the images of each cell, itself among them, which all go to one rank; left out: cells have none
+    !> First of the images of each cell, including itself, which are all assigned to one rank; left out: no images
     integer, intent(in), optional :: first_image(:)
     integer :: owner(mesh%points()), first(product(mesh%cells))
     integer, allocatable :: part(:)
@@ -63,13 +63,13 @@ contains
     end do
   end subroutine distribute
 
-  !> Distributes cells over ranks, weighted by their elements; images of each other go to one rank.
+  !> Distributes cells over ranks, weighted by their elements; images of each other are assigned to one rank.
   subroutine partition_cells(mesh, ranks, first, part, error)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Number of ranks
     integer, intent(in) :: ranks
-    !> First of the images of each cell, itself among them
+    !> First of the images of each cell, including itself
     integer, intent(in) :: first(:)
     !> Rank of each cell
     integer, allocatable, intent(out) :: part(:)

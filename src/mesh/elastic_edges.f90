@@ -10,7 +10,7 @@ module elastic_edges
 
   !> A spring on the side of a cell.
   type :: edge_spring_t
-    !> Which of the cell's nine nodes lie on that side
+    !> The three of the cell's nine nodes on that side
     integer :: nodes(3) = 0
     !> Weights of their unknowns
     real(wp) :: weights(3) = 0

@@ -1,5 +1,5 @@
-!> Element edges along one side of the plate: the loaded patch is an exact number of elements, sizes
-!> outside grow geometrically. A core of equal elements around the patch gives a front that moves in it equal steps.
+!> Element edges along one side of the plate: the loaded patch consists of entire elements, and sizes outside increase
+!> geometrically. With a core of equal elements around the patch a front grows there in equal steps.
 module gradings
   use kinds, only: wp
   use roundings, only: rounding
@@ -7,8 +7,8 @@ module gradings
   private
   public :: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
 
-  !> Fraction of an element by which a tie between two numbers of elements is resolved to the larger one in all units:
-  !> above round-off, at most 1e-10 with 1e6 elements.
+  !> Fraction of an element within which the larger of two numbers of elements is chosen if both fit equally well, in
+  !> all units: above round-off, at most 1e-10 with 1e6 elements.
   real(wp), parameter :: tie = 1.0e-9_wp
 
 contains
@@ -47,7 +47,7 @@ contains
     real(wp), intent(in) :: grading
     !> Half the extent of the core, less than half_length
     real(wp), intent(in) :: half_core
-    !> Side of its elements; patch and core become whole numbers of about this size
+    !> Side of its elements; patch and core are divided into entire elements of about this size
     real(wp), intent(in) :: cell
     !> Ascending coordinates of the element edges, (0:elements)
     real(wp) :: edges(0:elements)
@@ -65,7 +65,8 @@ contains
     edges(sum(counts):) = outer_edges(edges(sum(counts)), half_length, elements - sum(counts), cell, grading)
   end function cored_half_line
 
-  !> Numbers of elements on half the patch and from there to the border of the core, at least one where there is length.
+  !> Numbers of elements on half the patch, and from there to the border of the core; at least one where the length is
+  !> not zero.
   pure function core_elements(half_patch, half_core, cell) result(counts)
     !> Half the side of the loaded patch; 0: none
     real(wp), intent(in) :: half_patch
@@ -123,7 +124,7 @@ contains
     real(wp), intent(in) :: grading
     !> Extent of the core; 0: the patch alone
     real(wp), intent(in) :: core
-    !> Side of its elements; 0: as many elements on the patch as it has of the length
+    !> Side of its elements; 0: the patch has the fraction of the elements that it has of the length
     real(wp), intent(in) :: cell
     !> The struck point, from the middle
     real(wp), intent(in) :: struck
@@ -149,15 +150,15 @@ contains
     edges(low:0:-1) = struck - cored_half_line(length/2 + struck, low, patch/2, grading, core/2, side)
   end function off_centre_line
 
-  !> Moves edges to required coordinates: the nearest edge is moved, of equally near ones that next to the middle of the
-  !> plate, so that both sides of it have the same mesh. Edges up to the next fixed edge on either side are scaled
-  !> uniformly. A coordinate without a free edge is left out.
+  !> Moves edges to required coordinates. The nearest edge is moved; among equally near ones that closest to the centre
+  !> of the plate, so that the mesh is the same on both sides of it. Edges up to the next fixed edge on either side are
+  !> scaled uniformly. A coordinate without a free edge is ignored.
   pure subroutine move_to_lines(edges, kept, lines)
     !> Ascending coordinates of the element edges
     real(wp), intent(inout) :: edges(0:)
-    !> Coordinates of edges that stay, besides the first and last one
+    !> Coordinates of edges that are not moved, besides the first and last one
     real(wp), intent(in) :: kept(:)
-    !> Coordinates to meet; those beyond the edges are left out
+    !> Required coordinates; those beyond the edges are ignored
     real(wp), intent(in) :: lines(:)
     logical :: fixed(0:ubound(edges, 1))
     real(wp) :: distance, gaps(0:ubound(edges, 1))
@@ -182,20 +183,20 @@ contains
 
   contains
 
-    !> Edges moved in proportion to their distance from one that stays.
+    !> Edges moved in proportion to their distance from a fixed one.
     pure function between(stays, moves, old) result(new)
-      !> The edge that stays, and the one that moves to the line
+      !> The fixed edge, and the one that is moved to the line
       real(wp), intent(in) :: stays, moves
       !> Edges between them
       real(wp), intent(in) :: old(:)
-      !> Where they go
+      !> Their new coordinates
       real(wp) :: new(size(old))
 
       new = stays + (old - stays)*((lines(i) - stays)/(moves - stays))
     end function between
   end subroutine move_to_lines
 
-  !> Number of elements across the patch: as near as can be to the mean element size, at least one.
+  !> Number of elements across the patch, at least one: their size is as close as possible to the mean element size.
   pure integer function patch_elements(patch, length, elements, stride) result(inside)
     !> Extent of the patch; 0: none
     real(wp), intent(in) :: patch
@@ -203,7 +204,7 @@ contains
     real(wp), intent(in) :: length
     !> Elements along the line
     integer, intent(in) :: elements
-    !> 1: any number will do; 2: as odd or even as `elements`
+    !> 1: any number; 2: even if `elements` is even, odd if it is odd
     integer, intent(in) :: stride
     integer :: offset, most
 

@@ -1,4 +1,4 @@
-!> Map from the unknowns of stacked layers to their motion.
+!> Map from the unknowns of stacked layers to their motion, theory (P9).
 !>
 !> The first layer of a node has u, v, w, theta_x, theta_y. A layer below has the jumps of the three displacements
 !> across the interface above it, and its own rotations. Ties are then jumps constrained to zero, a gap is one unknown,
@@ -123,14 +123,14 @@ contains
     expanded = times_map(self, points, transpose(times_map(self, points, matrix, columns)), columns)
   end subroutine expand
 
-  !> Matrix times the map from unknowns to motion. A motion is its own unknowns and the motion above, so that
-  !> no product of matrices is needed.
+  !> Matrix times the map from unknowns to motion. The motion of a layer is that of the layer above plus its own
+  !> unknowns, so that no product of matrices is needed.
   pure function times_map(self, points, matrix, count) result(product)
     !> The map
     class(layer_map_t), intent(in) :: self
     !> Points of the columns of the matrix
     integer, intent(in) :: points(:)
-    !> Matrix, five columns a point
+    !> Matrix, five columns per point
     real(wp), intent(in) :: matrix(:, :)
     !> Number of these points and of those above them
     integer, intent(in) :: count

@@ -1,5 +1,5 @@
 !> The mesh of the modelled part: a grid of cells, and over each cell the layers of plies that may separate there. Every
-!> rank has the complete mesh; it is small compared with a factor.
+!> rank has the complete mesh, which is small compared with a factor.
 module layered_meshes
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t

@@ -1,5 +1,6 @@
-!> Lengths that intervals of one line have in common with those of another: cells, or the parts of cells that belong to
-!> their nodes. Lines of a halved model continue on the other side of the cut by their images.
+!> Common lengths of the intervals of two divisions of one line, where intervals are cells or the parts of cells
+!> assigned to their nodes; theory (D14). A line halved by symmetry is continued on the other side of the cut by its
+!> image.
 module line_overlaps
   use kinds, only: wp
   use roundings, only: rounding
@@ -7,23 +8,23 @@ module line_overlaps
   private
   public :: line_overlap_t, node_bounds, overlaps_of, unfolded
 
-  !> Intervals of a line that an interval of another has a length in common with.
+  !> Intervals of the other division that have a length in common with an interval.
   type :: line_overlap_t
     !> Their numbers, from 1
     integer, allocatable :: interval(:)
-    !> True: it is the image of that interval
+    !> True: the interval is an image
     logical, allocatable :: turned(:)
     !> Lengths in common
     real(wp), allocatable :: length(:)
   end type line_overlap_t
 
-  !> Part of a cell's side that belongs to the nodes at its ends, each: the integral of their quadratic.
+  !> Fraction of a cell's side that is assigned to each node at its ends: the integral of its quadratic shape function.
   real(wp), parameter :: end_part = 1.0_wp/6.0_wp
 
 contains
 
-  !> Bounds of the parts of a line that belong to its nodes, (nodes + 1). A line that begins on a cut begins with the
-  !> whole part of the node there.
+  !> Bounds of the parts of a line that are assigned to its nodes, (nodes + 1). For a line that begins on a cut, the
+  !> part of the first node includes its image.
   pure function node_bounds(edges, halved) result(bounds)
     !> Edges of the cells, ascending
     real(wp), intent(in) :: edges(:)
@@ -56,11 +57,11 @@ contains
     if (halved) whole = [-bounds(size(bounds):2:-1), 0.0_wp, bounds(2:)]
   end function unfolded
 
-  !> Overlaps of the intervals of a line with those of another.
+  !> Overlaps of the intervals of one division of a line with those of another.
   pure function overlaps_of(bounds, others, halved) result(overlaps)
-    !> Ascending bounds of the intervals, and of those of the other line; the latter from 0 if halved
+    !> Ascending bounds of the intervals, and of those of the other division; the latter from 0 if halved
     real(wp), intent(in) :: bounds(:), others(:)
-    !> True: the other line begins on a cut at 0 and continues by its image
+    !> True: the other division begins on a cut at 0 and is continued by its image
     logical, intent(in) :: halved
     !> (intervals)
     type(line_overlap_t) :: overlaps(size(bounds) - 1)

@@ -15,13 +15,13 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> Equation (from 0) of every unknown of the mesh; -1: fixed, (5, points)
     integer, intent(in) :: equation(:, :)
-    !> Node of each row; rows of a node that follow each other are taken as alike
+    !> Node of each row; consecutive rows of one node have the same columns
     integer, intent(in) :: nodes(:)
     !> Start of each row, from 1, (rows + 1)
     integer, allocatable, intent(out) :: row_start(:)
     !> Columns, from 0, ascending in each row
     integer, allocatable, intent(out) :: columns(:)
-    !> True: points anywhere have the equations of their images
+    !> True: points may have the equations of their images, everywhere in the plate
     logical, intent(in) :: folded
     integer, allocatable :: around(:)
     integer :: row, node, width
@@ -51,7 +51,7 @@ contains
     integer, intent(in) :: equation(:, :)
     !> The node
     integer, intent(in) :: node
-    !> True: points anywhere have the equations of their images
+    !> True: points may have the equations of their images, everywhere in the plate
     logical, intent(in) :: folded
     integer, allocatable :: list(:)
     integer :: lines, first(5), last(5), line
@@ -69,7 +69,7 @@ contains
   end function columns_around
 
   !> True for a node that shares a cell with the cut of a plate with point symmetry: equations may occur twice around
-  !> it, and those around its image are coupled, too.
+  !> this node, and the equations around its image are coupled, too.
   pure logical function near_cut(mesh, node)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -89,7 +89,7 @@ contains
     integer, intent(in) :: equation(:, :)
     !> The node
     integer, intent(in) :: node
-    !> True: points anywhere have the equations of their images
+    !> True: points may have the equations of their images, everywhere in the plate
     logical, intent(in) :: folded
     !> Equations, from 0, (`columns_around` of them)
     integer, allocatable, intent(out) :: columns(:)
@@ -154,7 +154,7 @@ contains
     end do
   end subroutine find_points_around
 
-  !> Sorts a short list that is made of few ascending runs (insertion, which is linear for such).
+  !> Sorts a short list that consists of few ascending runs by insertion, which is linear for such lists.
   pure subroutine sort(list)
     !> The list
     integer, intent(inout) :: list(:)

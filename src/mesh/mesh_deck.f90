@@ -15,8 +15,8 @@ module mesh_deck
   character(len=*), parameter, public :: mesh_group = 'mesh', key_elements = 'elements', key_patch = 'patch', &
                                          key_core = 'core', key_cell = 'cell', key_grading = 'grading'
   character(len=*), parameter, public :: key_lines(2) = ['lines_x', 'lines_y']
-  !> Most elements: a matrix of 20 unknowns an element and about 40 entries a row in a triangle has 8e8, and default
-  !> integers reach 2.1e9.
+  !> Largest number of elements: with 20 unknowns per element and about 40 entries per row, the upper triangle of the
+  !> matrix has 8e8 entries, and default integers reach 2.1e9.
   real(wp), parameter, public :: max_elements = 1.0e6_wp
   !> Row of the group.
   character(len=group_row_length), parameter, public :: mesh_group_row = &
@@ -57,7 +57,7 @@ contains
 
   contains
 
-    !> Takes coordinates on both sides of the centre.
+    !> Reads coordinates on both sides of the centre.
     subroutine take_lines(key, lines)
       !> The key
       character(len=*), intent(in) :: key
@@ -70,7 +70,7 @@ contains
     end subroutine take_lines
   end subroutine fill_mesh
 
-  !> Number of elements, grading, and keys that go together.
+  !> Checks the number of elements, the grading, and keys that require each other.
   subroutine check_mesh(settings, mesh, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -85,9 +85,9 @@ contains
       'the largest edge is not smaller than the smallest; allowed: 0 or >= 1.')
     if (.not. are_clear(settings, problems, mesh_group, key_core//' '//key_cell)) return
     if (settings%is_given(mesh_group, key_core) .and. .not. settings%is_known(mesh_group, key_cell)) then
-      call report(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` go together.')
+      call report(settings, problems, mesh_group, key_cell, 'is missing; `core` and `cell` require each other.')
     else if (settings%is_given(mesh_group, key_cell) .and. .not. settings%is_known(mesh_group, key_core)) then
-      call report(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` go together.')
+      call report(settings, problems, mesh_group, key_core, 'is missing; `core` and `cell` require each other.')
     end if
   end subroutine check_mesh
 end module mesh_deck

@@ -10,7 +10,7 @@ module mesh_parameters
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
-  !> Modelled parts of the plate: all; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 with point symmetry.
+  !> Modelled parts of the plate: the full plate; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 with point symmetry.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
 
@@ -24,13 +24,13 @@ module mesh_parameters
     real(wp) :: edge_stiffness(2) = 0
     !> True: supported edges also fix the in-plane displacements
     logical :: in_plane_fixed = .true.
-    !> Amplitude of the shape without stress; 0: the plate is flat
+    !> Amplitude of the stress-free initial deflection; 0: the plate is flat
     real(wp) :: imperfection = 0
-    !> Half waves of this shape along x and y
+    !> Number of half waves of this deflection along x and y
     integer :: half_waves(2) = 1
     !> Part that is modelled, one of the constants above
     integer :: symmetry = symmetry_none
-    !> Symmetry of the case where the full plate is modelled and may fail; symmetry_none: none
+    !> Symmetry of the case if the full plate is modelled and may fail; symmetry_none: none
     integer :: kept = symmetry_none
   end type plate_t
 
@@ -44,8 +44,8 @@ module mesh_parameters
     real(wp) :: patch = 0
     !> The struck point, from the plate's centre; 0 along directions that symmetry halves
     real(wp) :: struck(2) = 0
-    !> Coordinates that must be lines of the mesh besides, as the edges of windows are, those next to the centre first;
-    !> unallocated: none
+    !> Further coordinates that must be lines of the mesh, such as the edges of windows, those closest to the centre
+    !> first; unallocated: none
     real(wp), allocatable :: x_lines(:), y_lines(:)
     !> Full extents along x and y of the rectangle of equal elements around the patch, and their side; 0: none
     real(wp) :: core(2) = 0, cell = 0
@@ -56,8 +56,8 @@ module mesh_parameters
   end type mesh_t
 contains
 
-  !> Adds coordinates to lines of the mesh, in the order of their distance from the centre, so that the mesh does not
-  !> depend on their source.
+  !> Adds coordinates to the required lines of the mesh, in the order of their distance from the centre, so that the
+  !> mesh does not depend on their source.
   pure subroutine add_lines(lines, further)
     !> The lines
     real(wp), allocatable, intent(inout) :: lines(:)
@@ -74,17 +74,17 @@ contains
     end do
   end subroutine add_lines
 
-  !> Deflection of the plate without stress: half waves over its lengths.
+  !> Stress-free initial deflection of the plate: half waves over its lengths.
   pure real(wp) function initial_deflection(plate, at) result(deflection)
     !> The plate
     type(plate_t), intent(in) :: plate
-    !> The point, from its centre
+    !> The point, from the centre of the plate
     real(wp), intent(in) :: at(2)
 
     deflection = plate%imperfection*product(sin(plate%half_waves*pi*(at/plate%length + 0.5_wp)))
   end function initial_deflection
 
-  !> True if the shape without stress is that of the full plate where only a part is modelled.
+  !> True if the initial deflection has the symmetry of the modelled part, so that it is that of the full plate.
   pure logical function has_symmetric_imperfection(plate, symmetry) result(alike)
     !> The plate
     type(plate_t), intent(in) :: plate

@@ -7,7 +7,7 @@ module nine_node_grids
   private
   public :: nine_node_grid_t, first_line, middle_line, last_line, cells_around, lines_around
 
-  !> A grid of so many cells.
+  !> A grid, given by its number of cells.
   type :: nine_node_grid_t
     !> Cells along x and y
     integer :: cells(2) = 0

@@ -1,8 +1,9 @@
-!> Equations: one for every free unknown, numbered rank by rank, and the pattern of the matrix. Created anew when
+!> Equations: one for every free unknown, numbered rank by rank, and the pattern of the matrix. Numbered again when
 !> unknowns are released.
 !>
-!> Constrained points have the equations of their masters, except for signs: on the cut line of point symmetry, and on
-!> all of a full plate that keeps its symmetry. A vector thus contains every free motion once, and a field all of them.
+!> Constrained points have the equations of their masters, except for signs: points on the cut line of point symmetry,
+!> and all points of a full plate whose symmetry is enforced. A vector thus contains every free motion once, a field
+!> contains the motion of all points.
 module numberings
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -24,11 +25,11 @@ module numberings
     integer :: owned = 0
     !> True: some point of the mesh has the motion of a master
     logical :: has_dependent_points = .false.
-    !> Master of each point on this rank, or the point itself if another rank has it; 0: none, (local points)
+    !> Master of each point on this rank, or the point itself if its master is on another rank; 0: none, (local points)
     integer, allocatable :: master(:)
     !> Signs of its motion, (5, local points)
     real(wp), allocatable :: signs(:, :)
-    !> Points that have the same equations, itself among them, (local points)
+    !> Points that have the same equations, including the point itself, (local points)
     integer, allocatable :: shared_by(:)
     !> True: the pattern leaves out the coupling of in-plane displacements with bending
     logical :: is_separate = .false.
@@ -61,7 +62,7 @@ contains
     logical, intent(in) :: fixed(:, :)
     !> The numbering
     type(numbering_t), intent(out) :: self
-    !> Images of the points, each with all of its own on one rank; left out: none
+    !> Images of the points, all images of a point on one rank; left out: none
     type(symmetry_images_t), intent(in), optional :: images
     !> True: in-plane displacements are not coupled with bending; left out: they are
     logical, intent(in), optional :: is_separate
@@ -237,8 +238,8 @@ contains
     end do
   end subroutine gather
 
-  !> Field of motion over the owned points from the rows of this rank; constrained unknowns become zero, ghosts are left
-  !> alone.
+  !> Field of motion over the owned points from the rows of this rank; constrained unknowns become zero, ghosts are not
+  !> changed.
   pure subroutine scatter(self, vector, field)
     !> The numbering
     class(numbering_t), intent(in) :: self

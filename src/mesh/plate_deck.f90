@@ -76,7 +76,7 @@ contains
                              [symmetry_none, symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point])
   end subroutine fill_plate
 
-  !> Its sides against each other, and its supports against its symmetry.
+  !> Checks the ratio of the plate's sides, and its supports and imperfection against its symmetry.
   subroutine check_plate(settings, plate, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -100,15 +100,15 @@ contains
     if (.not. has_symmetric_imperfection(plate, plate%symmetry)) &
       call report(settings, problems, plate_group, key_half_waves, &
       'this shape is not that of the full plate with symmetry = '''// &
-      lower_case(settings%text_of(plate_group, key_symmetry))//'''; take odd half waves along x for ''half_x'', '// &
-      'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or ''none''.')
+      lower_case(settings%text_of(plate_group, key_symmetry))//'''; give odd half waves along x for ''half_x'', '// &
+      'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or use ''none''.')
     if (.not. abs(plate%imperfection) > 0) call remark_idle(settings, problems, plate_group, key_half_waves, &
                                                             'has no effect without '//key_imperfection//'.')
     slope = 0
     if (settings%is_known(plate_group, key_length)) &
       slope = abs(plate%imperfection)*pi*maxval(plate%half_waves/plate%length)
     if (slope > max_slope) call remark(settings, problems, plate_group, key_imperfection, 'has a slope of '// &
-                                      rounded_text(slope)//', and the strains assume up to '//to_text(max_slope)//'.')
+                                      rounded_text(slope)//', but the strains assume at most '//to_text(max_slope)//'.')
     ! A plate with point symmetry has equal opposite edges.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &

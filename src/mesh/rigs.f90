@@ -1,8 +1,8 @@
 !> Supports by rigs on a mesh.
 !>
 !> The edges of a rectangular window are lines of the mesh. The edge of a circular window crosses the cells: w is fixed
-!> where it crosses their sides. (Fixed at the nearest nodes instead, at several radii, the plate would be almost
-!> clamped.) The face of a frame supports the nodes over it, and a clamp fixes the nearest node.
+!> where it crosses their sides. (If w were fixed at the nearest nodes instead, which lie at several radii, the plate
+!> would be almost clamped.) The face of a frame supports the nodes over it, and a clamp fixes the nearest node.
 module rigs
   use kinds, only: wp
   use cell_grids, only: cell_grid_t
@@ -15,7 +15,7 @@ module rigs
 
   !> A point where the edge of a circular window crosses a side of a cell.
   type :: crossing_t
-    !> Which of the cell's nine nodes lie on that side
+    !> The three of the cell's nine nodes on that side
     integer :: nodes(3) = 0
     !> Weights of their w
     real(wp) :: weights(3) = 0
@@ -62,7 +62,7 @@ contains
   end function has_crossings
 
   !> Points where the edge of a circular window crosses the sides of a cell. Each side belongs to the cell above it or
-  !> to its right, that at the border of the grid to its only one.
+  !> to its right, a side at the border of the grid to its only cell.
   pure function circle_crossings(grid, support, cell) result(crossings)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
@@ -113,7 +113,7 @@ contains
   end subroutine add_crossings
 
   !> Nodes at the clamps of a rig; clamps in parts that are not modelled are represented by their images. Of nodes at
-  !> the same distance that next to the plate's centre is taken, so that symmetric clamps have symmetric nodes.
+  !> the same distance the one closest to the plate's centre is chosen, so that symmetric clamps have symmetric nodes.
   pure function clamp_nodes(grid, plate, support) result(nodes)
     !> The grid
     class(cell_grid_t), intent(in) :: grid
@@ -121,7 +121,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
-    !> A node a clamp
+    !> One node per clamp
     integer, allocatable :: nodes(:)
     real(wp) :: point(2), distances(grid%nodes()), radii(grid%nodes())
     integer :: i, node
@@ -138,8 +138,8 @@ contains
     end do
   end function clamp_nodes
 
-  !> Fraction of a clamp's stiffness in the model, as each clamp of the plate is listed and has an image in every part
-  !> of the plate.
+  !> Fraction of a clamp's stiffness in the model: the deck lists each clamp of the plate, and each has an image in
+  !> every part of the plate.
   pure real(wp) function clamp_share(grid)
     !> The grid
     class(cell_grid_t), intent(in) :: grid

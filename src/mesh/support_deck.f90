@@ -37,7 +37,7 @@ module support_deck
     'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
       &Where a frame supports the plate: at the edge of its window, as a simple support, or over its face.', &
     'support | sides | choice | 1 | - | = as bearing | edge face | &
-      &bearing of the sides along x of a rectangular window, if it differs from that of the ends.', &
+      &Bearing of the sides parallel to x of a rectangular window, if it differs from that of the ends.', &
     'support | clamps | real | 1 or more | length | none | any | &
       &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
     'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &
@@ -110,7 +110,7 @@ contains
     end do
   end subroutine check_rigs
 
-  !> True if clamps press only where a bilateral frame supports the plate.
+  !> True if clamps exert a force only where a bilateral frame supports the plate.
   pure logical function has_idle_clamps(clamped, supports)
     !> The rig with the clamps
     type(support_t), intent(in) :: clamped
@@ -133,7 +133,7 @@ contains
     type(settings_t), intent(in) :: settings
     !> The rig
     type(support_t), intent(in) :: support
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -153,8 +153,8 @@ contains
     if (support%shape == window_circle .and. support%unilateral .and. support%bearing == bearing_edge .and. &
         are_clear(settings, problems, group, 'shape unilateral bearing', place)) &
       call report(settings, problems, group, 'bearing', &
-                  'the edge of a circle is no line of the mesh that the plate '// &
-                'may lift off; allowed with it and unilateral: ''face''.', place)
+                  'the plate can lift off an edge only along a line of the mesh, which '// &
+                  'a circle is not; allowed with a circle and unilateral: ''face''.', place)
     if (circle) call remark_idle(settings, problems, group, key_window//' sides', 'has no effect on a circle.', place)
     if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
                                        place)
@@ -176,7 +176,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -198,7 +198,7 @@ contains
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
-    !> Which of the groups
+    !> Index of the group
     integer, intent(in) :: place
     !> Faults found are added
     type(problems_t), intent(inout) :: problems
@@ -263,7 +263,8 @@ contains
     arms = points - spread(points(:, 1), 2, size(points, 2))
     along = arms(:, maxloc(norm2(arms, 1), dim=1))
     turns_about = all(abs(along(1)*arms(2, :) - along(2)*arms(1, :)) <= rounding*sum(along**2))
-    ! The motion is odd across the line: a mirror image, or one turned by 180 degrees, must not be.
+    ! The deflection of a rotation about this line is odd across it. A plate that is its own image by reflection across
+    ! the line, or by a turn of 180 degrees, has no such motion.
     turns_about = turns_about .and. symmetry /= symmetry_point .and. &
                   all(.not. is_mirrored(symmetry) .or. abs([along(2), along(1)]) <= rounding*norm2(along))
   end function turns_about

@@ -10,7 +10,7 @@ module support_parameters
   integer, parameter, public :: window_none = 0, window_rectangle = 1, window_circle = 2
   !> Bearing of a frame: the edge of its window, or all of its face.
   integer, parameter, public :: bearing_edge = 1, bearing_face = 2
-  !> Most supports of a plate: each has a column of its own in the history.
+  !> Largest number of supports of a plate: each has a column of its own in the history.
   integer, parameter :: max_supports = 3
 
   !> One rig. The plate lies on the frame with the face opposite to the struck one.
@@ -40,9 +40,9 @@ module support_parameters
 
 contains
 
-  !> How far a point lies beyond the window's edge, where the frame is; negative within the window.
+  !> Distance of a point from the window's edge, positive over the frame, negative within the window.
   pure real(wp) function beyond(self, point) result(distance)
-    !> The rig, which has a frame
+    !> A rig with a frame
     class(support_t), intent(in) :: self
     !> Coordinates from the plate's centre
     real(wp), intent(in) :: point(2)
@@ -54,8 +54,8 @@ contains
     end if
   end function beyond
 
-  !> True where the frame supports the plate: over its face, to which the corners beside it belong, or only on the edge
-  !> of a rectangular window. The edge of a circle crosses the sides of cells, and supports no node.
+  !> True where the frame supports the plate: over its face, which includes the corners beside a window, or only on the
+  !> edge of a rectangular window. The edge of a circle crosses the sides of cells and supports no node.
   pure logical function carries(self, point)
     !> The rig
     class(support_t), intent(in) :: self

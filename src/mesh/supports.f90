@@ -60,7 +60,7 @@ contains
   end function fixed_on_borders
 
   !> Unknowns fixed by one edge. A simple support is a hard one: it also fixes the rotation along the edge. An elastic
-  !> edge leaves it free.
+  !> edge leaves this rotation free.
   pure function fixed_by_edge(edge, normal, plate) result(fixed)
     !> Kind of support
     integer, intent(in) :: edge
@@ -79,8 +79,8 @@ contains
     if (plate%in_plane_fixed) fixed(1:2) = .true.
   end function fixed_by_edge
 
-  !> Fixes the in-plane rigid-body motions that symmetry leaves: at the struck node, and the rotation at the node beside
-  !> it along x.
+  !> Fixes the in-plane rigid-body motions that symmetry does not exclude: displacements at the struck node, and the
+  !> rotation at the node beside it along x.
   pure subroutine pin(mesh, motions, fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

@@ -1,8 +1,8 @@
 !> Images of the points of a full plate with mirror or point symmetry.
 !>
 !> With failure, the equations of such a plate have solutions besides the symmetric one, and round-off would choose
-!> among them: it would depend on the number of ranks, on units and on the orientation, and differ from that of the
-!> modelled part. Images therefore share their equations (`numberings`), and every solution is bitwise symmetric.
+!> among them: the result would depend on the number of ranks, on units and on the orientation, and differ from that of
+!> the modelled part. Images therefore share their equations (`numberings`), and every solution is bitwise symmetric.
 module symmetry_images
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -18,8 +18,8 @@ module symmetry_images
 
   !> Images of all points.
   type :: symmetry_images_t
-    !> Points of the mesh that are images of a point, (points of the mesh, images); unallocated: none have any. Of three
-    !> images the third is the second one's first.
+    !> Points of the mesh that are images of a point, (points of the mesh, images); unallocated: none. With three
+    !> images, the third is the first image of the second.
     integer, allocatable :: points(:, :)
     !> Signs of their motion, (5, images)
     real(wp), allocatable :: signs(:, :)
@@ -30,7 +30,8 @@ module symmetry_images
 
 contains
 
-  !> The images of a full plate's points. A mesh or supports that are not their own image to the last digit have none.
+  !> The images of a full plate's points. There are none if mesh or supports differ from their own image in the last
+  !> digit.
   pure function find_images(mesh, symmetry, fixed) result(self)
     !> The mesh of the full plate
     type(layered_mesh_t), intent(in) :: mesh
@@ -87,7 +88,7 @@ contains
     end do
   end function image_of_points
 
-  !> First of the images of each cell, itself among them.
+  !> First of the images of each cell, including the cell itself.
   pure function first_cells(self, mesh) result(first)
     !> The images
     class(symmetry_images_t), intent(in) :: self

@@ -1,5 +1,5 @@
-!> Contact area of a spherical nose: the deck's patch, and points around it where the plate is close to the nose's
-!> surface.
+!> Contact area of a spherical nose, theory (F9): the deck's patch, and points around it where the plate is close to the
+!> nose's surface.
 !>
 !> At the edge of a Hertzian contact the separation of the undeformed surfaces is half the indentation larger than at
 !> first contact (K. L. Johnson, Contact Mechanics, 1985, section 4.2). The pressure is proportional to the difference
@@ -16,8 +16,8 @@ module contact_areas
   !> Additional separation of the surfaces at the edge of a Hertzian contact, relative to the indentation: its radius a
   !> is sqrt(R alpha), and the nose rises by a**2/(2 R) there.
   real(wp), parameter, public :: edge_gap = 0.5_wp
-  !> Weight over the largest from which a place counts as touched: as contact ends, weights fade. It decides on an area
-  !> that is reported.
+  !> Weight relative to the largest from which a point counts as in contact: at the end of contact the weights decrease
+  !> to zero. It only affects the area reported.
   real(wp), parameter :: min_weight = 1.0e-3_wp
 
   !> Struck face and nose.
@@ -78,7 +78,7 @@ contains
     call communicator%maximum(least)
     pressure = max(0.0_wp, edge_gap*indentation - least - apart)
     parts = [self%area*total_of(communicator, self%under*pressure), total_of(communicator, self%beside*pressure)]
-    ! An indentation below the rounding of deflections leaves no pressure.
+    ! If the indentation is below the round-off of the deflections, all weights may be zero.
     if (sum(parts) > 0) weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
   end function weights
 

@@ -14,8 +14,8 @@ module contact_patches
     real(wp), allocatable :: weights(:)
     !> Points with a weight
     integer, allocatable :: points(:)
-    !> Difference of the mean deflection between successive patches, so that it is continuous, less the mean at the
-    !> start, where the impactor touches the plate
+    !> Offset that keeps the mean deflection continuous when the patch changes, minus the mean deflection at the start,
+    !> where the impactor touches the plate
     real(wp) :: offset = 0
   contains
     !> Mean of a deflection, and deflection of the plate under the impactor.
@@ -59,7 +59,7 @@ contains
     class(contact_patch_t), intent(inout) :: self
     !> Weights, (local points); ghosts zero
     real(wp), intent(in) :: weights(:)
-    !> Difference of the mean deflection from the patch before
+    !> Offset that keeps the mean deflection continuous
     real(wp), intent(in) :: offset
     integer :: point
 

@@ -34,7 +34,7 @@ module discretizations
     type(element_batches_t) :: elements
     !> True for constrained unknowns of every point of the mesh, (5, points of the mesh)
     logical, allocatable :: fixed(:, :)
-    !> Images of the points of a full plate that keeps its symmetry during failure
+    !> Images of the points of a full plate whose symmetry is enforced during failure
     type(symmetry_images_t) :: images
     !> Motion of stacked layers from their unknowns
     type(layer_map_t) :: map

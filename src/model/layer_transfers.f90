@@ -10,7 +10,7 @@ module layer_transfers
   public :: layer_transfer_t
 
   !> Name of the field of permanent shear strains of plies: strain and accumulated magnitude of each. In the axes of
-  !> plies along x or y the strain has the opposite sign in a mirror image.
+  !> plies along x or y the strain changes its sign in a mirror image.
   character(len=*), parameter, public :: shear_field = 'ply_failure/permanent_shear'
 
   !> One item of any type, as a table of reals, which represent every integer exactly.
@@ -21,7 +21,7 @@ module layer_transfers
     real(wp), allocatable :: values(:, :)
   end type stored_item_t
 
-  !> The archive: saved to, then turned to another mesh and loaded from.
+  !> The archive: a state is saved to it, the archive is switched to another mesh, and the state is loaded from it.
   type, extends(archive_t) :: layer_transfer_t
     !> The ranks
     type(communicator_t) :: communicator
@@ -40,7 +40,7 @@ module layer_transfers
   contains
     !> Switches from saving to loading.
     procedure :: turn_to
-    !> Copies what rank 0 has saved to every rank.
+    !> Copies the items that rank 0 has saved to every rank.
     procedure :: broadcast
     procedure :: real_item
     procedure :: integer_item

@@ -15,7 +15,7 @@ module load_cases
   !> Kinds of analysis: motion in time, or load steps, each an equilibrium without inertia.
   integer, parameter, public :: analysis_in_time = 1, analysis_by_load_steps = 2
 
-  !> A load case. Callers use its procedures instead of the kind of analysis.
+  !> A load case. Other modules call its procedures instead of comparing the kind of analysis.
   type :: load_case_t
     !> analysis_in_time or analysis_by_load_steps
     integer :: analysis = analysis_in_time

@@ -1,4 +1,4 @@
-!> Transfers a state to another mesh of the plate: an archive in memory that maps fields.
+!> Transfers a state to another mesh of the plate, theory (D14): an archive in memory that maps fields.
 !>
 !> Motion is interpolated by the old elements at the new nodes. Quantities per area or volume are averaged over the area
 !> of the new node or cell, so that integrals over the plate are conserved: the area of a node of nine-node cells is a
@@ -17,7 +17,7 @@ module mesh_transfers
   character(len=*), parameter :: motion_group = 'motion/', ply_group = 'ply_failure/', &
                                  section_field = 'ply_failure/stiffness', slip_field = 'cohesive/sliding'
 
-  !> The archive: saved to, then turned to another mesh and loaded from.
+  !> The archive: a state is saved to it, the archive is switched to another mesh, and the state is loaded from it.
   type, extends(layer_transfer_t) :: mesh_transfer_t
     !> The mesh saved, and the one to load
     type(layered_mesh_t), private :: old, new
@@ -32,8 +32,8 @@ module mesh_transfers
 
 contains
 
-  !> Switches from saving to loading, and computes the overlaps of both meshes. All section stiffnesses are computed
-  !> anew.
+  !> Switches from saving to loading, and computes the overlaps of both meshes. Section stiffnesses are computed again,
+  !> not mapped.
   subroutine turn_to(self, old, new)
     !> The archive
     class(mesh_transfer_t), intent(inout) :: self
@@ -163,7 +163,7 @@ contains
     real(wp), intent(in) :: coordinate
     !> The cell, from 1
     integer, intent(out) :: cell
-    !> One value a node
+    !> One value per node
     real(wp), intent(out) :: shapes(3)
 
     cell = max(1, min(size(edges) - 1, count(edges <= coordinate)))
@@ -209,7 +209,7 @@ contains
     values = mean_of(terms, weights)
   end subroutine find_at_node
 
-  !> Means over the area of a cell; per ply, also between different layers.
+  !> Means over the area of a cell; for quantities per ply, also between layers that differ.
   pure subroutine find_in_cells(self, saved, element, name, values)
     !> The archive
     class(mesh_transfer_t), intent(in) :: self

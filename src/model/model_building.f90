@@ -30,11 +30,12 @@ module model_building
   private
   public :: create_model, zones_of, is_membrane_idle, uncoupled, unrestrained
 
-  !> Coupling of membrane and bending that consists of round-off, relative to what it couples
+  !> Largest coupling of membrane and bending that is round-off, relative to the stiffnesses it couples
   real(wp), parameter :: round_off = 1.0e-12_wp
 
-  !> Stiffness of a line of a rigid frame over that of the laminate through its thickness: its effect on the deflection
-  !> is far below round-off and tolerance, and the conditioning of the matrix is that of tied jumps.
+  !> Stiffness of a rigid frame where its edge crosses a cell, relative to that of the laminate through its thickness:
+  !> its effect on the deflection is far below round-off and tolerance, and the conditioning of the matrix is that of
+  !> tied jumps.
   real(wp), parameter :: rigid = 1.0e3_wp
 
 contains
@@ -84,7 +85,7 @@ contains
     call find_struck_point(self)
   end subroutine create_model
 
-  !> True if the plate does not move in its plane.
+  !> True if no in-plane motion occurs, so that u and v are zero.
   pure logical function is_membrane_idle(setup, zones, section) result(idle)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -99,7 +100,7 @@ contains
     idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
   end function is_membrane_idle
 
-  !> True if membrane and bending are uncoupled: what couples them is round-off.
+  !> True if membrane and bending are not coupled except by round-off.
   pure logical function uncoupled(stiffness, mass)
     !> Stiffness of sections, (any, 21, any)
     real(wp), intent(in) :: stiffness(:, :, :)
@@ -111,7 +112,7 @@ contains
                 .and. largest(mass(:, 2:2, :)) <= round_off*sqrt(largest(mass(:, 1:1, :))*largest(mass(:, 3:3, :)))
   end function uncoupled
 
-  !> Largest magnitude, 0 of none.
+  !> Largest magnitude; 0 if there are no values.
   pure real(wp) function largest(values)
     !> The values
     real(wp), intent(in) :: values(:, :, :)
@@ -303,7 +304,7 @@ contains
     end associate
   end subroutine build_interfaces
 
-  !> True if a point lies next to the border of its zone, that of the model not counted.
+  !> True if a point lies next to the border of its zone, except where this is the border of the model.
   pure logical function beside_border(mesh, point)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

@@ -108,7 +108,8 @@ contains
       call gauss_coordinates(self%elements, mesh%node_coordinates(:, mesh%point_node(partition%points)), x)
       pressure = value
       if (self%setup%pressure%distribution == distribution_sine) then
-        ! A vector of cosines differs from single ones in the last digit: which elements are in it depends on the rank.
+        ! A vectorised cosine differs from the scalar one in the last digit, and which elements are vectorised depends
+        ! on the rank.
         !GCC$ NOVECTOR
         do element = 1, size(pressure, 2)
           !GCC$ NOVECTOR

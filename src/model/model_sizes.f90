@@ -14,7 +14,7 @@ module model_sizes
 
   !> Unknowns per rank in a job script; a choice, since the best value depends on the machine.
   integer, parameter :: unknowns_a_rank = 25000
-  !> Megabytes of the libraries a process: MPI, PETSc and those behind it (doc/studies/speed.md).
+  !> Megabytes of the libraries per process: MPI, PETSc and the libraries these use (doc/studies/speed.md).
   real(wp), parameter :: megabytes_of_libraries = 55
   !> Bytes per pair of unknowns of a node times log2 of the number of nodes: fill-in of a plane grid by nested
   !> dissection. Measured, doc/manual/queue.md.
@@ -28,7 +28,7 @@ module model_sizes
 
   !> Size of a model.
   type :: model_size_t
-    !> Unknowns, with those fixed by supports, without in-plane ones that are idle
+    !> Number of unknowns, including those fixed by supports, without in-plane ones that are always zero
     integer :: unknowns = 0
     !> Elements of all layers
     real(wp) :: elements = 0

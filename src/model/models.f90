@@ -20,8 +20,8 @@ module models
   private
   public :: model_t
 
-  !> Share of the stiffness of the plate's lowest bending wave that is negligible in an operator: where residuals are
-  !> exact, corrections of elastic modes are then exact to a thousandth.
+  !> Fraction of the stiffness of the plate's lowest bending wave that is negligible in an operator: with exact
+  !> residuals, the corrections of elastic modes are then exact to a thousandth.
   real(wp), parameter :: negligible_share = 1.0e-3_wp
 
   !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run.
@@ -51,7 +51,7 @@ module models
     logical :: has_point_stiffness = .false.
     !> The deck's patch under the impactor; the state has the present one
     type(contact_patch_t) :: patch
-    !> Nose that determines the present patch; unallocated: it is the deck's
+    !> Nose that determines the present patch; unallocated: the present patch is that of the deck
     type(contact_area_t), allocatable :: nose
   contains
     !> Internal forces and strain energy of a displacement field.
@@ -78,8 +78,9 @@ contains
     if (allocated(self%setup%supports)) call hold_openings(self%mesh, self%setup%plate, self%setup%supports, held)
   end function held_unknowns
 
-  !> Stiffness per area that is negligible in an operator but keeps it from being singular: a small share of that of the
-  !> plate's lowest bending wave, D (pi/L)^4 with the smaller bending stiffness D and the longer side L.
+  !> Stiffness per area that is negligible in an operator but keeps it from being singular (doc/theory/newton.md,
+  !> assumptions): a small fraction of that of the plate's lowest bending wave, D (pi/L)^4 with the smaller bending
+  !> stiffness D and the longer side L.
   pure real(wp) function negligible_stiffness(self) result(stiffness)
     class(model_t), intent(in) :: self
 

@@ -1,4 +1,4 @@
-!> The motion of the plate and the forces that go with it.
+!> The motion of the plate and its forces.
 module motions
   use kinds, only: wp
   implicit none

@@ -45,7 +45,7 @@ contains
     place = (edges(line/2 + 1) + edges((line + 1)/2 + 1))/2
   end function place_of_node
 
-  !> Fraction of the length of a line of nodes for a node.
+  !> Fraction of the length of a line of nodes that is assigned to a node.
   pure real(wp) function simpson_weight(edges, line) result(weight)
     !> Edges of the cells along it
     real(wp), intent(in) :: edges(:)

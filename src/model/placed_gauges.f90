@@ -73,8 +73,8 @@ contains
     if (abs(sum(strains)) > 0) bending = 100*(strains(1) - strains(2))/sum(strains)
   end function percent_bending
 
-  !> Adds the strain of a gauge: of the cell that it is in, or the mean of those that meet there, as far as they are
-  !> this rank's.
+  !> Adds the strain of a gauge: that of its cell, or the mean over the cells that meet there. Only cells of this rank
+  !> contribute.
   subroutine add_strain(model, gauge, motion, total)
     type(model_t), intent(in) :: model
     !> The gauge
@@ -113,7 +113,7 @@ contains
     real(wp), intent(in) :: motion(:, :)
     !> Index of the element among those of this rank
     integer, intent(in) :: element
-    !> Fractions of the element before the point, along x and y
+    !> Position of the point in the element along x and y, from 0 to 1
     real(wp), intent(in) :: place(2)
     !> Along x and y, and shear
     real(wp) :: strain(3)
@@ -147,7 +147,7 @@ contains
     end do
   end subroutine find_place
 
-  !> Cell of a coordinate, both beside an edge.
+  !> Cell that contains a coordinate, or both adjacent cells if the coordinate is an edge.
   pure function cells_at(edges, at) result(cells)
     !> Edges of the cells, ascending
     real(wp), intent(in) :: edges(:)
@@ -162,7 +162,7 @@ contains
     cells = [(cell, cell=max(1, count(edges < at - same)), min(size(edges) - 1, count(edges <= at + same)))]
   end function cells_at
 
-  !> Fraction of a cell before a coordinate.
+  !> Position of a coordinate in a cell, from 0 to 1.
   pure real(wp) function part_of(edges, cell, at) result(part)
     !> Edges of the cells
     real(wp), intent(in) :: edges(:)

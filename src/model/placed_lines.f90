@@ -41,8 +41,8 @@ module placed_lines
     integer, allocatable :: point(:)
     !> Weights of their unknowns in the motion of the node, (5, points)
     real(wp), allocatable :: coefficient(:, :)
-    !> Fractions of this rank's nodes that are constrained by supports in the prescribed component: the line does not
-    !> act on them
+    !> Fractions of this rank's nodes whose prescribed component is constrained by supports: the line does not act on
+    !> these nodes
     real(wp), allocatable :: left_out(:)
   contains
     !> Motion of a node of the line.
@@ -327,7 +327,8 @@ contains
     end do
   end subroutine spread
 
-  !> Force and mean motion of the line, of this rank's nodes; exact, so that sums over the ranks do not depend on them.
+  !> Force and mean motion of the line, of this rank's nodes, as exact sums, so that totals do not depend on the number
+  !> of ranks.
   pure function totals(self, displacement, load_factor)
     !> The line
     class(placed_line_t), intent(in) :: self

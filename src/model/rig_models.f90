@@ -21,7 +21,7 @@ module rig_models
     logical :: unilateral = .false.
     !> True if clamps have springs or a force
     logical :: elastic = .false.
-    !> The rig that fixes w, or whose frame supports it by pressure; 0: none, (local points); unallocated: no rigs
+    !> The rig that fixes w, or whose frame supports w by pressure; 0: none, (local points); unallocated: no rigs
     integer, allocatable :: constrained_by(:), frame(:)
     !> Stiffness of clamps along u, v and w, (3, local points)
     real(wp), allocatable :: springs(:, :)
@@ -243,8 +243,8 @@ contains
     if (.not. plate%in_plane_fixed) springs(1:2) = 0
   end function springs_of
 
-  !> Adds the unknowns fixed by rigs to a table. Frames and clamps that fix w fix it at both faces, so that no layer
-  !> moves.
+  !> Adds the unknowns fixed by rigs to a table. Frames and clamps that fix w fix it at both faces, so that all layers
+  !> are held.
   pure subroutine fix_by_rigs(mesh, plate, supports, fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
@@ -276,8 +276,8 @@ contains
     end do
   end subroutine fix_by_rigs
 
-  !> Adds the openings over frames that the plate may lift off, and over circular ones. Implicit steps hold the layers
-  !> together there: these frames act on w of the first layer, and would otherwise pull it off the layers below.
+  !> Adds the openings over frames from which the plate may lift off, and over circular ones. Implicit steps hold the
+  !> layers together there: these frames act on w of the first layer, and would otherwise pull it off the layers below.
   pure subroutine hold_openings(mesh, plate, supports, fixed)
     !> The mesh
     type(layered_mesh_t), intent(in) :: mesh

@@ -45,7 +45,7 @@ contains
     allocate (plan%columns(size(columns)), source=columns)
   end function new_message_plan
 
-  !> Sends the values of some columns while receiving those of others.
+  !> Sends the values of some columns and receives those of columns of other ranks.
   subroutine exchange(group, sent, received, field, values)
     !> All ranks
     type(MPI_Comm), intent(in) :: group

@@ -38,7 +38,8 @@ module border_sums
 
 contains
 
-  !> Finds the column that each contribution is added to: its point's, or one of its own at a border. Collective.
+  !> Finds the column to which each contribution is added: that of its point, or at a border a column of its own.
+  !> Collective.
   subroutine define(self, communicator, halo, points, order, targets)
     class(border_sum_t), intent(out) :: self
     !> All ranks
@@ -47,7 +48,8 @@ contains
     type(halo_t), intent(in) :: halo
     !> Local point of each contribution of this rank
     integer, intent(in) :: points(:)
-    !> Place of each in the sums. Those of one place come from one rank, in the order of this list
+    !> Position of each in the order of summation. Contributions with equal positions are those of one rank, in the
+    !> order of this list
     integer, intent(in) :: order(:)
     !> Column of each
     integer, intent(out) :: targets(:)
@@ -85,11 +87,11 @@ contains
   !> Informs the owners of ghosts which contributions they receive.
   subroutine exchange_lists(self, owner, origin, order, rank, at, place)
     class(border_sum_t), intent(inout) :: self
-    !> Rank that owns the point of each contribution, its local number there, and place in the sum
+    !> Rank that owns the point of each contribution, local number of the point there, and position in the sum
     integer, intent(in) :: owner(:), origin(:), order(:)
     !> This rank
     integer, intent(in) :: rank
-    !> Owned point and place in the sum of each contribution received
+    !> Owned point and position in the sum of each contribution received
     integer, allocatable, intent(out) :: at(:), place(:)
     integer :: going(0:self%size - 1), coming(0:self%size - 1), r, i
     integer, allocatable :: grouped(:)
@@ -112,7 +114,7 @@ contains
   !> Lists the terms of each owned point on a border in the order in which they are added.
   pure subroutine list_terms(self, at, place, columns, borders)
     class(border_sum_t), intent(inout) :: self
-    !> Owned point, place in its sum and column of each term
+    !> Owned point, position in its sum and column of each term
     integer, intent(in) :: at(:), place(:), columns(:)
     !> True for owned points on a border
     logical, intent(in) :: borders(:)

@@ -8,11 +8,11 @@ module column_exchanges
   private
   public :: column_exchange_t, new_column_exchange
 
-  !> Which columns this rank sends to others, and which it receives from them.
+  !> Columns that this rank sends to other ranks, and columns that it receives from them.
   type :: column_exchange_t
     !> All ranks
     type(MPI_Comm), private :: group
-    !> Columns that others need, and those of others that are needed here
+    !> Own columns that other ranks need, and columns of other ranks that this rank needs
     type(message_plan_t), private :: sent, received
     !> True: there are some
     logical, private :: needed = .false.
@@ -29,8 +29,8 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> True for columns that this rank computes, (columns)
     logical, intent(in) :: mine(:)
-    !> Columns of the group of each, itself among them, zeros behind them, (most, columns). Who computes one of a group
-    !> needs all of it
+    !> Columns of the group of each column, including itself, padded with zeros, (largest group, columns). A rank that
+    !> computes one column of a group needs all of them
     integer, intent(in) :: groups(:, :)
     !> The exchange
     type(column_exchange_t) :: self
@@ -59,7 +59,7 @@ contains
 
   contains
 
-    !> Those of some columns that another rank needs, ascending.
+    !> Those columns of a list that another rank needs, ascending.
     pure function needed_by(other, some) result(columns)
       !> The other rank
       integer, intent(in) :: other

@@ -1,5 +1,5 @@
-!> The ranks of a run and their communication. Only this folder uses MPI; on one rank every procedure returns at once,
-!> so that a communicator that was never set up serves serial work.
+!> The ranks of a run and their communication. Only this folder uses MPI. On one rank every procedure returns at once,
+!> so that a communicator without MPI can be used in serial runs.
 module communicators
   use mpi_f08, only: MPI_COMM_WORLD, MPI_DOUBLE_PRECISION, MPI_INTEGER, MPI_LOGICAL, MPI_CHARACTER, MPI_Init, &
                      MPI_Initialized, MPI_Finalize, MPI_Comm_rank, MPI_Comm_size, MPI_Bcast, MPI_Allgather, &
@@ -51,9 +51,9 @@ contains
   !> a killed run; the first block later runs that open a file of the same name, the second limit its name to 256
   !> characters. The remaining method needs two files, removed when the file is closed.
   !>
-  !> A run without mpirun starts no daemon for further processes, which took longer than the rest of MPI's start. It
-  !> needs no folder shared with other ranks. All such runs of a machine would have the same one, which one run removes
-  !> while another begins: about one start in 240 failed with six at a time.
+  !> A run without mpirun does not start the daemon for further processes, whose start took longer than the rest of
+  !> MPI's. It does not create a folder shared with other ranks: all such runs of a machine would use the same folder,
+  !> which one run removes while another begins; about one start in 240 failed with six at a time.
   subroutine set_open_mpi()
     call set_environment_variable('OMPI_MCA_sharedfp', '^sm,lockedfile', overwrite=.false.)
     if (launched()) return

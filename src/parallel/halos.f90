@@ -26,7 +26,7 @@ module halos
     type(MPI_Comm), private :: group
     !> Number of ranks
     integer, private :: size = 1
-    !> Owned points that others see, and ghosts
+    !> Owned points that are ghosts on other ranks, and ghosts of this rank
     type(message_plan_t), private :: shared, ghosts_of_others
   contains
     !> Determines the exchange of ghosts between ranks.

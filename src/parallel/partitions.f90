@@ -65,7 +65,7 @@ contains
     status = metis_partition(vertices, 1, row_start - 1, neighbours - 1, c_loc(work), c_null_ptr, c_null_ptr, &
                              parts, c_null_ptr, c_null_ptr, c_null_ptr, cut, part_of)
     if (status /= metis_ok) then
-      call fail(error, exit_internal, 'METIS could not share the elements out among the ranks.')
+      call fail(error, exit_internal, 'METIS could not distribute the elements over the ranks.')
       return
     end if
     ! METIS may leave a part of a very small graph empty; blocks of consecutive vertices never do.

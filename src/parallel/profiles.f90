@@ -1,5 +1,5 @@
-!> Profile of time and memory of a run by parts. Parts may contain others, whose time and memory they exclude, so that
-!> all add up to the run.
+!> Profile of time and memory of a run by parts. Time and memory of a part exclude those of the parts inside it, so that
+!> the sum over all parts is that of the run.
 module profiles
   use, intrinsic :: iso_c_binding, only: c_int, c_long
   use kinds, only: wp, long
@@ -9,7 +9,7 @@ module profiles
 
   !> Longest name of a part.
   integer, parameter, public :: part_length = 32
-  !> Parts that may lie inside each other.
+  !> Largest depth of parts inside each other.
   integer, parameter :: max_depth = 32
 
   !> One part of a run.
@@ -18,9 +18,9 @@ module profiles
     character(len=part_length) :: name = ''
     !> Wall-clock seconds
     real(wp) :: seconds = 0
-    !> How often it was begun
+    !> Number of calls
     integer :: calls = 0
-    !> By how much it raised the run's largest resident memory, in MB of 10^6 bytes
+    !> Increase of the run's largest resident memory by the part, in MB of 10^6 bytes
     real(wp) :: megabytes = 0
   end type profile_row_t
 
@@ -123,7 +123,7 @@ contains
     !> The profile so far
     type(record_t), intent(inout) :: record
     real(wp) :: seconds, megabytes
-    ! Seconds: twice what the query takes, which reads a file of the system.
+    ! Seconds: twice the duration of the query, which reads a file of the system.
     real(wp), parameter :: min_query_interval = 1.0e-4_wp
 
     seconds = wall_time()

@@ -7,7 +7,7 @@ module rank_totals
   private
   public :: total_of, totals_of
 
-  !> Sum over the ranks, the same on every rank: of a list or a table, or of a sum that has been begun.
+  !> Sum over the ranks, the same on every rank: of a list, of a table, or of exact sums of this rank's terms.
   interface total_of
     module procedure total_of_list, total_of_table, total_of_sum
   end interface total_of

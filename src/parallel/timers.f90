@@ -1,4 +1,4 @@
-!> Named stopwatches, of the wall clock and of the processor.
+!> Named timers of wall-clock and processor time.
 module timers
   use kinds, only: wp
   use profiles, only: profile_t, wall_time
@@ -9,37 +9,37 @@ module timers
   !> Longest name of a timer.
   integer, parameter :: name_length = 32
 
-  !> One stopwatch.
+  !> One timer.
   type :: timer_t
     !> Name of the timed part
     character(len=name_length) :: name = ''
-    !> Wall-clock seconds and of the processor, summed over all finished runs
+    !> Seconds of wall-clock and of processor time, summed over all finished intervals
     real(wp) :: wall = 0, processor = 0
-    !> Times when the present run began
+    !> Times at the start of the present interval
     real(wp) :: wall_start = 0, processor_start = 0
-    !> Number of finished runs
+    !> Number of finished intervals
     integer :: runs = 0
   end type timer_t
 
-  !> A set of stopwatches known by their names; a name is new the first time it is started.
+  !> A set of timers known by their names; a name is new the first time it is started.
   type :: timer_set_t
-    !> The stopwatches in the order of their first start
+    !> The timers in the order of their first start
     type(timer_t), allocatable, private :: list(:)
     !> Profile to which the times are added, too
     type(profile_t) :: profile
   contains
-    !> Starts a stopwatch.
+    !> Starts a timer.
     procedure :: start
-    !> Stops it and adds the run.
+    !> Stops the timer and adds the interval.
     procedure :: stop => stop_timer
-    !> A table for the log, one line a stopwatch.
+    !> A table for the log, one line per timer.
     procedure :: lines
     procedure, private :: position
   end type timer_set_t
 
 contains
 
-  !> Starts a stopwatch.
+  !> Starts a timer.
   subroutine start(self, name, part)
     class(timer_set_t), intent(inout) :: self
     !> Name of the timed part
@@ -63,7 +63,7 @@ contains
     call cpu_time(self%list(i)%processor_start)
   end subroutine start
 
-  !> Stops a stopwatch that was started and adds the run.
+  !> Stops a timer that was started and adds the interval.
   subroutine stop_timer(self, name)
     class(timer_set_t), intent(inout) :: self
     !> Name of the timed part
@@ -82,10 +82,10 @@ contains
     end associate
   end subroutine stop_timer
 
-  !> A table for the log, one line a stopwatch.
+  !> A table for the log, one line per timer.
   pure function lines(self)
     class(timer_set_t), intent(in) :: self
-    !> Name, runs, wall-clock seconds, seconds of the processor
+    !> Name, runs, wall-clock seconds, processor seconds
     character(len=name_length + 40), allocatable :: lines(:)
     integer :: i
 
@@ -100,7 +100,7 @@ contains
     end do
   end function lines
 
-  !> Position of a stopwatch in the list, 0 if there is none of that name.
+  !> Position of a timer in the list, 0 if there is none of that name.
   pure integer function position(self, name)
     class(timer_set_t), intent(in) :: self
     !> Name of the timed part

@@ -1,6 +1,7 @@
-!> Assumed transverse shear strains of the 9-node element (Huang and Hinton, 1986): the covariant strain along xi is
-!> sampled at xi = -+1/sqrt(3) on the three rows of nodes eta = -1, 0, 1 and interpolated, linear in xi and quadratic in
-!> eta; the strain along eta likewise on the columns. This removes locking without zero-energy modes.
+!> Assumed transverse shear strains of the 9-node element (H. C. Huang, E. Hinton, Int. J. Numer. Meth. Eng. 22 (1986)
+!> 73-92; theory (P8)): the covariant strain along xi is sampled at xi = -+1/sqrt(3) on the three rows of nodes eta =
+!> -1, 0, 1 and interpolated, linearly in xi and quadratically in eta; the strain along eta likewise on the columns.
+!> This removes locking without zero-energy modes.
 module assumed_shear
   use kinds, only: wp
   use lagrange9, only: gauss2, gauss3, values3
@@ -117,7 +118,7 @@ contains
     end do
   end subroutine sample_lines
 
-  !> Transposed of `sample_lines`.
+  !> Transpose of `sample_lines`.
   pure subroutine add_line_forces(tangents, shear, offset, along, across, f)
     !> Tangent vectors at the samples
     real(wp), intent(in) :: tangents(lanes, shear_samples, 2)

@@ -1,4 +1,4 @@
-!> Section forces and moments of a batch of elements from its generalised strains.
+!> Section forces and moments of a batch of elements from its generalised strains, theory (P4) and (P5).
 module batch_resultants
   use kinds, only: wp
   use element_batches, only: lanes
@@ -49,7 +49,7 @@ contains
 
   !> Adds the contribution of stress-free strains to the strain energy.
   pure subroutine add_free_energy(free, weight, s, energies)
-    !> Their resultants Nxx to Mxy, and their energy per area
+    !> Resultants Nxx to Mxy of the stress-free strains, and their energy per area
     real(wp), intent(in) :: free(lanes, 7)
     !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
@@ -67,9 +67,9 @@ contains
     end do
   end subroutine add_free_energy
 
-  !> Takes the resultants of strains that go without stress off those of all strains.
+  !> Subtracts the resultants of the stress-free strains from those of the total strains.
   pure subroutine take_free_resultants(free, weight, s)
-    !> Their resultants Nxx to Mxy, and their energy per area
+    !> Resultants Nxx to Mxy of the stress-free strains, and their energy per area
     real(wp), intent(in) :: free(lanes, 7)
     !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)

@@ -1,4 +1,5 @@
-!> Generalised strains of a batch of elements from the unknowns of its nodes, and the transposed operation.
+!> Generalised strains of a batch of elements from the unknowns of its nodes, theory (P2), and the transpose of this
+!> operation.
 module batch_strains
   use kinds, only: wp
   use plate_options, only: kinematics_von_karman, shear_assumed
@@ -13,7 +14,7 @@ module batch_strains
 
 contains
 
-  !> Gives the plate a shape without stress.
+  !> Sets the initial deflection w0 of a plate that is free of stress in this shape.
   subroutine set_initial_shape(batches, deflection)
     !> The elements
     type(element_batches_t), intent(inout) :: batches
@@ -32,8 +33,8 @@ contains
     end do
   end subroutine set_initial_shape
 
-  !> Membrane strains and curvatures at the Gauss points of a batch, from the shape without stress on (K. Marguerre,
-  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
+  !> Membrane strains and curvatures at the Gauss points of a batch, relative to the stress-free shape w0 (K. Marguerre,
+  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101; theory (P10)): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
   pure subroutine strains_of_batch(batches, b, kinematics, r, strains, slopes)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -140,7 +141,7 @@ contains
     end do
   end subroutine plane_strains
 
-  !> Transposed of `plane_strains`.
+  !> Transpose of `plane_strains`.
   pure subroutine add_plane_forces(inverse, stresses, x_force, y_force)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)

@@ -25,7 +25,7 @@ contains
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Strain energy of these elements
     real(wp), intent(out) :: energy
-    !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
+    !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in unused lanes
     real(wp), contiguous, intent(out), optional :: energies(:, :)
     real(wp) :: r(lanes, 9, 5), curvatures(lanes, 9, 3), shear(shear_size), stored(lanes)
     integer :: b
@@ -112,7 +112,7 @@ contains
     integer, intent(in) :: points(lanes, 9)
     !> Unknowns of all points
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Unknowns of the nodes (lane, node, component); the first two components are left alone
+    !> Unknowns of the nodes (lane, node, component); the first two components are not changed
     real(wp), intent(inout) :: r(lanes, 9, 5)
     integer :: lane, a
 

@@ -20,8 +20,8 @@ module element_batches
   !> which shear_selective uses 4. An array of constant size is not on the heap.
   integer, parameter, public :: shear_size = lanes*9*2
 
-  !> A set of 9-node elements. Element e sits in batch `batch_of(e)`, lane `lane_of(e)`;
-  !> the lanes left over in the last batch repeat the last element with no weight and no section.
+  !> A set of 9-node elements. Element e is in batch `batch_of(e)`, lane `lane_of(e)`; the unused lanes of the last
+  !> batch repeat the last element with zero weights and zero section stiffness.
   type, public :: element_batches_t
     !> Number of elements
     integer :: elements = 0
@@ -33,12 +33,13 @@ module element_batches
     integer :: shear_points = 9
     !> Point of each node (lanes, 9, batches)
     integer, allocatable :: points(:, :, :)
-    !> Column of a field to which the contribution of each node is added, (lanes, 9, batches): its point, or where other
-    !> ranks contribute too a column of its own, from which contributions are added in the order of the mesh
+    !> Column of a field to which the contribution of each node is added, (lanes, 9, batches): its point or, where other
+    !> ranks contribute to this point too, a column of its own, from which contributions are added in the order of the
+    !> mesh
     integer, allocatable :: targets(:, :, :)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points (lanes, 9, 4, batches)
     real(wp), allocatable :: inverse_jacobian(:, :, :, :)
-    !> Area that belongs to each Gauss point (lanes, 9, batches); zero in lanes left over
+    !> Area that belongs to each Gauss point (lanes, 9, batches); zero in unused lanes
     real(wp), allocatable :: weight(:, :, :)
     !> As inverse_jacobian and weight, at the points where shear is integrated without assumed strains
     real(wp), allocatable :: shear_inverse_jacobian(:, :, :, :), shear_weight(:, :, :)
@@ -49,7 +50,7 @@ module element_batches
     real(wp), allocatable :: stiffness(:, :, :)
     !> Section mass I0, I1, I2 (lanes, 3, batches)
     real(wp), allocatable :: mass(:, :, :)
-    !> Slopes w,x and w,y of the shape without stress (lanes, 9, 2, batches); unallocated: the plate is flat
+    !> Slopes w0,x and w0,y of the stress-free shape (lanes, 9, 2, batches); unallocated: the plate is flat
     real(wp), allocatable :: initial_slopes(:, :, :, :)
   contains
     !> Builds the batches from a mesh.
@@ -74,7 +75,7 @@ contains
     integer, intent(in) :: connectivity(:, :)
     !> One of the shear_* choices
     integer, intent(in) :: shear
-    !> Raised when an element is turned over or has no area somewhere
+    !> Raised when an element is inverted or its Jacobian is not positive somewhere
     type(error_t), allocatable, intent(inout) :: error
     integer :: b, lane, element
 
@@ -150,7 +151,7 @@ contains
     lane_of = 1 + mod(element - 1, lanes)
   end function lane_of
 
-  !> Element in the first lane of a batch; the others follow.
+  !> Element in the first lane of a batch; those in the other lanes follow it.
   pure integer function first_element(b)
     !> Number of the batch
     integer, intent(in) :: b
@@ -230,7 +231,7 @@ contains
     if (.not. determinant > 0.0_wp) then
       write (number, '(i0)') element
       call fail(error, exit_deck, &
-                'Element '//trim(number)//' is turned over or too distorted: its Jacobian is not positive.')
+                'Element '//trim(number)//' is inverted or too distorted: its Jacobian is not positive.')
       return
     end if
     inverse = [along_eta(2), -along_xi(2), -along_eta(1), along_xi(1)]/determinant

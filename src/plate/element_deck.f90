@@ -1,4 +1,4 @@
-!> Strains, transverse shear and mass of the element: rows of the deck's table and their filling.
+!> Kinematics, transverse shear and mass of the element in the deck: rows of its table and their filling.
 module element_deck
   use deck_choices, only: code_of
   use deck_settings, only: settings_t
@@ -24,7 +24,7 @@ module element_deck
 
 contains
 
-  !> Strains of the case.
+  !> Kinematics of the case.
   subroutine fill_kinematics(settings, kinematics)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

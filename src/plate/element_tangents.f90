@@ -22,7 +22,7 @@ contains
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
-    !> Section stiffness left in the batch (lanes, 21)
+    !> Section stiffness of the damaged plies in the batch (lanes, 21)
     real(wp), intent(in) :: stiffness(:, :)
     !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
@@ -32,7 +32,7 @@ contains
     real(wp), intent(in) :: stiffness_factor, mass_factor
     !> Matrix of each element (lane, row, column); unknown = 5 (node - 1) + component
     real(wp), intent(out) :: k(lanes, 45, 45)
-    !> Resultants of strains that go without stress, and their energy per area; absent: none
+    !> Resultants of stress-free strains, and their energy per area; absent: none
     real(wp), intent(in), optional :: free(lanes, 7)
     real(wp) :: c(lanes, 21), x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9), values(9, 9)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes)

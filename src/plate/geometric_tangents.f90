@@ -19,7 +19,7 @@ contains
     real(wp), intent(in) :: x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9)
     !> Slopes w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
-    !> Membrane forces Nxx, Nyy, Nxy times the areas (and moments, not used)
+    !> Membrane forces Nxx, Nyy, Nxy times the areas; moments follow and are not used
     real(wp), intent(in) :: forces(lanes, 9, 6)
     !> Stiffness (lane, row, column), added to
     real(wp), intent(inout) :: k(lanes, 45, 45)
@@ -52,7 +52,7 @@ contains
     real(wp), intent(in) :: x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9)
     !> Slopes w,x and w,y at the Gauss points
     real(wp), intent(in) :: slopes(lanes, 9, 2)
-    !> Membrane forces Nxx, Nyy, Nxy times the areas (and moments, not used)
+    !> Membrane forces Nxx, Nyy, Nxy times the areas; moments follow and are not used
     real(wp), intent(in) :: forces(lanes, 9, 6)
     !> Stiffness (lane, row, column), added to
     real(wp), intent(inout) :: k(lanes, 45, 45)
@@ -87,7 +87,7 @@ contains
   subroutine add_coupling(c, first, weight, x_slopes, y_slopes, slopes, coupling)
     !> Stiffness 11, 12, 16, 22, 26, 66
     real(wp), intent(in) :: c(lanes, 6)
-    !> First of the two places in the coupling: 1 for u, v, 3 for the rotations
+    !> First row of the coupling that is added to: 1 for u, v, 3 for the rotations
     integer, intent(in) :: first
     !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)

@@ -1,4 +1,4 @@
-!> Inertia of the plate: consistent mass applied without a matrix, and mass lumped at the points.
+!> Inertia of the plate, theory (P7): consistent mass applied without a matrix, and mass lumped at the points.
 module inertia_forces
   use kinds, only: wp
   use lagrange9, only: gauss_shapes

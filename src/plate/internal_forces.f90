@@ -29,9 +29,9 @@ contains
     real(wp), intent(out) :: energy
     !> Updates the stiffness from the strains; absent: it is constant
     class(section_law_t), intent(inout), optional :: law
-    !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
+    !> Resultants Nxx to Mxy of stress-free strains, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
-    !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in lanes left over
+    !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in unused lanes
     real(wp), contiguous, intent(out), optional :: energies(:, :)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), stored(lanes)
     real(wp) :: resultants(lanes, 7)
@@ -88,7 +88,7 @@ contains
     call law%exchange()
   end subroutine share_strains
 
-  !> Turns the unknowns of a batch into its nodal forces, for linear strains.
+  !> Replaces the unknowns of a batch by its nodal forces, for linear strains.
   pure subroutine batch_force(batches, b, c, r)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -124,7 +124,7 @@ contains
     real(wp), intent(inout) :: r(lanes, 9, 5)
     !> Strain energy of each lane, added to
     real(wp), intent(inout) :: energies(lanes)
-    !> Resultants of strains that go without stress, and their energy per area
+    !> Resultants of stress-free strains, and their energy per area
     real(wp), intent(in), optional :: free(lanes, 7)
     real(wp) :: shear(shear_size)
 

@@ -28,10 +28,10 @@ module lagrange9
     [-gauss2 - 0.5_wp, 2.0_wp*gauss2, -gauss2 + 0.5_wp, &
      gauss2 - 0.5_wp, -2.0_wp*gauss2, gauss2 + 0.5_wp], [3, 2])
 
-  !> Place along xi and eta of each of nine nodes or Gauss points, and of each of four Gauss points.
+  !> Index along xi and eta of each of nine nodes or Gauss points, and of each of four Gauss points.
   integer, parameter :: i9(9) = [1, 2, 3, 1, 2, 3, 1, 2, 3], j9(9) = [1, 1, 1, 2, 2, 2, 3, 3, 3]
   integer, parameter :: i4(4) = [1, 2, 1, 2], j4(4) = [1, 1, 2, 2]
-  !> Place along and across of each of six samples on three lines of two.
+  !> Index along and across the lines of each of six samples, two on each of three lines.
   integer, parameter :: p6(6) = [1, 2, 1, 2, 1, 2], line6(6) = [1, 1, 2, 2, 3, 3]
 
   !> Weights of the 3x3 Gauss rule; those of the 2x2 rule are one.
@@ -46,23 +46,24 @@ module lagrange9
   !> Their derivatives with respect to xi and eta (node, point).
   real(wp), parameter, public :: gauss2_xi_slopes(9, 4) = slopes2(i9, i4)*values2(j9, j4)
   real(wp), parameter, public :: gauss2_eta_slopes(9, 4) = values2(i9, i4)*slopes2(j9, j4)
-  !> Straight lines through the 2-point rule at the 3-point rule (point of the former, of the latter).
+  !> Values at the 3-point rule of straight lines through values at the 2-point rule (point of the 2-point rule, of the
+  !> 3-point rule).
   real(wp), parameter :: lines2(2, 3) = reshape( &
     [0.5_wp + 0.5_wp*gauss3/gauss2, 0.5_wp - 0.5_wp*gauss3/gauss2, 0.5_wp, 0.5_wp, &
      0.5_wp - 0.5_wp*gauss3/gauss2, 0.5_wp + 0.5_wp*gauss3/gauss2], [2, 3])
-  !> Values at the 3x3 Gauss points from those at the 2x2 Gauss points (point of the latter, of the former).
+  !> Values at the 3x3 Gauss points from those at the 2x2 Gauss points (point of the 2x2 rule, of the 3x3 rule).
   real(wp), parameter, public :: gauss2_to_gauss3(4, 9) = lines2(i4, i9)*lines2(j4, j9)
   !> Values at the 3x3 Gauss points of strains sampled at xi = -+1/sqrt(3), eta = -1, 0, 1 (sample p + 2 j, point).
   real(wp), parameter, public :: row_samples(6, 9) = lines2(p6, i9)*values3(line6, j9)
   !> The same sampled at xi = -1, 0, 1, eta = -+1/sqrt(3) (sample p + 2 i, point).
   real(wp), parameter, public :: column_samples(6, 9) = lines2(p6, j9)*values3(line6, i9)
-  !> Values at the three nodes of a line of the straight line that fits best at its Gauss points (point, node). It
-  !> meets the parabola through them at the 2-point rule.
+  !> Values at the three nodes of a line of the least-squares straight line through the values at its Gauss points
+  !> (point, node). It intersects the parabola through these values at the points of the 2-point rule.
   real(wp), parameter :: fitted3(3, 3) = reshape( &
     [5.0_wp/18.0_wp + gauss3/1.2_wp, 4.0_wp/9.0_wp, 5.0_wp/18.0_wp - gauss3/1.2_wp, &
      5.0_wp/18.0_wp, 4.0_wp/9.0_wp, 5.0_wp/18.0_wp, &
      5.0_wp/18.0_wp - gauss3/1.2_wp, 4.0_wp/9.0_wp, 5.0_wp/18.0_wp + gauss3/1.2_wp], [3, 3])
-  !> From the 3x3 Gauss points to the nodes by way of the 2x2 Gauss points, bilinear through these (point, node).
+  !> Values at the nodes from those at the 3x3 Gauss points, bilinear through the 2x2 Gauss points (point, node).
   real(wp), parameter, public :: superconvergent_nodes(9, 9) = fitted3(i9, i9)*fitted3(j9, j9)
 
 contains
@@ -89,9 +90,9 @@ contains
 
   !> Derivatives of the shape functions.
   pure function shape_gradients(xi, eta) result(gradients)
-    !> Where
+    !> Natural coordinates of a point
     real(wp), intent(in) :: xi, eta
-    !> Derivatives with respect to xi (first column) and eta (second) a node
+    !> Derivatives with respect to xi (first column) and eta (second), one row per node
     real(wp) :: gradients(9, 2)
 
     gradients(:, 1) = products(line_slopes(xi), line_values(eta))

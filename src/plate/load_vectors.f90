@@ -9,7 +9,7 @@ module load_vectors
 
 contains
 
-  !> Adds the consistent forces of a pressure that varies.
+  !> Adds the consistent forces of a pressure that varies over the elements.
   pure subroutine add_pressure(batches, pressure, f)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -24,8 +24,9 @@ contains
     end do
   end subroutine add_pressure
 
-  !> Adds the weights by which nodal deflections make the integral of the deflection over a patch of elements;
-  !> divided by the area of the patch they make its mean, and a force on the patch is spread by the same weights.
+  !> Adds the weights of the nodal deflections in the integral of the deflection over a patch of elements. Divided by
+  !> the area of the patch, they give its mean deflection, and a force on the patch is distributed over the nodes by the
+  !> same weights, so that force and mean deflection are work-conjugate.
   pure subroutine add_patch_weights(batches, elements, weights)
     !> The elements
     type(element_batches_t), intent(in) :: batches

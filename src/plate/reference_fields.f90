@@ -64,7 +64,7 @@ contains
     end do
   end subroutine reference_values
 
-  !> Transposed of `reference_values`: adds the nodal forces of loads at the Gauss points.
+  !> Transpose of `reference_values`: adds the nodal forces of loads at the Gauss points.
   pure subroutine add_value_forces(values, f)
     !> Loads at the Gauss points
     real(wp), intent(in) :: values(lanes, 3, 3)
@@ -104,7 +104,7 @@ contains
     end do
   end subroutine reference_gradient
 
-  !> Transposed of `reference_gradient`: adds the nodal forces of stresses conjugate to the derivatives.
+  !> Transpose of `reference_gradient`: adds the nodal forces of stresses conjugate to the derivatives.
   pure subroutine add_gradient_forces(gradient, f)
     !> Stresses (lane, point, xi or eta)
     real(wp), intent(in) :: gradient(lanes, 3, 3, 2)
@@ -145,7 +145,7 @@ contains
     end do
   end subroutine line_values
 
-  !> Transposed of `line_values`.
+  !> Transpose of `line_values`.
   pure subroutine add_line_values(v1, v2, v3, f1, f2, f3)
     !> Loads at the Gauss points
     real(wp), intent(in) :: v1(lanes), v2(lanes), v3(lanes)
@@ -181,7 +181,7 @@ contains
     end do
   end subroutine line_slopes
 
-  !> Transposed of `line_slopes`.
+  !> Transpose of `line_slopes`.
   pure subroutine add_line_slopes(s1, s2, s3, f1, f2, f3)
     !> Stresses at the Gauss points
     real(wp), intent(in) :: s1(lanes), s2(lanes), s3(lanes)

@@ -143,7 +143,7 @@ contains
     end do
   end subroutine sample_stiffness
 
-  !> Stiffness of shear strains taken straight from the displacements.
+  !> Stiffness of shear strains computed directly from the displacements.
   subroutine add_integrated_tangent(n, inverse, weight, s, k)
     !> Number of shear points, 9 or 4
     integer, intent(in) :: n

@@ -41,8 +41,8 @@ contains
   end subroutine gauss_strains
 
   !> Strains at the nodes of a batch, bilinear through the 2x2 Gauss points of each element, where strains of nine-node
-  !> elements are most accurate. Parabolas through the 3x3 points carry errors of the quadratic part to the nodes: at
-  !> the front of a square delamination of four cells a side they left 8 % of the energy release rate out.
+  !> elements are most accurate. Parabolas through the 3x3 points extrapolate the error of the quadratic part to the
+  !> nodes: at the front of a square delamination of four cells per side they gave an energy release rate 8 % too low.
   subroutine nodal_strains(batches, b, kinematics, u, strains)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -73,7 +73,7 @@ contains
     integer, intent(in) :: kinematics
     !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> Strains (lane, component); zero in lanes left over
+    !> Strains (lane, component); zero in unused lanes
     real(wp), intent(out) :: strains(lanes, 8)
     real(wp) :: at_gauss(lanes, 9, 8), areas(lanes)
     integer :: component

@@ -26,7 +26,7 @@ contains
     real(wp), contiguous, intent(in) :: u(:, :), v(:, :)
     !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
-    !> Resultants Nxx to Mxy of strains that go without stress, and their energy per area, (lanes, 7, batches)
+    !> Resultants Nxx to Mxy of stress-free strains, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
     real(wp) :: at(lanes, 9, 5), r(lanes, 9, 5), forces(lanes, 9, 6), strains(lanes, 9, 6)
     real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes)
@@ -43,8 +43,8 @@ contains
           call in_plane_resultants(stiffness(:, :, b), weight, forces, unused)
           if (present(free)) call take_free_resultants(free(:, :, b), weight, forces)
           call in_plane_strains(inverse, kinematics, r, strains, change)
-          ! The strains of the motion contain half the square of its slopes, which the derivative replaces by the
-          ! following terms.
+          ! The strains of the motion contain half the square of its slopes. In the derivative these terms are replaced
+          ! by the following ones.
           call change_strains(slopes, change, strains)
         else
           call in_plane_strains(inverse, kinematics_linear, r, strains, change)
@@ -56,7 +56,7 @@ contains
     end do
   end subroutine add_tangent_force
 
-  !> Turns von Karman's strains of a motion into the change of the strains that it makes.
+  !> Converts von Karman's strains of a motion to the change of the strains by that motion.
   pure subroutine change_strains(slopes, change, strains)
     !> Slopes w,x and w,y, and their change (lane, point, direction)
     real(wp), intent(in) :: slopes(lanes, 9, 2), change(lanes, 9, 2)
@@ -69,7 +69,7 @@ contains
                        - change(:, :, 1)*change(:, :, 2)
   end subroutine change_strains
 
-  !> Adds the forces on w by membrane forces on the slopes.
+  !> Adds the forces on w by membrane forces times the change of the slopes (geometric stiffness).
   pure subroutine add_turned_forces(inverse, forces, change, f)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)

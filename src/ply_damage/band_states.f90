@@ -1,4 +1,4 @@
-!> Damage of the softening plies of all elements: of each ply in the elements that have it.
+!> Damage of the softening plies of all elements: one state per ply and element.
 module band_states
   use archives, only: archive_t
   use crack_bands, only: band_state_t, is_damaged
@@ -16,7 +16,7 @@ module band_states
     type(band_state_t), allocatable :: accepted(:), trial(:)
     !> First and last ply of each element, (2, elements)
     integer, allocatable :: range(:, :)
-    !> A ply of an element has the state at this place plus the number of the ply, (elements)
+    !> The state of a ply of an element has this index plus the number of the ply, (elements)
     integer, allocatable :: offset(:)
   contains
     !> Accepts the trial states of an element.
@@ -88,8 +88,8 @@ contains
     damaged = any(is_damaged(self%of_element(element)))
   end function damaged
 
-  !> Failed modes of a ply of an element in the trial: it has failed where its stress is zero, its matrix by crushing
-  !> where it has dissipated more energy in transverse compression than in tension.
+  !> Failed modes of a ply of an element in the trial: the ply has failed where its stress is zero, its matrix by
+  !> crushing where it has dissipated more energy in transverse compression than in tension.
   pure function failed_modes(self, ply, element) result(failed)
     !> The states
     class(band_states_t), intent(in) :: self
@@ -141,8 +141,8 @@ contains
     real(wp), dimension(:, :), allocatable :: table, strains, closed
     integer :: element, ply
 
-    ! A column has all plies of the laminate, so that each layer of an element that separates can read its plies from
-    ! that of the whole element.
+    ! A column has all plies of the laminate, so that, when an element is split into layers, each layer can read its
+    ! plies from the column of the undivided element.
     allocate (table(numbers*size(model%plies), size(self%offset)), strains(2*size(model%plies), size(self%offset)), &
               closed(2*size(model%plies), size(self%offset)), source=0.0_wp)
     do element = 1, size(self%offset)

@@ -1,6 +1,7 @@
-!> Softening plies in every element: one state per ply and element, driven by the mean square of the strains over the
-!> ply's volume there. Elements beside the lines of the struck point share their damage. Energy and force then derive
-!> from one potential, and the energy lost by damage is that of the law, for any strains within the element.
+!> Softening plies in every element: one state per ply and element, which depends on the mean squares of the strains
+!> over the ply's volume in the element. Elements beside the lines through the struck point share their damage. Energy
+!> and force then derive from one potential, and the energy lost by damage is that of the law, for any strains within
+!> the element.
 module crack_band_sections
   use archives, only: archive_t
   use band_states, only: band_states_t, new_band_states

@@ -1,8 +1,8 @@
 !> Elements on both sides of a line through the struck point or of a symmetry line. Their strains are equal, so that
-!> plies would fail in both at once, with two crack bands instead of one. For damage they are one element with the width
-!> of both and one damage per ply, computed from the strains of both. With mirror symmetry an element and its image have
-!> one damage in any case. With point symmetry the element beyond the cut is the image of one on the other side of the
-!> centre.
+!> plies would fail in both at once, with two crack bands instead of one. For damage they are treated as one element
+!> with the width of both and one damage per ply, computed from the strains of both. With mirror symmetry an element and
+!> its image have one damage in any case. With point symmetry the element beyond the cut is the image of an element on
+!> the other side of the centre.
 !>
 !> Permanent shear strains are not localised, and mirror images have opposite ones: each element has its own, and the
 !> common damage depends on the mean square of the elastic strains.
@@ -88,7 +88,7 @@ contains
     self%across = new_column_exchange(model%communicator, mine, self%parts)
   end function find_joined_elements
 
-  !> Numbers the non-zero entries consecutively.
+  !> Replaces the non-zero entries by consecutive numbers.
   pure subroutine number_them(numbers)
     !> Entries; zeros are unchanged
     integer, intent(inout) :: numbers(:)

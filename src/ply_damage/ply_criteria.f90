@@ -14,9 +14,9 @@ module ply_criteria
 
 contains
 
-  !> Failure indices of the plies of an element in each mode, failed or not: 1 where the criterion is met. They are
-  !> square roots of the criteria, which are proportional to the load but for the linear terms of crushing after Hou and
-  !> Hashin.
+  !> Failure indices of the plies of an element in each mode, failed or not: 1 where the criterion is met. They are the
+  !> square roots of the criteria, and thus proportional to the load except for the linear terms of crushing after Hou
+  !> and Hashin.
   function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)

@@ -19,8 +19,8 @@ module ply_failures
   public :: ply_failure_t, new_ply_failure
 
   !> Tolerance of the energy error of softening plies in a step, relative to the energy they dissipate in it and to the
-  !> total energy. The spurious energy of a step past a failure would cause further failures. Half and twice of them
-  !> choose other steps in implicit motion, and with these other failures (doc/studies/solution_controls.md).
+  !> total energy, theory (T4). The spurious energy of a step past a failure would cause further failures. With half or
+  !> twice these values implicit steps have other lengths, and other plies fail (doc/studies/solution_controls.md).
   real(wp), parameter :: path_tolerance = 0.1_wp, energy_tolerance = 3.0e-4_wp
 
   !> Failures of the plies of this rank's elements.
@@ -39,7 +39,7 @@ module ply_failures
     real(wp) :: dissipated(energy_modes) = 0
     !> Energy dissipated by their permanent shear strains
     real(wp) :: permanent_shear = 0
-    !> Lag of damage: energy error of the last step relative to its limit
+    !> Lag of damage: energy error of the last step relative to its limit, theory (T4)
     real(wp) :: damage_lag = 0
     !> True while softening plies keep their stiffness, during the transfer of a state to other layers
     logical :: keeps_stiffness = .false.
@@ -103,7 +103,7 @@ contains
     real(wp), intent(out) :: energy
 
     if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
-      ! Unallocated resultants count as absent.
+      ! Unallocated resultants are passed on as an absent argument.
       call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
       self%stiffness = self%bands%stiffness
       if (allocated(self%free)) self%free = self%bands%free
@@ -164,8 +164,8 @@ contains
     self%permanent_shear = energies(energy_modes + 1)
   end subroutine total_dissipation
 
-  !> Measures the lag of damage: the difference of the work on softening plies and the energy they store and dissipate.
-  !> A step past an instability reaches a state without the work along the path.
+  !> Measures the lag of damage: the difference of the work on softening plies and the energy they store and dissipate,
+  !> theory (T4). A step past an instability reaches a state without the work along the path.
   pure subroutine measure_lag(self, dissipated, stored, energy)
     !> The failures
     class(ply_failure_t), intent(inout) :: self

@@ -14,7 +14,8 @@ module ply_fields
   private
   public :: write_ply_fields
 
-  !> Cells between name and meaning: of stiffness lost, of stresses in the mid-plane of a ply and of those on its faces.
+  !> Columns of a row between name and meaning: of stiffness lost, of stresses in the mid-plane of a ply and on its
+  !> faces.
   character(len=*), parameter :: damaged = ' | cells | - | '//field_ply_damage//' | &ply_damage | '
   character(len=*), parameter :: middle = ' | cells | pressure | '//field_stress//' | - | ', &
                                  faces = ' | cells | pressure | '//field_face_stress//' | - | '

@@ -1,5 +1,5 @@
-!> The seal in the header of a checkpoint: format, length, and checksum of the rest. It is written last, so that a file
-!> with a valid seal is complete, and any later change is detected.
+!> The seal in the header of a checkpoint: format, length, and checksum of the remainder. It is written last, so that a
+!> file with a valid seal is complete, and any later change is detected.
 module checkpoint_seal
   use, intrinsic :: iso_fortran_env, only: int32, int8
   use errors, only: error_t, exit_files, fail
@@ -10,11 +10,11 @@ module checkpoint_seal
   private
   public :: seal, verify_seal, synchronise_folder, crc32
 
-  !> Bytes of the head of the file, which HDF5 reserves for the user.
+  !> Bytes of the header of the file, which HDF5 reserves for the user.
   integer, parameter, public :: head_length = 512
-  !> First line of the head.
+  !> First line of the header.
   character(len=*), parameter :: title = 'IMPLAM CHECKPOINT'
-  !> Second line of the head; the number changes when older files cannot be read.
+  !> Second line of the header; its number changes when older files cannot be read.
   character(len=*), parameter :: format_line = 'format 5'
   !> End of a line.
   character(len=*), parameter :: end_of_line = new_line('a')
@@ -27,7 +27,7 @@ module checkpoint_seal
 
 contains
 
-  !> Writes the seal into the free head of a file, and waits until the file is on the disk.
+  !> Writes the seal into the header of a file, and waits until the file is on the disk.
   subroutine seal(path, error)
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -88,13 +88,13 @@ contains
     if (entries%failed) call fail(error, exit_files, "Cannot write the folder "//path//' out to the disk.')
   end subroutine synchronise_folder
 
-  !> The head of a file with a given body.
+  !> The header of a file with a given body.
   pure function head(bytes, crc)
     !> Length of the body
     integer(long), intent(in) :: bytes
     !> Checksum of the body
     integer(int32), intent(in) :: crc
-    !> The head: lines of text, blanks and a last line end
+    !> The header: lines of text, blanks and a last line end
     character(len=head_length) :: head
 
     write (head, '(4a,a,i0,2a,z8.8,a)') title, end_of_line, format_line, end_of_line, &

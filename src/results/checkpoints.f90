@@ -1,5 +1,5 @@
 !> NAME_restart.h5: the state, bitwise exact, for any number of ranks. It is written to another file, sealed and
-!> renamed: the file of that name is valid at any time, the one before or the new one.
+!> renamed, so that the file of that name is valid at any time.
 module checkpoints
   use archives, only: archive_t
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
@@ -131,7 +131,7 @@ contains
         if (.not. allocated(fault)) exit
         path = ''
       end do
-      if (path == '') call fail(error, exit_files, 'The folder '//folder//' holds no whole checkpoint (NAME'// &
+      if (path == '') call fail(error, exit_files, 'The folder '//folder//' contains no complete checkpoint (NAME'// &
                                 checkpoint_ending//').')
     end if
     call communicator%agree(error)

@@ -119,8 +119,8 @@ contains
     call file%open(communicator, base//'.h5', writable=.false.)
     call read_text(file, 'provenance/deck', found)
     if (file%succeeded() .and. found /= deck) &
-      call fail(error, exit_files, 'The fields '//base//'.h5 are those of another deck than the checkpoint''s; '// &
-                'move them away, or take the checkpoint of that run.')
+      call fail(error, exit_files, 'The fields '//base//'.h5 belong to another deck than the checkpoint; '// &
+                'move the file away, or use the checkpoint of its run.')
     call file%close()
   end subroutine check_deck
 

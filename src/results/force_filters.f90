@@ -1,5 +1,5 @@
 !> Low-pass filter of the contact force, as in amplifiers of test rigs: Butterworth of 4th order. It is causal, so that
-!> the filtered force lags by 2.6 over the corner's angular frequency.
+!> the filtered force lags by 2.6 divided by the angular corner frequency.
 !>
 !> Two sections x'' + 2 zeta omega x' + omega**2 x = omega**2 f in series, with zeta = cos(pi/8) and cos(3 pi/8) (S.
 !> Butterworth, Experimental Wireless 7 (1930) 536). Each is integrated by the trapezoidal rule, which is stable for any

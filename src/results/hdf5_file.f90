@@ -16,8 +16,8 @@ module hdf5_file
   private
   public :: hdf5_file_t, files_left_open
 
-  !> Bytes reserved on the disk while data are written, and freed before the file is closed, for the metadata of HDF5,
-  !> which crashes or hangs if it cannot close a file.
+  !> Bytes reserved on the disk while data are written, and freed for the metadata of HDF5 before the file is closed:
+  !> HDF5 crashes or hangs if it cannot write these.
   integer, parameter :: reserved_bytes = 1048576
 
   !> An open file.
@@ -30,7 +30,7 @@ module hdf5_file
     integer(hid_t) :: id = -1
     !> Property list: all ranks transfer together; negative between closing and opening
     integer(hid_t) :: together = -1
-    !> Property list: missing groups of a path are made
+    !> Property list: missing groups of a path are created
     integer(hid_t) :: with_groups = -1
     !> Property list: datasets carry no dates, so equal runs give equal files
     integer(hid_t) :: undated = -1
@@ -151,7 +151,7 @@ contains
     call self%communicator%barrier()
   end subroutine remove_reserve
 
-  !> Starts the library if need be, silences its own messages and makes the property lists.
+  !> Starts the library if necessary, silences its own messages and creates the property lists.
   subroutine prepare(self, access_list)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -160,7 +160,7 @@ contains
     integer :: status
     logical :: started
 
-    ! The library's type constants are made by h5open_f, anew at each call.
+    ! h5open_f creates the type constants of the library again at each call.
     call h5iis_valid_f(h5t_native_integer, started, status)
     if (.not. started) call h5open_f(status)
     call h5eset_auto_f(0, status)
@@ -199,8 +199,8 @@ contains
     ignored = set_locking(int(access_list, c_int64_t), .false._c_bool, .true._c_bool)
   end subroutine leave_unlocked
 
-  !> Closes the file, also after a failure to open it. On several ranks HDF5 waits for ever if one of them cannot write
-  !> the metadata: where half the reserve cannot be written the file stays open.
+  !> Closes the file, also after a failure to open it. On several ranks HDF5 waits forever if one of them cannot write
+  !> the metadata: if not even half of the reserve can be written, the file is not closed.
   subroutine close (self)
     !> The file
     class(hdf5_file_t), intent(inout) :: self
@@ -253,7 +253,7 @@ contains
 
     if (allocated(self%failure)) return
     if (.not. self%communicator%any(status < 0)) return
-    ! While data are written the reserve is there: less than its size was left for them.
+    ! The reserve exists while data are written: less space than its size remained for the data.
     self%failure = obstacle_of(self, reserved_bytes)
     if (self%failure == '') self%failure = failure
   end subroutine check_status
@@ -294,7 +294,7 @@ contains
     exists = exists .and. status == 0
   end function exists
 
-  !> Makes a group, and those above it that are missing.
+  !> Creates a group, and the missing groups above it.
   subroutine make_group(self, path)
     !> The file
     class(hdf5_file_t), intent(inout) :: self

@@ -37,7 +37,7 @@ contains
     call h5dclose_f(dataset, status)
   end function stored_shape
 
-  !> Makes a dataset and writes this rank's columns of it.
+  !> Creates a dataset and writes this rank's columns of it.
   subroutine put(file, name, stored_type, native_type, address, extents, columns)
     !> The file
     type(hdf5_file_t), intent(inout) :: file
@@ -145,8 +145,8 @@ contains
     end if
   end subroutine make_spaces
 
-  !> Chooses scattered columns of a list or table number by number: the time taken grows with their number,
-  !> whereas that of a union of blocks grows with its square.
+  !> Selects scattered columns of a list or table number by number: the time grows in proportion to their number, that
+  !> for a union of blocks with its square.
   subroutine select_scattered(space, rank, height, columns)
     !> The list or table in the file
     integer(hid_t), intent(in) :: space

@@ -12,8 +12,8 @@ module history_file
   private
   public :: history_file_t
 
-  !> Longest time in seconds that a row may wait before it is in the file: short for a reader, while writes that are
-  !> this rare take no measurable time. It changes no result.
+  !> Longest time in seconds before a row is written to the file: short for a reader, while writes that are this rare
+  !> take no measurable time. It has no effect on results.
   real(wp), parameter :: longest_wait = 3
   !> Bytes read at a time.
   integer, parameter :: block_length = 65536
@@ -77,7 +77,8 @@ contains
   end subroutine create
 
   !> Continues a history: rows up to the checkpoint are kept, later ones removed. If there are fewer rows, or no file,
-  !> it continues with these; `rows` has their number. If its row at the checkpoint differs, the history is not changed.
+  !> the history continues after these; `rows` is their number. If the row at the checkpoint differs from that of the
+  !> run, the history is not changed.
   subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
     !> The history
     class(history_file_t), intent(inout) :: self
@@ -174,7 +175,8 @@ contains
     call self%check_presence(error)
   end subroutine close
 
-  !> Raises an error on all ranks if the file has been removed, to which rows could still be written without trace.
+  !> Raises an error on all ranks if the file has been removed; rows written to a removed file would be lost without an
+  !> error.
   subroutine check_presence(self, error)
     !> The history
     class(history_file_t), intent(in) :: self
@@ -238,8 +240,8 @@ contains
       if (status /= 0) then
         call fail(error, exit_files, "Cannot read the history "//from//'.')
       else if (.not. same) then
-        call fail(error, exit_files, 'The history '//from//' is that of another run than the checkpoint: row '// &
-                  to_text(rows_to_keep)//' differs; move it away, or take the checkpoint of that run.')
+        call fail(error, exit_files, 'The history '//from//' belongs to another run than the checkpoint: row '// &
+                  to_text(rows_to_keep)//' differs; move the history away, or use the checkpoint of its run.')
       else
         call copy%open(to, 'w')
         call copy_bytes(unit, bytes, copy, status)

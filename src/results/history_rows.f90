@@ -1,5 +1,5 @@
 !> Header and rows of a history as text. Cells of a row are right-aligned by blanks, which all readers of CSV accept
-!> before numbers. Names have no blanks, which many readers would keep.
+!> before numbers. Names have no blanks, which many readers would treat as part of the name.
 module history_rows
   use kinds, only: long, wp
   use text, only: to_text

@@ -1,5 +1,5 @@
-!> Output times: steps end at them exactly. Almost equal times are one event, since a step of their distance would be
-!> too short: fronts would continue to grow in it.
+!> Output times, at which steps end exactly. Almost equal times are one event, since a step over their difference would
+!> be too short: fronts would continue to grow in it.
 module output_clocks
   use kinds, only: wp
   use archives, only: archive_t
@@ -7,7 +7,8 @@ module output_clocks
   private
   public :: clock_t, next_event, shown_time
 
-  !> Distance of two events, relative to their time, that rounding may bring about: multiples of an interval lose 1e-16.
+  !> Distance of two events, relative to their time, up to which it is round-off: multiples of an interval have one of
+  !> 1e-16.
   real(wp), parameter :: rounding = 1.0e-12_wp
 
   !> A clock with events at multiples of an interval.

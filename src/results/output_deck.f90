@@ -7,6 +7,7 @@ module output_deck
   use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity, field_gap, &
                                field_contact_pressure, field_delamination, field_energy_release, field_ply_damage
   use kinds, only: wp
+  use short_numbers, only: text_at_least
   use text, only: joined, lower_case, to_text, words_of
   implicit none
   private
@@ -41,10 +42,10 @@ module output_deck
     field_displacement//','//field_rotation//','//field_velocity//','//field_gap//','//field_contact_pressure//','// &
     field_delamination//','//field_energy_release//','//field_ply_damage
 
-  !> Most events of a run, the same as its steps: default integers reach 2.1e9.
+  !> Largest number of events of a run, the same as of its steps: default integers reach 2.1e9.
   real(wp), parameter :: max_events = 1.0e8_wp
-  !> Fraction of a step below which an interval is reported: outputs then more than double the steps. It decides on a
-  !> remark.
+  !> Ratio of an interval to the step below which the interval is reported: the number of steps is then more than
+  !> doubled. It affects a warning only.
   real(wp), parameter :: short = 0.5_wp
 
 contains
@@ -83,7 +84,7 @@ contains
       if (.not. every > 0) cycle
       if (end > max_events*every) then
         call report(settings, problems, group, trim(keys(i)), 'makes more than '//to_text(max_events)//' steps; '// &
-                  'allowed: from '//to_text(end/max_events)//'.')
+                  'allowed: from '//text_at_least(end/max_events)//'.')
       else if (every < short*step) then
         call remark(settings, problems, group, trim(keys(i)), 'every step becomes that short, '// &
                     to_text(nint(step/every))//' times as many as with steps of '//to_text(step)//'.')

@@ -14,7 +14,7 @@ module output_parameters
 
   !> Outputs; an interval of 0 means never (fields, checkpoint) or every accepted step (history).
   type :: output_t
-    !> Folder of the results, made if it is not there
+    !> Folder of the results, created if it does not exist
     character(len=:), allocatable :: directory
     !> Time between rows of the history; 0: every accepted step
     real(wp) :: history_every = 0

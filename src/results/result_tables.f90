@@ -143,7 +143,7 @@ contains
     is_place = is_one_of(word, places)
   end function is_place
 
-  !> True for one of several words.
+  !> True if a word is one of several.
   pure logical function is_one_of(word, words)
     !> A word
     character(len=*), intent(in) :: word

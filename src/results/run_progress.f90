@@ -8,7 +8,7 @@ module run_progress
   private
   public :: progress_t
 
-  !> Seconds between two drawings of the bar, as fast as one reads. These three change no result.
+  !> Seconds between two updates of the bar, short for a reader. These three values have no effect on results.
   real(wp), parameter :: between_bars = 0.2_wp
   !> Seconds between two lines, unless the next fraction is completed earlier.
   real(wp), parameter :: between_lines = 10

@@ -74,7 +74,7 @@ contains
     run%ranks = ranks
   end function this_run
 
-  !> Writes the provenance to the log; the deck goes to the log file only.
+  !> Writes the provenance to the log; the deck is written to the log file only.
   subroutine report(self, log)
     !> The provenance
     class(provenance_t), intent(in) :: self

@@ -5,8 +5,8 @@ module wall_limits
   private
   public :: wall_limit_t
 
-  !> Reserve, in durations of the longest step so far: two for the next step, which may take longer, and one for the
-  !> checkpoint.
+  !> Reserve before the limit, in durations of the longest step so far: two for the next step, which may take longer,
+  !> and one for the checkpoint.
   real(wp), parameter :: reserve = 3
   !> Seconds for the start and end of the process: libraries take .1 s, a file system of a cluster some tenths more.
   real(wp), parameter :: outside = 2

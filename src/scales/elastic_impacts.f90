@@ -1,5 +1,5 @@
-!> A preliminary elastic impact: the impactor coupled to the modes of the plate, with the steps of the run. In
-!> milliseconds it gives force, duration and number of contacts, and the errors of step and mesh.
+!> A preliminary elastic impact: the impactor coupled to the modes of the plate, with the steps of the run. It gives
+!> force, duration and number of contacts, and the errors by step and mesh, in milliseconds of computing time.
 module elastic_impacts
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use kinds, only: wp
@@ -21,27 +21,27 @@ module elastic_impacts
     real(wp) :: peak = 0, peak_time = 0
     !> Largest indentation and deflection of the patch
     real(wp) :: indentation = 0, deflection = 0
-    !> Time after which the force never passes a hundredth of its peak again
+    !> Time after which the force no longer exceeds a hundredth of its peak
     real(wp) :: last_contact = 0
     !> Total time of contact, and velocity of the impactor at the end
     real(wp) :: duration = 0, velocity = 0
     !> Number of contacts
     integer :: contacts = 0
-    !> The contact was over before the steps were
+    !> True: the contact ended before the last step
     logical :: complete = .false.
-    !> There was contact in the last step, so that `last_contact` is only the end of the calculation
+    !> True: there was contact in the last step, so that `last_contact` is only the end of the calculation
     logical :: is_cut = .false.
   end type elastic_impact_t
 
-  !> Fraction of the largest force that counts as contact: as much as its permitted error, 1 %.
+  !> Fraction of the largest force above which the force counts as contact: 1 %, its permitted error.
   real(wp), parameter :: contact_part = 0.01_wp
   !> A contact that ended is taken to be the last if none follows for as long as it took up to then. At its
   !> velocity the impactor is then farther away than the plate has moved.
   real(wp), parameter :: waiting = 2
-  !> Fraction of the largest force above which a contact is compared with it: errors permitted, at most 5 %, cannot make
-  !> a smaller one the largest.
+  !> Fraction of the largest force above which the peak of a contact is compared, too: with the errors permitted, at
+  !> most 5 %, a smaller peak cannot become the largest.
   real(wp), parameter :: min_peak_ratio = 0.9_wp
-  !> Halvings and Newton steps for the force; Newton needs five.
+  !> Largest number of bisections and Newton steps for the force; Newton's method needs five.
   integer, parameter :: max_iterations = 60
 
 contains
@@ -111,9 +111,9 @@ contains
     type(indentation_t), intent(in) :: contact
     !> Indentation without force
     real(wp), intent(in) :: free
-    !> Indentation lost per unit of force
+    !> Decrease of the indentation per unit of force
     real(wp), intent(in) :: compliance
-    !> The force of the step before, to begin with; receives the new one
+    !> The force of the step before as first guess; receives the new one
     real(wp), intent(inout) :: force
     real(wp) :: low, high, rest, next, touch
     integer :: i
@@ -173,9 +173,9 @@ contains
     end associate
   end function difference
 
-  !> The same, but with the largest error among the peaks of all contacts whose force is nearly the largest. In repeated
-  !> contacts the error of a single peak may be small by coincidence, so that it is no bound. Of one contact, however
-  !> long, only the largest force counts.
+  !> The same, but with the largest error among the peaks of all contacts whose force is close to the largest. In
+  !> repeated contacts the error of a single peak may be small by coincidence, so that it is no bound. In a single
+  !> contact only the largest force counts.
   pure function bound_of_difference(coarse, fine, ratio) result(relative)
     !> The elastic impact with the longer steps
     type(elastic_impact_t), intent(in) :: coarse
@@ -204,7 +204,8 @@ contains
   end function bound_of_difference
 
   !> Root mean square difference of two elastic impacts around the largest force of the finer one, as a force. In a long
-  !> contact the error at the instant of the peak may vanish by chance; those around it count.
+  !> contact the error at the instant of the peak may vanish by coincidence; therefore the forces around it are
+  !> included.
   pure real(wp) function difference_at_peak(coarse, fine, ratio, beside) result(force)
     !> The elastic impact with the longer steps
     type(elastic_impact_t), intent(in) :: coarse
@@ -212,7 +213,7 @@ contains
     type(elastic_impact_t), intent(in) :: fine
     !> Steps of the finer one in one of the coarser
     integer, intent(in) :: ratio
-    !> Steps of the coarser one that are compared before and after the largest force
+    !> Number of steps of the coarser one that are compared before and after the largest force
     integer, intent(in) :: beside
     integer :: number, at, first, last
 

@@ -1,4 +1,4 @@
-!> Discrete Fourier transforms, and by them sums of sines whose frequencies lie anywhere.
+!> Discrete Fourier transforms, and sums of sines of arbitrary frequencies computed by these.
 module fourier_transforms
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -6,17 +6,18 @@ module fourier_transforms
   private
   public :: fourier, roots_of_unity, sums_of_sines
 
-  !> Points that a sine is spread to on either side: 12 give twelve digits with a grid twice as fine as needed
-  !> (Greengard and Lee, Accelerating the nonuniform fast Fourier transform, SIAM Review 46, 2004, table 1).
+  !> Number of grid points on either side over which a sine is distributed: 12 give twelve digits with a grid twice as
+  !> fine as needed (L. Greengard, J.-Y. Lee, Accelerating the nonuniform fast Fourier transform, SIAM Review 46 (2004),
+  !> table 1).
   integer, parameter :: spread_points = 12
 
 contains
 
-  !> exp(-2 pi i j/number) of j = 0 to number/2 - 1, which transforms of `number` values or a part of them take.
+  !> exp(-2 pi i j/number) for j = 0 to number/2 - 1, for transforms of `number` values or of a number that divides it.
   pure function roots_of_unity(number) result(roots)
-    !> Values, a power of two
+    !> Number of values, a power of two
     integer, intent(in) :: number
-    !> On the unit circle
+    !> The roots
     complex(wp), allocatable :: roots(:)
     integer :: j
 
@@ -25,9 +26,9 @@ contains
 
   !> Transforms values in place, to sum_k value_k exp(-2 pi i j k/number), by Stockham's method.
   pure subroutine fourier(values, roots)
-    !> A power of two of them
+    !> The values; their number is a power of two
     complex(wp), intent(inout), contiguous :: values(0:)
-    !> `roots_of_unity` of as many or a power of two times as many
+    !> `roots_of_unity` for this number, or for a power of two times it
     complex(wp), intent(in), contiguous :: roots(0:)
     complex(wp), allocatable :: other(:)
     integer :: half, together, stride
@@ -52,7 +53,7 @@ contains
 
   !> One pass of a transform.
   pure subroutine halve(half, together, roots, from, to)
-    !> Pairs, and values that lie together in each
+    !> Number of pairs, and of adjacent values in each
     integer, intent(in) :: half, together
     !> Root of unity of each pair
     complex(wp), intent(in) :: roots(0:)
@@ -68,12 +69,13 @@ contains
     end do
   end subroutine halve
 
-  !> Sums of weight sin(n angle) over all angles for n = 1 to number, each to about twelve digits of the sum of weights.
-  !> Each is spread to a grid as a Gaussian, by whose transform that of the grid is divided.
+  !> Sums of weight sin(n angle) over all angles for n = 1 to number, each to about twelve digits of the sum of the
+  !> weights. Each angle is distributed over a grid as a Gaussian, and the transform of the grid is divided by that of
+  !> the Gaussian.
   pure function sums_of_sines(angle, weight, number) result(sums)
     !> Angles, from 0 to pi, and their weights
     real(wp), intent(in) :: angle(:), weight(:)
-    !> Sums wanted, a power of two
+    !> Number of sums, a power of two
     integer, intent(in) :: number
     !> The sums
     real(wp) :: sums(number)
@@ -84,7 +86,7 @@ contains
 
     points = 4*number
     apart = 2*pi/points
-    ! Width of the Gaussian that balances both truncation errors, for a grid twice as fine.
+    ! Width of the Gaussian that makes both truncation errors equal, for a grid twice as fine.
     width = pi*spread_points/(3*real(number, wp)**2*4)
     allocate (grid(0:points - 1), source=(0.0_wp, 0.0_wp))
     narrow = [(exp(-(j*apart)**2/(4*width)), j=1 - spread_points, spread_points)]

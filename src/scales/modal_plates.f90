@@ -1,8 +1,8 @@
-!> A plate struck at its centre as the sum of its modes, for estimates before a run.
+!> A plate struck at its centre, represented by its modes, for estimates before a run.
 !>
-!> The modes are Navier's of a simply supported orthotropic Mindlin plate with rotary inertia, the rotations condensed
-!> out. Other supports are estimated: a clamped edge shortens the plate to the length with the right first frequency,
-!> and free opposite edges have cosines, with the rigid-body motion.
+!> The modes are Navier's modes of a simply supported orthotropic Mindlin plate with rotary inertia, with the rotations
+!> condensed out. Other supports are approximated: a plate with clamped edges is replaced by a shorter one with the same
+!> first frequency, and free opposite edges have cosines, with the rigid-body motion.
 module modal_plates
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -11,32 +11,34 @@ module modal_plates
   private
   public :: modal_plate_t, modal_plate_of, reduced
 
-  !> Modes that a force spread over a patch in the middle excites.
+  !> Modes that a force distributed over a patch in the middle excites.
   type :: modal_plate_t
     !> Circular frequency of each mode
     real(wp), allocatable :: frequency(:)
-    !> Square of the mode's mean over the patch, over its modal mass, 1/mass
+    !> Square of the mean of the mode over the patch divided by its modal mass, 1/mass
     real(wp), allocatable :: weight(:)
     !> Wave numbers along x and y, (2, modes)
     real(wp), allocatable :: wave_number(:, :)
-    !> Deflection of the patch per force by all modes that are not listed
+    !> Deflection of the patch per force by all modes that are not listed, quasi-static
     real(wp) :: rest = 0
   end type modal_plate_t
 
-  !> Length of a simply supported plate over that of one with a pair of other supports. Square plates have their first
-  !> frequency at 19.74 (SSSS), 28.95 (SCSC) and 23.65 (SSSC) times sqrt(D/(rho h))/a**2 (Leissa 1969); beams with a
-  !> free end at 3.516 instead of 9.870, and 15.42 for the first bending of one that turns about its support.
+  !> Length of a simply supported plate over that of a plate with other supports at a pair of edges and the same first
+  !> frequency. Square plates have their first frequency at 19.74 (SSSS), 28.95 (SCSC) and 23.65 (SSSC) times
+  !> sqrt(D/(rho h))/a**2 (A. W. Leissa, Vibration of Plates, NASA SP-160, 1969); beams with a free end at 3.516 instead
+  !> of 9.870, and at 15.42 for the first bending mode of one hinged at its support.
   real(wp), parameter :: shortened_clamped = 0.719_wp, shortened_one_clamped = 0.846_wp, &
                          lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Largest number of modes along one direction; the deflection by higher ones is negligible for an estimate.
   integer, parameter :: max_modes = 300
-  !> Modes along one direction whose half wave is no shorter than this part of the patch are summed up: shorter ones
-  !> have (sin x/x)**2 < .026, x > 2 pi, times the load of a point, and a compliance that falls with the fourth power.
+  !> Modes along one direction are included if their half wave is no shorter than this fraction of the patch: for
+  !> shorter ones, x > 2 pi, the load is (sin x/x)**2 < .026 times that of a point load, and the compliance decreases
+  !> with the fourth power of the wave number.
   real(wp), parameter :: part_of_patch = 0.25_wp
 
 contains
 
-  !> Modes of a plate up to a frequency, and the compliance of all others.
+  !> Modes of a plate up to a frequency, and the static compliance of all higher modes.
   pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff) result(plate)
     !> Lengths of the full plate along x and y
     real(wp), intent(in) :: length(2)
@@ -123,8 +125,8 @@ contains
     end if
   end function length_factor
 
-  !> Stiffness and mass of a mode against its deflection, per area, the rotations following without inertia of their own
-  !> but for that of the slope.
+  !> Stiffness and mass of a mode per area, for its deflection. The rotations are condensed statically; their inertia is
+  !> that of the slope.
   pure function condensed_mode(a, b, stiffness, mass) result(condensed)
     !> Wave numbers along x and y
     real(wp), intent(in) :: a, b
@@ -146,7 +148,7 @@ contains
     condensed(2) = mass(1) + mass(3)*dot_product(turn, turn)
   end function condensed_mode
 
-  !> The plate with its modes up to a lower frequency; the others become compliance.
+  !> The plate with its modes up to a lower frequency; the other modes contribute their static compliance.
   pure function reduced(plate, cutoff) result(fewer)
     !> The plate
     type(modal_plate_t), intent(in) :: plate

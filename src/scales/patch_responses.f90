@@ -2,10 +2,10 @@
 !> acceleration.
 !>
 !> The response to a force depends only on the number of steps since it acted. The responses of all modes are therefore
-!> summed to one, with which the forces are convolved. Forces are known only up to the present step, so that they are
-!> taken in blocks of doubling size (Hairer, Lubich and Schlichte, Fast numerical solution of nonlinear Volterra
-!> convolution equations, SIAM J. Sci. Stat. Comput. 6, 1985): the work grows with the steps times the square of their
-!> logarithm, and not with the steps times the modes.
+!> added to one response, with which the forces are convolved. Forces are known only up to the present step and are
+!> therefore convolved in blocks of doubling size (E. Hairer, Ch. Lubich, M. Schlichte, Fast numerical solution of
+!> nonlinear Volterra convolution equations, SIAM J. Sci. Stat. Comput. 6 (1985)): the number of operations grows with
+!> the steps times the square of their logarithm, and not with the steps times the modes.
 module patch_responses
   use fourier_transforms, only: fourier, roots_of_unity, sums_of_sines
   use kinds, only: wp
@@ -14,9 +14,10 @@ module patch_responses
   private
   public :: patch_response_t, start_response, predicted_deflection, predict_deflections, block_steps
 
-  !> Steps whose forces are convolved one by one, and those of a block whose forces are convolved without transforms.
+  !> Number of steps whose forces are convolved one by one, and largest block whose forces are convolved without
+  !> transforms.
   integer, parameter :: block_steps = 64, direct_steps = 256
-  !> Steps that the response is found for where the end is not known.
+  !> Number of steps for which the response is computed first where the end is not known.
   integer, parameter :: first_steps = 1024
 
   !> A transform of one length.
@@ -37,9 +38,10 @@ module patch_responses
     real(wp), allocatable :: later(:)
     !> Deflection at the ends of all steps by the forces of completed blocks
     real(wp), allocatable :: predicted(:)
-    !> Transforms of the response by the power of two of the block that they are convolved with
+    !> Transforms of the response, by the exponent of the length of the block with which they are convolved, a power of
+    !> two
     type(spectrum_t) :: spectra(31)
-    !> Roots of unity for the transforms of these lengths
+    !> Roots of unity for these transforms
     complex(wp), allocatable :: roots(:)
   end type patch_response_t
 
@@ -70,8 +72,8 @@ contains
     call find_unit_response(self, known)
   end function start_response
 
-  !> Finds the response for a number of steps. By the average acceleration the phase of a mode grows by theta in a step,
-  !> tan(theta/2) = omega step/2, and its response to a unit force is a sine.
+  !> Computes the response for a number of steps. By the average acceleration the phase of a mode increases by theta in
+  !> a step, tan(theta/2) = omega step/2, and its response to a unit force is a sine.
   pure subroutine find_unit_response(self, steps)
     !> The response
     type(patch_response_t), intent(inout) :: self
@@ -103,7 +105,7 @@ contains
     deflection = self%predicted(step) + dot_product(self%later(:since), force(step - 1:step - since:-1))
   end function predicted_deflection
 
-  !> Adds the convolution with the forces of the last block to the following steps, as many as the block has.
+  !> Adds the convolution with the forces of the last block to the same number of following steps.
   pure subroutine predict_deflections(self, now, force)
     !> The response
     type(patch_response_t), intent(inout) :: self
@@ -148,7 +150,7 @@ contains
       values(:length) = cmplx(force, 0.0_wp, wp)
       values(length + 1:) = 0
       call fourier(values, self%roots)
-      ! The conjugate of a conjugate's transform goes back.
+      ! The inverse transform is the conjugate of the transform of the conjugate, apart from a factor.
       values = conjg(values*spectrum%value)
       call fourier(values, self%roots)
       self%predicted(now + 1:last) = self%predicted(now + 1:last) + real(values(length + 1:length + last &

@@ -1,4 +1,5 @@
-!> Permitted scaling of inertia, by the effect of scaled rotary inertia on a preliminary elastic impact.
+!> Permitted scaling of inertia (doc/theory/time_integration.md, explicit steps), by the effect of scaled rotary inertia
+!> on a preliminary elastic impact.
 module scaled_impacts
   use elastic_impacts, only: difference, elastic_impact_t
   use kinds, only: wp
@@ -14,30 +15,30 @@ module scaled_impacts
   type :: scaled_impact_t
     !> The factor
     real(wp) :: scaling = 1
-    !> Share by which it slows the bending waves of first contact
+    !> Fraction by which it slows the bending waves of first contact
     real(wp) :: slowed = 0
     !> Change of the force history, relative L2 norm
     real(wp) :: change = 0
   end type scaled_impact_t
 
-  !> Steps of the elastic impacts in the rise of first contact, and most steps: those of `deck_scales`, and a quarter of
-  !> the most that elastic impacts take. Half and twice the steps change the factors of twenty random setups by less
-  !> than 2 %.
+  !> Steps of the elastic impacts in the rise time of first contact, and largest number of steps: those of
+  !> `deck_scales`, and a quarter of the largest number in other elastic impacts. Half and twice these steps change the
+  !> factors of twenty random setups by less than 2 %.
   real(wp), parameter :: fine_steps = 64
   integer, parameter :: max_steps = 65536
-  !> Trials at most; two suffice as long as the change is in proportion to the scaled inertia.
+  !> Largest number of trials; two suffice where the change is proportional to the scaled inertia.
   integer, parameter :: max_trials = 8
-  !> Part of the bound that a smaller factor aims at: changes grow less than in proportion. It changes the factor by 5 %
-  !> and the step by 2.5 %.
+  !> Fraction of the bound at which a reduced factor aims, as changes decrease less than in proportion to the factor. It
+  !> changes the factor by 5 % and the step by 2.5 %.
   real(wp), parameter :: safety_factor = 0.95_wp
 
 contains
 
   !> Largest factor up to a limit that slows the waves of first contact and changes the force history by no more than a
-  !> given share. By s times the rotary inertia a wave of number k in a plate of thickness h is slower by
-  !> (s - 1) (k h)**2/24: rho h**3/12 k**2 beside rho h, halved by the root. The change of the history depends on how
-  !> long waves act on the force, and on their return from the edges: it is found by elastic impacts with and without
-  !> the scaled inertia.
+  !> given fraction. With s times the rotary inertia a wave of number k in a plate of thickness h is slower by (s - 1)
+  !> (k h)**2/24: the added inertia rho h**3/12 (s - 1) k**2 relative to rho h, halved by the root. The change of the
+  !> history depends on the time in which waves affect the force, and on their return from the edges: it is found by
+  !> elastic impacts with and without the scaled inertia.
   pure function largest_scaling(setup, scales, limit, bound) result(found)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
@@ -45,7 +46,7 @@ contains
     type(setup_scales_t), intent(in) :: scales
     !> Largest factor
     real(wp), intent(in) :: limit
-    !> Largest share of both
+    !> Largest fraction permitted for both
     real(wp), intent(in) :: bound
     !> The factor
     type(scaled_impact_t) :: found
@@ -78,7 +79,7 @@ contains
     real(wp), intent(in) :: scaling
     !> Step and end
     real(wp), intent(in) :: step, end
-    !> The run without scaling
+    !> The elastic impact without scaling
     type(elastic_impact_t), intent(in) :: exact
     type(setup_elastic_impact_t) :: scaled
     real(wp) :: differences(2)

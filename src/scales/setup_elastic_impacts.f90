@@ -19,7 +19,7 @@ module setup_elastic_impacts
     type(setup_t) :: setup
     !> Its scales
     type(setup_scales_t) :: scales
-    !> The plate with all modes that any step considered follows
+    !> The plate with all modes that any of the steps considered resolves
     type(modal_plate_t) :: plate
   end type setup_elastic_impact_t
 
@@ -31,35 +31,36 @@ module setup_elastic_impacts
     logical :: of_impact = .false.
     !> Largest force, indentation and deflection
     real(wp) :: force = 0, indentation = 0, deflection = 0
-    !> Times of contact
+    !> Number of contacts
     integer :: contacts = 0
-    !> End of the last one
+    !> End of the last contact
     real(wp) :: last_contact = 0
-    !> True: it is later, as the run ends in contact
+    !> True: it ends later, as the calculation ends in contact
     logical :: is_cut = .false.
     !> Side of the elements near the struck point
     real(wp) :: edge = 0
     !> Relative errors of the force's peak and history, by the step and by the mesh; negative: not known
     real(wp) :: step_error(2) = -1, mesh_error(2) = -1
-    !> Errors by step and mesh together of the figures that a summary reports, in the order of `figures_of`; negative:
-    !> not known
+    !> Errors by step and mesh together of the results in a summary, in the order of `figures_of`; negative: not known
     real(wp) :: figure_error(5) = -1
     !> Side of the area that carries the contact force, and effect of a larger patch on peak and history
     real(wp) :: contact_side = 0, patch_error(2) = -1
   end type expected_scales_t
 
-  !> Modes are listed up to this fraction of the inverse of a step, 1.3 steps in a period; higher ones are not resolved
-  !> and act by their stiffness.
-  real(wp), parameter :: followed = 5
-  !> Modes with ten periods in the rise of first contact follow the force without delay. A finer step that followed
-  !> more of them found errors other by less than 1 % in the decks of `input/`, and the same forces.
+  !> Modes are listed up to this circular frequency times the step, 1.3 steps per period; higher ones are not resolved
+  !> and contribute their static compliance.
+  real(wp), parameter :: resolved_angle = 5
+  !> Modes with ten and more periods in the rise time of first contact respond quasi-statically. With a finer step that
+  !> resolved more modes the errors in the decks of `input/` differed by less than 1 %, and the forces did not.
   real(wp), parameter :: excited = 60
-  !> Steps of the first elastic impact in one contact time. Those of the finest are this over the root of the permitted
-  !> error: the method is of second order, and the error of a step of a tenth of the contact time is about 1 %.
+  !> Number of steps of the first elastic impact in one contact time. For the finest one it is divided by the root of
+  !> the permitted error: the method is of second order, and the error of a step of a tenth of the contact time is about
+  !> 1 %.
   real(wp), parameter :: first_steps = 2, fine_steps = 4.5_wp
-  !> Steps in one contact time up to which modes are kept at hand.
+  !> Number of steps in one contact time up to which modes are stored.
   real(wp), parameter :: max_fine = 128
-  !> Most steps of an elastic impact: they take a tenth of a second, and a run of as many hours.
+  !> Largest number of steps of an elastic impact: they take a tenth of a second, while a run with as many steps takes
+  !> hours.
   integer, parameter :: max_steps = 262144
   !> Smallest number of steps per contact.
   integer, parameter :: min_steps = 24
@@ -69,11 +70,11 @@ module setup_elastic_impacts
   real(wp), parameter :: wave_elements = 4.5_wp, wave_power = 1/3.6_wp
   !> Smallest number of elements per wave for which this is valid.
   real(wp), parameter :: fewest_elements = 3.1_wp
-  !> Relative error of a mode's frequency on elements of side e is (kappa e)**4 times this, kappa its wave number.
+  !> Relative error of a mode's frequency on elements of side e divided by (kappa e)**4, with its wave number kappa.
   !> Calibrated by `tests/bench/elastic_models.py`.
   real(wp), parameter :: dispersion = 6.0e-4_wp
-  !> Longest first elastic impact in half periods of the impactor on the plate's static stiffness: twice the contact
-  !> time, and repeated contacts have lasted up to 1.4 half periods.
+  !> Longest first elastic impact, in half periods of the impactor on the static stiffness of the plate: twice the
+  !> contact time; repeated contacts lasted up to 1.4 half periods.
   real(wp), parameter :: waited = 4.5_wp
 
 contains
@@ -89,10 +90,10 @@ contains
 
     elastic%setup = setup
     elastic%scales = scales
-    elastic%plate = plate_modes(setup, followed*max_fine/scales%contact_time)
+    elastic%plate = plate_modes(setup, resolved_angle*max_fine/scales%contact_time)
   end function start_elastic_impact
 
-  !> A preliminary elastic impact with some step; `complete` is false where it would take too long.
+  !> A preliminary elastic impact with a given step; `complete` is false if it would take too many steps.
   pure function run_of(self, step, end, cell) result(run)
     !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
@@ -107,7 +108,7 @@ contains
     type(modal_plate_t) :: plate
     integer :: steps
 
-    plate = reduced(self%plate, followed/step)
+    plate = reduced(self%plate, resolved_angle/step)
     if (cell > 0) call disperse(plate, cell)
     steps = max_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
@@ -115,8 +116,8 @@ contains
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 
-  !> The contact from touch to end by a first, coarse elastic impact, no longer than the run. Its steps are longer where
-  !> a heavy impactor remains on the plate for a long time.
+  !> The contact from first contact to its end by a first, coarse elastic impact, no longer than the run. Its steps are
+  !> longer where a heavy impactor remains on the plate for a long time.
   pure function contact_end(self, end) result(run)
     !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
@@ -150,7 +151,8 @@ contains
     expected%edge = edge
     elastic%setup = setup
     elastic%scales = scales
-    elastic%plate = plate_modes(setup, max(followed/step, min(2*followed/step, excited/scales%contact_time)))
+    elastic%plate = plate_modes(setup, max(resolved_angle/step, min(2*resolved_angle/step, &
+                                                                    excited/scales%contact_time)))
     coarse = run_of(elastic, step, end, 0.0_wp)
     if (nint(end/(step/2)) <= max_steps) then
       fine = run_of(elastic, step/2, end, 0.0_wp)
@@ -172,13 +174,13 @@ contains
     expected%contact_side = contact_side(setup, fine%indentation)
     if (.not. setup%mesh%patch > expected%contact_side) return
     elastic%setup%mesh%patch = expected%contact_side
-    elastic%plate = plate_modes(elastic%setup, followed/step)
+    elastic%plate = plate_modes(elastic%setup, resolved_angle/step)
     expected%patch_error = difference(run_of(elastic, step, end, 0.0_wp), coarse, 1)
   end function expected_scales_of
 
-  !> Errors by step and mesh together of the results of a summary. That of the largest force is at least the error of
-  !> the forces around it, and, where the force of first contact is the largest, the error of its waves in the elements
-  !> around the patch.
+  !> Errors by step and mesh together of the results of a summary. The error of the largest force is at least the root
+  !> mean square error of the forces around it and, where the force of first contact is the largest, the error of its
+  !> waves in the elements around the patch.
   pure function errors_of_figures(scales, edge, coarse, fine, meshed) result(errors)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
@@ -203,7 +205,7 @@ contains
   pure real(wp) function edge_for(scales, error) result(edge)
     !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
-    !> That part
+    !> The relative error
     real(wp), intent(in) :: error
 
     edge = scales%wave_length/wave_elements*(200*error)**wave_power
@@ -235,7 +237,8 @@ contains
     real(wp) :: longer
     integer :: finer, steps, ratio
 
-    ! Coarse elastic impacts may have equal errors, so each is compared with the finest possible one.
+    ! The errors of coarse elastic impacts may cancel in their difference, so each is compared with the finest possible
+    ! one.
     finer = 1
     do while (2*2**finer*min_steps <= max_steps)
       if (2**finer*min_steps*self%scales%contact_time >= fine_steps/sqrt(bounds(1))*end) exit
@@ -252,11 +255,11 @@ contains
     end do
     if (all(error <= bounds)) then
       longer = end/ceiling(end/(step*min(1.5_wp, sqrt(minval(bounds/max(error, tiny(1.0_wp)))))))
-      ! The peak depends on where steps fall, too, so that its error is not smooth in the step.
+      ! The sampled peak depends on the times of the steps, too, so that its error is not a smooth function of the step.
       coarse = run_of(self, longer, end, 0.0_wp)
       if (abs(coarse%peak/finest%peak - 1) <= bounds(1)) step = longer
     else if (finest%complete) then
-      ! The error of the finest is less by the order of the method.
+      ! The error of the finest one is smaller by the order of the method.
       step = finest%step
       error = error/4
     else
@@ -279,15 +282,16 @@ contains
     !> Side of the elements
     real(wp) :: cell
     type(elastic_impact_t) :: exact
-    ! Elements are a sixth finer than needed at most, below the error of the estimate.
+    ! Elements are at most a sixth finer than needed, which is less than the error of the estimate.
     real(wp), parameter :: finer = 0.85_wp
     real(wp) :: longer
 
     longer = 1
     if (follows) longer = max(1.0_wp, first_steps*step/self%scales%contact_time)
     exact = run_of(self, step, end, 0.0_wp)
-    ! Modes give the error of waves on the mesh, not of the first waves in the elements around the patch. Steps longer
-    ! than the rise do not resolve these; the shortest resolved waves are longer by the root.
+    ! Modes give the error of waves on the mesh, but not that of the first waves in the elements around the patch. Steps
+    ! longer than the rise time do not resolve the first waves; the shortest resolved waves are longer by the root of
+    ! the ratio.
     cell = min(minval(self%setup%plate%length)/4, &
                edge_for(self%scales, bounds(1))*sqrt(longer))
     do while (cell > self%scales%wave_length/20)
@@ -296,8 +300,8 @@ contains
     end do
   end function largest_cell
 
-  !> Gives the modes the frequencies that they have on elements of some side. The
-  !> modes that are too short for the elements become too stiff to matter.
+  !> Sets the frequencies of the modes to those on elements of a given side. Modes too short for the elements become so
+  !> stiff that they do not contribute.
   pure subroutine disperse(plate, cell)
     !> The plate
     type(modal_plate_t), intent(inout) :: plate

@@ -21,27 +21,27 @@ module setup_scales
   type :: setup_scales_t
     !> Thickness and mass per area of the laminate
     real(wp) :: thickness = 0, area_mass = 0
-    !> Mean bending stiffness (E1 + E2)/2 h**3/12 as the section has it, (D11 + D22)/2
+    !> Mean bending stiffness of the section, (D11 + D22)/2
     real(wp) :: bending = 0
     !> Mass of the full plate
     real(wp) :: plate_mass = 0
-    !> Period of the plate's first bending, without rigid motion
+    !> Period of the plate's first bending mode, without rigid-body motion
     real(wp) :: first_period = 0
     !> Energy of the impactor
     real(wp) :: energy = 0
-    !> Time in which the force of first contact rises
+    !> Rise time of the force of first contact
     real(wp) :: contact_time = 0
-    !> Length of the bending waves that it sends out
+    !> Length of the bending waves excited by first contact
     real(wp) :: wave_length = 0
-    !> Deflection of the middle per force, in a static test
+    !> Central deflection per force, static
     real(wp) :: compliance = 0
-    !> Force at which delaminations begin to grow; 0: no interface may delaminate
+    !> Delamination threshold force (closed form); 0: no interface may delaminate
     real(wp) :: threshold = 0
-    !> Force at which interlaminar stresses reach the strength beside the patch; 0: no strength or no patch is known
+    !> Force at interlaminar shear failure beside the contact; 0: no strength or no patch is known
     real(wp) :: onset = 0
   end type setup_scales_t
 
-  !> Hertz' contact of two bodies that move freely lasts 2.943 alpha_max/v, Goldsmith 1960.
+  !> Duration of Hertz' contact of two bodies that move freely, 2.943 alpha_max/v (W. Goldsmith, Impact, 1960).
   real(wp), parameter :: hertz_duration = 2.943_wp
   !> A frequency above all modes with a finite square.
   real(wp), parameter :: all_modes = 1.0e100_wp
@@ -81,7 +81,7 @@ contains
     end associate
   end function scales_of
 
-  !> Section of the laminate as it bends where its plane is free to stretch: D - B inverse(A) B (Reissner and Stavsky).
+  !> Bending section of the laminate whose membrane strains are free: D - B inverse(A) B (Reissner and Stavsky).
   pure function bending_section(setup) result(section)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -115,9 +115,9 @@ contains
                            loaded_side(setup), cutoff)
   end function plate_modes
 
-  !> Lengths of the free span of the plate: the full plate, or the window of its frame. A circular window counts as the
-  !> square with the same first frequency, simply supported: 4.977/(radius)**2 for nu = .3 (Leissa, Vibration of Plates,
-  !> NASA SP-160, 1969, table 2.4) and 2 pi**2/side**2.
+  !> Lengths of the free span of the plate: the full plate, or the window of its frame. A circular window is replaced by
+  !> the square with the same first frequency, both simply supported: 4.977/(radius)**2 for nu = .3 (A. W. Leissa,
+  !> Vibration of Plates, NASA SP-160, 1969, table 2.4) and 2 pi**2/side**2.
   pure function free_span(setup) result(length)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -147,7 +147,7 @@ contains
     if (any(setup%supports%shape /= window_none)) edges = edge_simple
   end function free_edges
 
-  !> Side of the loaded square; where the deck has none, as small as plate theory can resolve.
+  !> Side of the loaded square; without a patch in the deck, as small as plate theory can resolve.
   pure real(wp) function loaded_side(setup) result(side)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -157,8 +157,8 @@ contains
   end function loaded_side
 
   !> Side of the square in the mid-plane that carries the contact force. Its area is that of Hertz's contact circle,
-  !> spread at 45 degrees from the struck face to the mid-plane. Deformation below the scale of the thickness is part of
-  !> the indentation law.
+  !> widened at 45 degrees from the struck face to the mid-plane. Deformation below the scale of the thickness is part
+  !> of the indentation law.
   pure real(wp) function contact_side(setup, indentation) result(side)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -167,7 +167,7 @@ contains
     real(wp) :: radius
 
     radius = setup%impactor%radius
-    ! Without a radius, that of the k which Sun's formula would give for a rigid ball.
+    ! If the radius is not given: the radius of a rigid sphere for which Sun's formula gives this k.
     if (.not. radius > 0) &
       radius = (0.75_wp*setup%indentation%k/setup%materials(setup%laminate%material(1))%e2)**2
     side = sqrt(pi*radius*indentation) + sum(setup%laminate%thickness)
@@ -204,7 +204,7 @@ contains
     plies = stacked_plies(setup%laminate, setup%materials)
     if (size(plies) < 2 .or. .not. setup%mesh%patch > 0) return
     unit = unit_stresses_of(plies)
-    ! Q = P/(2 pi r): along the radius it decreases by Q/r, across it grows by as much.
+    ! Q = P/(2 pi r): its derivative is -Q/r along the radius, and +Q/r for the component normal to it.
     decrease = pi/(2*setup%mesh%patch)
     associate (strengths => interlaminar_strengths(plies, setup%materials, setup%delaminations), &
                gradient => reshape([-decrease, 0.0_wp, 0.0_wp, decrease], [2, 2]))

@@ -31,8 +31,8 @@ module unit_systems
     real(wp) :: size
   end type unit_t
 
-  !> The units, in order of their kinds. A thickness, a radius and a strength have those of lengths and pressures, the
-  !> fracture energy of fibres that of a toughness.
+  !> The units, in order of their kinds. Thicknesses and radii have those of lengths, strengths those of pressures, and
+  !> the fracture energies of fibres those of toughnesses.
   type(unit_t), parameter :: units(*) = [ &
     unit_t('Pa', of_pressure, 1.0_wp), unit_t('kPa', of_pressure, 1.0e3_wp), unit_t('MPa', of_pressure, 1.0e6_wp), &
     unit_t('GPa', of_pressure, 1.0e9_wp), &
@@ -66,7 +66,7 @@ module unit_systems
 
 contains
 
-  !> Index of the system of a name; 0: none has it.
+  !> Index of the system with a name; 0: there is none.
   pure integer function system_named(name) result(system)
     !> The name, in any case
     character(len=*), intent(in) :: name
@@ -86,7 +86,7 @@ contains
     base = bases(:, system)
   end function base_units
 
-  !> True: a value in the units of a system is of no size that its kind of quantity has.
+  !> True: a value in the units of a system is outside the range of its kind of quantity.
   pure logical function is_unusual(quantity, value, system)
     !> Kind of the quantity
     integer, intent(in) :: quantity
@@ -98,7 +98,7 @@ contains
     is_unusual = .not. in_range(quantity, value*size_of(quantity, unit_name(quantity, system)))
   end function is_unusual
 
-  !> The unit in which a value would be of usual size, or an empty text if there is none.
+  !> The unit in which a value would have a usual magnitude, or an empty text if there is none.
   pure function unit_that_fits(quantity, value) result(name)
     !> Kind of the quantity
     integer, intent(in) :: quantity
@@ -131,7 +131,7 @@ contains
     name = trim(unit_of(dimension_of(quantity), system))
   end function unit_name
 
-  !> Power of ten of a system's unit in SI units, by which a value in SI is divided.
+  !> Unit of a system in SI units, a power of ten, by which a value in SI is divided.
   pure integer function decades_of(quantity, system) result(decades)
     !> Kind of the quantity
     integer, intent(in) :: quantity
@@ -141,7 +141,7 @@ contains
     decades = nint(log10(size_of(quantity, unit_name(quantity, system))))
   end function decades_of
 
-  !> True: a size that the kind of quantity has.
+  !> True: a value within the range of its kind of quantity.
   pure logical function in_range(quantity, value)
     !> Kind of the quantity
     integer, intent(in) :: quantity

@@ -1,4 +1,4 @@
-!> Flaws of interfaces by cracks of adjacent plies.
+!> Flaws of interfaces by cracks of adjacent plies (doc/theory/interfaces.md, flaws beside cracked plies).
 module crack_flaws
   use delamination_parameters, only: law_cohesive
   use element_stresses, only: element_strains, has_ply, stress_of_ply
@@ -54,7 +54,7 @@ contains
     type(model_t), intent(in) :: model
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
-    !> Those of element_strains
+    !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
     !> Ply of the laminate
     integer, intent(in) :: ply
@@ -91,7 +91,7 @@ contains
     type(model_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
-    !> Those of element_strains
+    !> Strains from element_strains
     real(wp), intent(in) :: strains(:, :)
     !> Ply of the laminate
     integer, intent(in) :: ply

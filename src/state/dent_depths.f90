@@ -57,7 +57,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Height at the struck point and slopes along x and y
     real(wp), intent(out) :: plane(3)
-    !> False: there are no cells around the dent, or they lie on one line, about which the plane may turn
+    !> False: there are no cells around the dent, or they lie on one line, so that the plane is not determined
     logical, intent(out) :: is_known
     type(exact_sum_t) :: sums(9)
     real(wp) :: totals(9), place(2), centred(5), w, area

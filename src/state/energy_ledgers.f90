@@ -1,4 +1,4 @@
-!> The energy ledger. All entries are those of the full plate, also under symmetry.
+!> The energy ledger, theory (E1). All entries are those of the full plate, also under symmetry.
 module energy_ledgers
   use kinds, only: wp
   use archives, only: archive_t

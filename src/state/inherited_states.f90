@@ -1,5 +1,5 @@
 !> State inherited from another run: displacement and velocity of the plate, history variables of plies and interfaces.
-!> Loads, impactor and steps start anew.
+!> Loads, impactor and steps start from zero.
 module inherited_states
   use archives, only: archive_t
   use cohesive_sliding, only: visit_friction

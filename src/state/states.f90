@@ -120,7 +120,7 @@ contains
     self%force_iterations = 0
     self%contact_iterations = 0
     self%motion%displacement = old%motion%displacement
-    ! Without damage they are constant.
+    ! They change only by damage.
     if (model%setup%has_ply_damage) self%plies = old%plies
   end subroutine start_from
 

@@ -35,7 +35,8 @@ contains
       end associate
     end do
     curvature = totals_of(model%communicator, sums)/model%struck_count
-    ! The twist of a mirrored plate vanishes at the struck point, but not in the mean over the elements of the part.
+    ! The twist of a plate with mirror symmetry vanishes at the struck point, but not in the mean over the elements of
+    ! the modelled part.
     if (any(model%mesh%mirrored)) curvature(3) = 0
     associate (d => model%section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &

@@ -1,7 +1,7 @@
-!> A load step controlled by the dissipated energy: the load factor is an unknown, and the energy that damage dissipates
-!> in the step is prescribed. The equilibrium path is traced through softening and snap-back
-!> (M. A. Gutierrez, Communications in Numerical Methods in Engineering 20 (2004) 19-29; C. V. Verhoosel, J. J. C.
-!> Remmers, M. A. Gutierrez, International Journal for Numerical Methods in Engineering 77 (2009) 1290-1321).
+!> A load step controlled by the dissipated energy, theory (N6): the load factor is an unknown, and the energy that
+!> damage dissipates in the step is prescribed. The equilibrium path is traced through softening and snap-back (M. A.
+!> Gutierrez, Communications in Numerical Methods in Engineering 20 (2004) 19-29; C. V. Verhoosel, J. J. C. Remmers, M.
+!> A. Gutierrez, International Journal for Numerical Methods in Engineering 77 (2009) 1290-1321).
 !>
 !> These papers derive the dissipated energy from loads and displacements, for geometrically linear problems that unload
 !> to the origin. Here it is summed over the cohesive points, which includes contact and large deflections.
@@ -21,8 +21,8 @@ module dissipation_steps
   type, extends(static_step_t) :: dissipation_step_t
     !> Energy that the step is to dissipate
     real(wp) :: target_dissipation = 0
-    !> Largest change of the load factor; beyond it lie other branches of equilibrium, not connected with the present
-    !> one
+    !> Largest change of the load factor; a larger change may lead to another branch of equilibrium that is not
+    !> connected with the present one
     real(wp) :: max_load_change = 0
   contains
     procedure :: begin

@@ -1,4 +1,4 @@
-!> Quasi-static indentation: load steps by the travel of the impactor. Its force on the patch follows the indentation
+!> Quasi-static indentation: load steps by the travel of the impactor. Its force on the patch is that of the indentation
 !> law.
 module slow_impactors
   use kinds, only: wp

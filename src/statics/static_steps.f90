@@ -167,8 +167,8 @@ contains
     tangent_changes = any(model%setup%delaminations%contact /= contact_none)
   end function tangent_changes
 
-  !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows;
-  !> halving every other correction, once there have been more than it takes to converge, ends that.
+  !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows. Once there
+  !> have been more corrections than convergence usually takes, every other one is halved, which ends the alternation.
   elemental real(wp) function correction_factor(self, iterations) result(part)
     !> The problem
     class(static_step_t), intent(in) :: self
@@ -212,7 +212,7 @@ contains
       end if
       sums(6) = model%product(change, loads - loads_before)/2
       ! After failures of plies or a change of the contact area the previous state is not in equilibrium; the energy
-      ! released would become kinetic.
+      ! released would become kinetic energy.
       call add_impactor_force(model, old, old%force, loads_before)
       sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
       if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
@@ -239,10 +239,10 @@ contains
     end associate
   end subroutine finish
 
-  !> Without dissipation the strain energy is the work of the loads along the equilibrium path, which the trapezoidal
-  !> rule over a step approximates. For a monotonic load the work lies between the products of displacement increment
-  !> and load before and after the step. Outside these bounds the plate has jumped to another equilibrium, and the
-  !> energy that would become kinetic remains dissipated by the load step.
+  !> Without dissipation the strain energy is the work of the loads along the equilibrium path, theory (E3), which the
+  !> trapezoidal rule over a step approximates. For a monotonic load the work lies between the products of displacement
+  !> increment and load before and after the step. Outside these bounds the plate has jumped to another equilibrium, and
+  !> the energy that would become kinetic is recorded as dissipated by the load step.
   pure subroutine correct_work(excess, margin, work)
     !> Change of the strain energy less the work by the trapezoidal rule; on return the part outside the bounds of the
     !> work

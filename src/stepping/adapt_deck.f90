@@ -36,7 +36,7 @@ module adapt_deck
 
 contains
 
-  !> Adaptivity; without the group the step stays as it is.
+  !> Adaptivity; without the group all steps have the length given.
   subroutine fill_adapt(settings, adapt)
     !> Keys in effect; receives the default without the group
     type(settings_t), intent(inout) :: settings

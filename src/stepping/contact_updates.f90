@@ -1,4 +1,4 @@
-!> Updates the distribution of the impactor's force as the plate bends about the nose.
+!> Updates the distribution of the impactor's force, theory (F9), as the plate bends around the nose.
 !>
 !> The distribution is found from the last accepted state and kept constant in the next step, so that force and mean
 !> deflection under the impactor are work-conjugate. An offset keeps that deflection, and the indentation, continuous
@@ -15,10 +15,10 @@ module contact_updates
   public :: update_contact_area
 
   !> Relaxation factor of the weights per step: the plate responds to the change, and without relaxation the update
-  !> overshoots where the plate is more compliant than the contact. doc/theory/impact.md has figures.
+  !> overshoots where the plate is more compliant than the contact (doc/studies/solution_controls.md).
   real(wp), parameter :: relaxation = 0.2_wp
-  !> Sum of the changes of weights, of one, that are not worth a solve: they change the force by less than its tolerance
-  !> of 1e-6.
+  !> Sum of the magnitudes of the changes of the weights, whose sum is one, below which they are not updated: the change
+  !> of the force is then below its tolerance of 1e-6.
   real(wp), parameter :: negligible = 1.0e-6_wp
 
 contains

@@ -15,9 +15,9 @@ module explicit_steps
   private
   public :: advance_explicit, complete_step
 
-  !> Steps between two updates of flaws at interfaces by matrix cracks. Cracks grow at up to the speed of shear waves, a
-  !> third of that of waves along the fibres, which pass at most one cell in two steps; so a crack grows by at most two
-  !> cells between updates.
+  !> Number of steps between two updates of flaws at interfaces by matrix cracks. Cracks grow at most at the speed of
+  !> shear waves, a third of that of waves along the fibres, which cross at most one cell in two steps; so a crack grows
+  !> by at most two cells between updates.
   integer, parameter :: steps_between_flaws = 8
 
 contains
@@ -27,7 +27,7 @@ contains
     !> Central differences
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
-    !> Time not to be passed
+    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> The state
     type(state_t), intent(inout) :: now

@@ -1,8 +1,8 @@
 !> Insertion of layers: the model is built again with larger layered zones, and the state is transferred to it.
 !>
-!> The new layers take over the motion of the single plate, with its rotations and without jumps, so that displacement,
+!> The new layers receive the motion of the single plate, with its rotations and without jumps, so that displacement,
 !> velocity and acceleration of every ply, strains and energies are unchanged. The remaining difference of energy is
-!> recorded: round-off, or, with the energy-consistent shear correction, that of the sections.
+!> recorded: round-off or, with the energy-consistent shear correction, the difference of the sections.
 module layer_switches
   use contact_updates, only: update_contact_area
   use errors, only: error_t
@@ -38,7 +38,7 @@ contains
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> True if layers were inserted
     logical, intent(out) :: switched
@@ -83,7 +83,7 @@ contains
     type(time_stepper_t), intent(inout) :: stepper
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Time not to be passed
+    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> True if layers were inserted
     logical, intent(out) :: switched

@@ -47,7 +47,7 @@ contains
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Load factor not to be passed
+    !> Load factor that must not be exceeded
     real(wp), intent(in) :: event
     !> Step tried
     real(wp), intent(out) :: step
@@ -88,7 +88,8 @@ contains
                                             1.0_wp/model%setup%static%steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
                       converged, error)
-      ! Beyond this change of the load other branches of equilibrium may be found, which the path does not lead to.
+      ! With a larger change of the load another branch of equilibrium might be found that is not connected with the
+      ! path.
       if (converged) converged = abs(stepper%trial%load_factor - now%load_factor) <= by_dissipation%max_load_change
     end associate
   end subroutine try_dissipation

@@ -54,7 +54,7 @@ contains
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Time not to be passed
+    !> Time that must not be exceeded
     real(wp), intent(in) :: event
     !> Step tried
     real(wp), intent(out) :: step
@@ -82,8 +82,8 @@ contains
     end associate
   end subroutine try
 
-  !> Factorizes the operator where there is none. One that is due again is left to the step, whose first correction
-  !> needs the tangent at the predictor.
+  !> Factorizes the operator if there is no factor. A factorization that is due again is left to the step, whose first
+  !> correction requires the tangent at the predictor.
   subroutine prepare_operator(stepper, model, mass_factor, factor_is_due, error)
     !> The stepper
     class(stepper_t), intent(inout) :: stepper
@@ -109,7 +109,7 @@ contains
     end associate
   end subroutine prepare_operator
 
-  !> Notes where an impactor that moves back has left the surfaces glued.
+  !> Records that surfaces are glued once the impactor moves back (unloading = 'glued').
   subroutine complete_trial(self, stepper, model)
     !> The kind
     class(motion_steps_t), intent(in) :: self
@@ -139,7 +139,7 @@ contains
     integer :: lag_iterations
 
     associate (now => stepper%now, controller => stepper%controller, stepping => stepper%stepping)
-      ! Excess solves count from the step that renewed the operator.
+      ! Excess solves are counted from the step that renewed the operator.
       if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
       call controller%accept(stepping, step, now%iterations, lag_iterations, change)

@@ -1,5 +1,6 @@
-!> Equilibrium before the first step of central differences, found by rank 0 for all ranks. Assembly and factorization
-!> on several ranks would round by their share of the plate, and explicit histories are equal on any number of ranks.
+!> Equilibrium before the first step of central differences, found by rank 0 for all ranks. With assembly and
+!> factorization on several ranks round-off would depend on the partition, and explicit histories are equal on any
+!> number of ranks.
 module single_rank_equilibria
   use communicators, only: communicator_t
   use errors, only: error_t

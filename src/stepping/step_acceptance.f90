@@ -82,7 +82,7 @@ contains
     call self%controller%shorten(self%stepping%controls, step, self%error, shortest)
   end subroutine assess_error
 
-  !> Prepares a shorter step after one that has not converged.
+  !> Prepares a shorter step after a step that has not converged.
   subroutine reject_step(self, model, step, error)
     !> The time stepper
     class(stepper_t), intent(inout) :: self

@@ -83,7 +83,7 @@ contains
     step = remaining/max(1.0_wp, ceiling_as_real(remaining/step*(1 - 1.0e-9_wp)))
   end function propose
 
-  !> Smallest whole number not below x, as a real: step counts may pass the largest integer.
+  !> Smallest integer not below x, as a real: the number of steps may exceed the largest default integer.
   pure real(wp) function ceiling_as_real(x) result(whole)
     !> A number
     real(wp), intent(in) :: x
@@ -96,11 +96,11 @@ contains
   pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Step taken
     real(wp), intent(in) :: step
-    !> Its iterations, and those that a new factorization might have saved
+    !> Its iterations, and those that a new factorization would have saved
     integer, intent(in) :: iterations, lag_iterations
     !> Change of the stress at the struck point over its largest value so far
     real(wp), intent(in) :: stress_change
@@ -125,12 +125,12 @@ contains
     self%target = min(max(self%target, stepping%time%step_min), stepping%time%step_max)
   end subroutine accept
 
-  !> First error-controlled step: the deck's, or from the tolerance and the rise time of first contact. All later steps
-  !> are this one times a power of two, and an integer number of them reaches the first event.
+  !> First error-controlled step: that of the deck, or that chosen from the tolerance and the rise time of first
+  !> contact. All later steps are this one times a power of two, and an integer number of them reaches the first event.
   pure subroutine begin(self, stepping, remaining)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Time to the first event
     real(wp), intent(in) :: remaining
@@ -150,12 +150,13 @@ contains
     self%first = self%target
   end subroutine begin
 
-  !> Shortest step under error control: the smallest of the deck, or after a failure the first of the run. A sudden
-  !> failure emits waves as short as the mesh resolves; only steps that resolve each of them would meet the tolerance.
+  !> Shortest step under error control: the smallest step of the deck, or after a failure the first step of the run. A
+  !> sudden failure emits waves as short as the mesh resolves; only steps that resolve all of these would meet the
+  !> tolerance.
   pure real(wp) function shortest(self, stepping, damaged)
     !> The controller
     class(step_controller_t), intent(in) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> True once plies have failed or delaminations have grown
     logical, intent(in) :: damaged
@@ -164,11 +165,11 @@ contains
     if (damaged) shortest = max(shortest, self%first)
   end function shortest
 
-  !> Halves the step by the error of an accepted one, or doubles it once that is worth a factorization.
+  !> Halves the step by the error of an accepted one, or doubles it if this saves more than the new factorization costs.
   pure subroutine adapt_to_error(self, stepping, step, error, remaining, is_over, gear, damaged)
     !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Step taken, and its error relative to the tolerance
     real(wp), intent(in) :: step, error
@@ -241,7 +242,7 @@ contains
   pure subroutine limit_by_fronts(self, stepping, ratio, extended)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Largest ratio of energy release rate to its critical value in the step
     real(wp), intent(in) :: ratio
@@ -265,7 +266,7 @@ contains
   pure subroutine limit_by_ply_damage(self, stepping, damage_lag)
     !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Lag of damage in the last step, relative to its limit
     real(wp), intent(in) :: damage_lag
@@ -292,7 +293,7 @@ contains
   pure logical function renewal_due(self, stepping, nonlinear, mass_ratio, deflection_change, thickness) result(due)
     !> The controller
     class(step_controller_t), intent(in) :: self
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> True: the stiffness depends on the deflection
     logical, intent(in) :: nonlinear

@@ -1,5 +1,5 @@
-!> Intervals, in steps, of checks of a run: steps by central differences are many and cheap, so that checks are made at
-!> intervals.
+!> Intervals, in steps, of checks of a run: steps by central differences are many and short in computing time, so that
+!> checks are made at intervals.
 module step_intervals
   use kinds, only: wp
   use stepping_parameters, only: is_explicit, stepping_t
@@ -11,8 +11,8 @@ module step_intervals
   !> cohesive interfaces and crack bands, gfortran 12 with -O3 on one core of an AMD EPYC; the elastic Sun-Chen plate
   !> takes .2e-6.
   real(wp), parameter, public :: seconds_per_element = 0.55e-6_wp
-  !> Seconds of one processor in which a run looks at its ledger, its limits, at signals and at elapsed time: SLURM
-  !> gives 30 from the signal to the end (KillWait).
+  !> Interval in seconds of one processor at which a run checks its ledger, its limits, signals and elapsed time: SLURM
+  !> allows 30 from the signal to the end (KillWait).
   real(wp), parameter :: seconds_between_checks = 1
   !> Largest number of steps between two checks: a check costs about one step.
   integer, parameter :: max_between_checks = 64
@@ -25,7 +25,7 @@ contains
   !> Steps between two checks. It is the same on any number of ranks and after a restart, as warnings are given at
   !> checks.
   pure integer function steps_between_checks(stepping, elements) result(steps)
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Number of elements of all layers
     integer, intent(in) :: elements
@@ -37,7 +37,7 @@ contains
 
   !> Steps between two updates of the damaged state of interfaces.
   pure integer function steps_between_stages(stepping) result(steps)
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
 
     steps = merge(between_stages, 1, is_explicit(stepping))

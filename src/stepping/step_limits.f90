@@ -33,7 +33,7 @@ contains
   !> Largest ratio of a step to the previous one allowed by the integrators.
   pure real(wp) function growth_limit(model, stepping, controller) result(ratio)
     type(model_t), intent(in) :: model
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> The step controller
     type(step_controller_t), intent(in) :: controller

@@ -29,8 +29,8 @@ module steppers
     procedure :: equilibrate
   end type step_kind_t
 
-  !> Evolving state of a run, and parameters of steps. It has many components because each part of the step control
-  !> stores its own.
+  !> Evolving state of a run, and parameters of steps. It has many components because each part of the step control has
+  !> its own.
   type :: stepper_t
     !> The state reached
     type(state_t), allocatable :: now
@@ -42,15 +42,15 @@ module steppers
     type(step_error_t) :: step_error
     !> Last error relative to its tolerance, and the lag of damage in the last step relative to its limit
     real(wp) :: error = 0, damage_lag = 0
-    !> True: the length of steps follows the error of each
+    !> True: the length of steps is controlled by the error of each step
     logical :: is_error_controlled = .false.
-    !> Smallest step worth trying
+    !> Smallest step
     real(wp) :: smallest_step = 0
     !> True: the error of the last step exceeds the tolerance at the shortest step
     logical :: exceeds_tolerance = .false.
     !> Integrator of the plate
     type(plate_integrator_t) :: integrator
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t) :: stepping
     !> Steps in time or by load; unallocated: central differences
     class(step_kind_t), allocatable :: kind
@@ -92,7 +92,7 @@ module steppers
       !> The stepper; its trial state is that at the end of the step
       class(stepper_t), intent(inout) :: stepper
       type(model_t), intent(in) :: model
-      !> Time, or load factor, not to be passed
+      !> Time, or load factor, that must not be exceeded
       real(wp), intent(in) :: event
       !> Step tried
       real(wp), intent(out) :: step

@@ -38,7 +38,7 @@ contains
     !> The time stepper
     class(time_stepper_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    !> How steps are taken
+    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
@@ -77,7 +77,7 @@ contains
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
@@ -104,11 +104,11 @@ contains
     !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time, or load factor, not to be passed
+    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Step found
     real(wp), intent(out) :: step
-    !> Shortest step allowed under error control, where the length follows it
+    !> Shortest step allowed under error control
     real(wp), intent(out) :: shortest
     !> Set if the smallest step failed
     type(error_t), allocatable, intent(inout) :: error

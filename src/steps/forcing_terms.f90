@@ -1,5 +1,5 @@
-!> Forcing terms of the inexact Newton method: how far the linear system of each correction is solved (S. C. Eisenstat,
-!> H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2).
+!> Forcing terms of the inexact Newton method, theory (N3): reduction of the residual of the linear system in each
+!> correction (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2).
 module forcing_terms
   use kinds, only: wp
   use solution_controls, only: newton_controls_t

@@ -1,9 +1,9 @@
-!> Line search along a Newton correction: until the directional derivative is at most half of its initial magnitude (H.
-!> Matthies,
-!> G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626). Along negative curvature the step is extended.
+!> Line search along a Newton correction, theory (N5): until the directional derivative is at most half of its initial
+!> magnitude (H. Matthies, G. Strang, Int. J. Numer. Methods Eng. 14 (1979) 1613-1626). Along negative curvature the
+!> step is extended.
 !>
-!> The active set of contacts is kept fixed in a search and updated between corrections: contact is far stiffer than the
-!> plate, so a search with a changing active set would stop at each contact.
+!> The active set of contacts is constant in a search and updated between corrections: contact is far stiffer than the
+!> plate, so a search with a changing active set would end at each contact.
 module line_searches
   use kinds, only: wp
   use models, only: model_t
@@ -24,7 +24,7 @@ module line_searches
     real(wp), allocatable :: start(:, :), direction(:, :)
     !> Fraction of the correction
     real(wp) :: fraction = 1
-    !> Directional derivative of contact at its start, and its decrease
+    !> Directional derivative of contact at the start of the search, and its decrease along the correction
     real(wp), private :: contact = 0, contact_decrease = 0
     !> Directional derivative at its start
     real(wp), private :: first = 0
@@ -50,7 +50,7 @@ contains
     real(wp), intent(in) :: start(:, :), direction(:, :)
     !> Residual at the owned points, and without contacts and ties, (5, points)
     real(wp), intent(in) :: residual(:, :), smooth(:, :)
-    !> What contacts and ties add to the stiffness of three components, (3, points)
+    !> Stiffness that contacts and ties add to three components, (3, points)
     real(wp), intent(in) :: contact_stiffness(:, :)
     !> True: a direction of negative curvature
     logical, intent(in) :: negative_curvature

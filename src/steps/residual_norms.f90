@@ -1,5 +1,5 @@
-!> Norm of a residual relative to the reference force, separately for translations and rotations, as their units
-!> differ.
+!> Norm of a residual relative to the reference force, theory (N4), separately for translations and rotations, as their
+!> units differ.
 module residual_norms
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
@@ -55,7 +55,8 @@ contains
       limits = equilibrium%controls%last_digits*epsilon(norm)/equilibrium%tolerance*sqrt(limits)
       norm = maxval(squares(:2)/max(scale, limits, tiny(norm)))
     end if
-    ! Those of a trial state may be larger by orders of magnitude: any residual would pass from then on.
+    ! The forces of a trial state may be larger by orders of magnitude: with these as reference any later residual would
+    ! be accepted.
     if (norm <= equilibrium%tolerance) largest = max(largest, scale)
   end function relative_residual
 
@@ -81,7 +82,7 @@ contains
 
   !> Sums of squares over this rank's unconstrained unknowns.
   pure function sums_of_squares(numbering, force) result(squares)
-    !> Knows which unknowns are constrained
+    !> Contains the constrained unknowns
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
@@ -98,10 +99,9 @@ contains
     end if
   end function sums_of_squares
 
-  !> The same for points that no other point is tied to, eight points at a time, so that the compiler vectorises the
-  !> sums.
+  !> The same for points without dependent points, eight points at a time, so that the compiler vectorises the sums.
   pure function sums_without_masters(numbering, force) result(squares)
-    !> Knows which unknowns are constrained
+    !> Contains the constrained unknowns
     type(numbering_t), intent(in) :: numbering
     !> Nodal forces, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
@@ -114,7 +114,7 @@ contains
     squares = [sum(sums(1:3, :)), sum(sums(4:5, :))]
   end function sums_without_masters
 
-  !> Adds the squares of a row of numbers to as many sums.
+  !> Adds the square of each number of a row to the sum of its column.
   pure subroutine add_squares(number, equation, values, sums)
     !> Number of values
     integer, intent(in) :: number

@@ -7,7 +7,7 @@ module solution_controls
   private
   public :: newton_controls_t, step_controls_t
 
-  !> Constants of Newton's method. They are many because each one belongs to one decision of the iteration.
+  !> Constants of Newton's method, each of which is used by one decision of the iteration.
   type :: newton_controls_t
     !> Largest forcing term, and the factor of the squared ratio of the last residuals that gives the next one
     !> (S. C. Eisenstat, H. F. Walker, SIAM J. Sci. Comput. 17 (1996) 16-32, choice 2). Used in `forcing_terms`
@@ -40,16 +40,17 @@ module solution_controls
     real(wp) :: dissipation_tolerance = 1.0e-2_wp
   end type newton_controls_t
 
-  !> Constants of the control of steps: their length, and the age of the factored operator. They are many because both
-  !> kinds of steps and both rules of adaptivity have theirs.
+  !> Constants of the control of steps: their length, and the age of the factored operator. Load steps, steps in time
+  !> and both rules of adaptivity have their own.
   type :: step_controls_t
-    !> Largest number of parts of a load step, ten halvings, beyond which a run gives up (`load_steps`)
+    !> Largest number of parts of a load step, ten halvings, at which a run ends without equilibrium (`load_steps`)
     integer :: load_step_parts = 1024
-    !> Ratio of the energy release rate to its critical value above which fronts that grow one cell a step shorten it
-    !> (`step_controllers`, as all below)
+    !> Ratio of the energy release rate to its critical value above which fronts that grow by one cell per step shorten
+    !> it (`step_controllers`, as all below)
     real(wp) :: ratio_near_growth = 0.8_wp
-    !> Ratio of the smaller to the larger mass factor of step and lagged operator, below which it is renewed. Half and
-    !> twice a step have .25; an operator that serves twice the step, by .1, makes runs 23 % dearer
+    !> Ratio of the smaller to the larger mass factor of step and lagged operator below which the operator is renewed.
+    !> With half or twice the step length it is .25; with a limit of .1, with which the operator is kept at twice the
+    !> step length, runs take 23 % longer
     real(wp) :: min_mass_ratio = 0.3_wp
     !> Errors, relative to the tolerance, above which the next step is halved, and above which a step is rejected. The
     !> error is of third order in the step length: halving reduces the first to a quarter

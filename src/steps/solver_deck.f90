@@ -58,8 +58,8 @@ contains
     solver%petsc_options = settings%text_of(solver_group, 'petsc_options')
   end subroutine fill_linear_solver
 
-  !> Checks options for PETSc: those of the solver are allowed, but none that writes files, as a deck may come from an
-  !> unknown source.
+  !> Checks options for PETSc: options of the solver are allowed, but not those that write files, as a deck may come
+  !> from an unknown source.
   subroutine check_petsc_options(settings, solver, problems)
     !> Keys in effect
     type(settings_t), intent(in) :: settings

@@ -17,11 +17,11 @@ module stepping_parameters
   !> step.
   integer, parameter, public :: rule_stress_rate = 1, rule_local_error = 2
 
-  !> Time from touch to the end of a run over that to the end of the contact: a quarter more shows that the impactor is
-  !> gone, and lets a second contact begin.
+  !> Ratio of the end of a run to the end of the contact, both from first contact: a quarter more shows that the
+  !> impactor has left, and includes the start of a second contact.
   real(wp), parameter, public :: past_contact = 1.25_wp
-  !> Longest extension of a run by its contact, over the end first chosen: an impactor still in contact by then
-  !> perforates the plate or rests on it.
+  !> Largest ratio of the end of a run extended by its contact to the end chosen first: an impactor still in contact by
+  !> then perforates the plate or rests on it.
   real(wp), parameter :: max_extension = 4
 
   !> Time integration of the plate.

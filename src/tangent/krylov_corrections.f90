@@ -1,6 +1,6 @@
-!> Newton's correction: the tangent's equations solved by a Krylov method of PETSc, with the factored operator as
-!> preconditioner. A factorization older than the present contacts, ties, damage or deflection costs iterations, not
-!> accuracy.
+!> Newton's correction, theory (N2): the tangent's equations solved by a Krylov method of PETSc, with the factored
+!> operator as preconditioner. A factorization older than the present contacts, ties, damage or deflection costs
+!> iterations, not accuracy.
 !>
 !> Flexible GMRES takes fewer solves than conjugate gradients (input/li2002.nml: 7864 against 10182). Conjugate
 !> gradients are used where cohesive points soften: they stop before a direction of negative curvature, and their last
@@ -37,9 +37,9 @@ contains
     real(wp), intent(inout) :: correction(:, :)
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
-    !> True: the tangent has negative curvature in a direction met, and the correction is what came before
+    !> True: a direction of negative curvature of the tangent was found; the correction is the last iterate before it
     logical, intent(out) :: has_negative_curvature
-    !> False: neither the tolerance was reached nor negative curvature met
+    !> False: neither the tolerance was reached nor negative curvature found
     logical, intent(out) :: converged
     real(wp), allocatable :: rows(:), solution(:)
 
@@ -69,9 +69,9 @@ contains
     real(wp), intent(in) :: tolerance
     !> Solution
     real(wp), intent(out) :: solution(:)
-    !> False: neither the tolerance was reached nor negative curvature met
+    !> False: neither the tolerance was reached nor negative curvature found
     logical, intent(out) :: converged
-    !> True: negative curvature was met
+    !> True: negative curvature was found
     logical, intent(out) :: indefinite
     !> Set if a solve fails
     type(error_t), allocatable, intent(inout) :: error
@@ -94,7 +94,7 @@ contains
     call krylov%solve(tangent, row_factors, rows, tolerance, solution, error)
     indefinite = krylov%indefinite
     converged = krylov%converged .or. indefinite
-    ! Negative curvature at once: the factored operator's solution descends.
+    ! With negative curvature in the first iteration, the solution of the factored operator is a direction of descent.
     if (indefinite .and. krylov%iterations <= 1) call tangent%precondition(rows, solution, error)
   end subroutine solve_tangent
 

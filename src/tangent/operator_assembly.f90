@@ -28,7 +28,7 @@ contains
   end function is_positive_definite
 
   !> True if the tangent does not couple in-plane displacements with bending: an undeflected plate of a symmetric
-  !> laminate. Both then have factors of their own, which are half as large as one for both. Collective.
+  !> laminate. Both are then factorized separately, and the factors are half as large as one for both. Collective.
   logical function has_separate_membrane(model, stiffness, displacement) result(separate)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -158,7 +158,7 @@ contains
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
-    !> Matrix, five rows a point
+    !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
     !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
@@ -185,7 +185,7 @@ contains
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
-    !> Matrix, five rows a point
+    !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
     !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
@@ -210,13 +210,14 @@ contains
     end do
   end subroutine add_to
 
-  !> Adds a matrix of the unknowns of some points: in-plane displacements and bending apart if they are separate.
+  !> Adds a matrix of the unknowns of some points, in-plane displacements and bending separately if they are not
+  !> coupled.
   subroutine add_parts(numbering, points, matrix, solver, element)
     !> Equations
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
-    !> Matrix, five rows a point
+    !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
     !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver

@@ -19,8 +19,8 @@ module tangent_operators
   private
   public :: tangent_operator_t
 
-  !> Factorization of `stiffness_factor*tangent + mass_factor*mass`. It has many components because it stores the data
-  !> it was computed from.
+  !> Factorization of `stiffness_factor*tangent + mass_factor*mass`. It has many components because it includes the data
+  !> from which it was computed.
   type :: tangent_operator_t
     !> Equations of the unconstrained unknowns
     type(numbering_t) :: numbering

@@ -1,5 +1,5 @@
-!> Product of the current tangent with a vector, without its matrix: by the directional derivative of the element
-!> forces, or by adding the change of the tangent to the product with the matrix that was factored. The factored
+!> Product of the current tangent with a vector, theory (N1), without its matrix: by the directional derivative of the
+!> element forces, or by adding the change of the tangent to the product with the matrix that was factored. The factored
 !> operator is the preconditioner.
 module tangent_products
   use kinds, only: wp
@@ -30,7 +30,7 @@ module tangent_products
     !> Stiffness of the jumps of each point: all of it with element tangents, else its increase over that in the
     !> factored operator, (3, 3, points); unallocated: none
     real(wp), allocatable :: jumps(:, :, :)
-    !> True: cohesive points soften, so it may be indefinite
+    !> True: cohesive points soften, so that the tangent may be indefinite
     logical :: softens = .false.
     !> Diagonal, (5, points); unallocated: the tangent is the factored operator
     real(wp), allocatable :: diagonal(:, :)
@@ -57,7 +57,7 @@ module tangent_products
 
 contains
 
-  !> True if it equals the factored operator, except for the impactor's force.
+  !> True if the tangent equals the factored operator, except for the slope of the impactor's force.
   pure logical function is_factored(self)
     !> The tangent
     class(tangent_product_t), intent(in) :: self

@@ -26,7 +26,7 @@ DECK = """&case        name='bench'  kinematics='{kinematics}' /
 {more}
 """
 
-# A cross-ply of seven plies on 12 x 12 elements of a quarter, struck so softly that nothing fails; 100 steps.
+# A cross-ply of seven plies on 12 x 12 elements of a quarter, under an impact too weak for failure; 100 steps.
 PANEL = """&case         name='panel'  kinematics='linear' /
 &plate        length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
 &mesh         elements=12, 12  patch=4e-3 /
@@ -38,7 +38,7 @@ PANEL = """&case         name='panel'  kinematics='linear' /
 &time         end=400e-6  step=4e-6  integrator='generalized_alpha' /
 """
 INTERFACE = '&delamination below_ply={plies} G_Ic=280 G_IIc=790 zone=40e-3, 40e-3 {more} /\n'
-# What is changed in it, or added to it.
+# Changes of the deck, or groups added to it.
 GROUPS = {
     'as it is: linear, Hertz': [],
     'law of Tan and Sun': [("law='hertz'", "law='tan_sun' alpha_cr=80.3e-6 beta=0.094")],
@@ -60,7 +60,7 @@ PHASE = r'^(\S.*?) +(\d+) +([\d.]+) s +([\d.]+) s$'
 
 
 class Run:
-    """One run of the program: processor time, peak memory, and what its log and history say."""
+    """One run of the program: processor time, peak memory, and figures from its log and history."""
 
     def __init__(self, program, kinematics, elements, step, end, more=''):
         with tempfile.TemporaryDirectory() as folder:
@@ -76,7 +76,7 @@ class Run:
             log = pathlib.Path(folder, 'bench.log').read_text()
             with open(pathlib.Path(folder, 'bench_history.csv')) as lines:
                 self.history = list(csv.DictReader(line for line in lines if not line.startswith('#')))
-        # Name, times, seconds by the wall clock, seconds of the processor.
+        # Name, times, wall-clock seconds, processor seconds.
         self.phases = {name.strip(): (int(times), float(processor)) for name, times, wall, processor in
                        re.findall(PHASE, log, re.MULTILINE)}
         self.wall = {name.strip(): float(wall)/max(int(times), 1) for name, times, wall, processor in
@@ -90,7 +90,7 @@ class Run:
         self.factor_megabytes = 8*self.factor_numbers/1e6
 
     def mean(self, phase):
-        """Seconds of the processor of one run of a phase."""
+        """Processor seconds of one call of a phase."""
         times, seconds = self.phases[phase]
         return seconds/max(times, 1)
 
@@ -100,7 +100,7 @@ class Run:
 
 
 def step_cost(program, arguments):
-    """Cost of a step against that of a solve, share of set-up, and memory, on about 60 000 unknowns."""
+    """Cost of a step relative to a solve, share of set-up, and memory, for about 60 000 unknowns."""
     bare = Run(program, 'linear', 2, 1e-6, 1e-6).peak_megabytes
     for kinematics, elements, target in (('linear', 71, 2.5), ('von_karman', 55, 6.0)):
         run = Run(program, kinematics, round(elements*arguments.finer), 1e-6, arguments.steps*1e-6,
@@ -132,7 +132,7 @@ def step_cost(program, arguments):
 
 
 def memory(program, arguments):
-    """Peak memory over matrix and factor for several sizes; how large a model keeps it to 1.5 times."""
+    """Peak memory over matrix and factor for several sizes of the model; the limit is 1.5."""
     more = f"&solver factorization='{arguments.factorization}' petsc_options='{arguments.petsc_options}' /"
     bare = Run(program, 'linear', 2, 1e-6, 1e-6, more).peak_megabytes
     print(f'MB; {bare:.0f} MB of each peak with four elements; in brackets the ratio without those')
@@ -167,7 +167,7 @@ def speed(program, arguments):
 
 
 def cost(program, text):
-    """Seconds of the processor of one run of a deck, its iterations of equilibrium and its factorizations."""
+    """Processor seconds of one run of a deck, its equilibrium iterations and its factorizations."""
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder, 'bench.nml')
         deck.write_text(text)
@@ -182,12 +182,12 @@ def cost(program, text):
 
 
 def instructions(program, text):
-    """Instructions of one run of a deck, as valgrind counts them: the same whatever else the machine does."""
+    """Instructions of one run of a deck, counted by valgrind: independent of the load of the machine."""
     with tempfile.TemporaryDirectory() as folder:
         deck = pathlib.Path(folder, 'bench.nml')
         deck.write_text(text)
         counter = ['valgrind', '--tool=callgrind', f'--callgrind-out-file={folder}/counts']
-        # The newest instructions of a processor, which OpenBLAS would take, are not known to valgrind.
+        # valgrind does not support the newest processor instructions, which OpenBLAS would use.
         done = subprocess.run([*counter, program, deck, '--output', folder], stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, text=True, env=dict(ENVIRONMENT, OPENBLAS_CORETYPE='HASWELL'))
         if done.returncode:
@@ -196,7 +196,7 @@ def instructions(program, text):
 
 
 def absent_physics(program, arguments):
-    """What an elastic model costs with this program against an older one, run in turns; least and median times."""
+    """Cost of an elastic model relative to an older program, run alternately; least and median times."""
     old = os.path.abspath(arguments.old)
     text = arguments.deck.read_text()
     decks = {'linear': text, 'von_karman': text.replace("kinematics='linear'", "kinematics='von_karman'")}
@@ -213,7 +213,7 @@ def absent_physics(program, arguments):
     for kinematics, deck in decks.items():
         pairs = []
         for number in range(arguments.repeat):
-            # Each goes first in every other pair, so that neither always meets the warmer machine.
+            # Each program runs first in every other pair, so that neither benefits from the temperature of the machine.
             order = (old, program) if number % 2 == 0 else (program, old)
             costs = {path: cost(path, deck) for path in order}
             pairs.append((costs[old][0], costs[program][0]))
@@ -224,7 +224,7 @@ def absent_physics(program, arguments):
 
 
 def groups(program, arguments):
-    """What each group of a deck adds to a model in which nothing fails: processor time, or instructions as well."""
+    """Cost of each group of a deck added to a model without failure: processor time, on request instructions."""
     print('| added | unknowns | iterations, factorizations | processor, s | instructions, 10^9 |')
     print('|---|---|---|---|---|')
     for name, changes in GROUPS.items():
@@ -241,7 +241,7 @@ def groups(program, arguments):
 
 
 def run_deck(program, deck, folder):
-    """Runs a deck given as text into a folder; seconds of the processor."""
+    """Runs a deck given as text in a folder; returns processor seconds."""
     folder.joinpath('deck.nml').write_text(deck)
     process = subprocess.Popen([program, folder/'deck.nml', '--output', folder], stdout=subprocess.DEVNULL,
                                env=ENVIRONMENT)
@@ -283,7 +283,8 @@ def fronts(program, arguments):
 
 
 def growth(program, arguments):
-    """Forces at which fronts grow and the energy they release: the threshold deck, and steps of a cross-ply."""
+    """Forces at which fronts grow and the energy they release: the threshold deck, and a cross-ply with several
+    steps."""
     decks = pathlib.Path(__file__).parents[2]/'input'
     crossply = decks.joinpath('reference/crossply_2mm.nml').read_text()
     crossply = crossply.replace("'two_state'", "'vcct'").replace("'one_per_step'", "'equilibrium'")
@@ -305,7 +306,7 @@ def growth(program, arguments):
 
 def growth_force(rows):
     """Force at which G/G_c first reaches 1, from the last row before growth; NaN without growth or without a front."""
-    # G is short of its critical value by a little there, and goes with the force squared.
+    # G is slightly below its critical value there, and proportional to the square of the force.
     for row, later in itertools.pairwise(rows):
         if later['delaminated_area'] > 1.001*rows[0]['delaminated_area']:
             return row['force']/row['release_ratio']**0.5 if row['release_ratio'] > 0 else float('nan')
@@ -313,7 +314,7 @@ def growth_force(rows):
 
 
 def one_deck(program, arguments):
-    """Figures of one deck with keys set anew: growth, forces, area, energies, steps and cost."""
+    """Figures of one deck with changed keys: growth, forces, area, energies, steps and cost."""
     sys.path.insert(0, str(pathlib.Path(__file__).parents[1]/'regress'))
     from solver_runs import change_deck
     print('| set | G = G_c, first growth by, N | peak force, N | mean force of growth, N | area, mm^2 | '
@@ -381,7 +382,7 @@ def main():
     part = parts.add_parser('deck', help=one_deck.__doc__)
     part.add_argument('deck', type=pathlib.Path)
     part.add_argument('--set', nargs='+', action='append', metavar='GROUP%%KEY=VALUE',
-                      help='keys set anew; given again: another run')
+                      help='changed keys; given again: another run')
     part.set_defaults(act=one_deck)
     arguments = parser.parse_args()
     arguments.act(os.path.abspath(arguments.program), arguments)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Random models with failing plies: energy dissipated by the integrators, and its change with half the step.
+"""Random models with failing plies: energy dissipated by the integrators, and its change with half the step length.
 Usage: breaking_models.py IMPLAM [COUNT]
 
 Prints a line for each run: model, 1 for half the step, energy_algorithmic at the end, its minimum and maximum,
@@ -16,7 +16,7 @@ LAYUPS = ("0,90,90,0", "0,90,0,90,90,0,90,0", "90,0,0,90", "0,0,90,90,90,90,0,0"
 
 
 def deck(seed, part):
-    """Return the deck of a model with a part of its step."""
+    """Return the deck of a model with a fraction of its step."""
     chance = random.Random(seed)
     angles = chance.choice(LAYUPS)
     thickness = chance.uniform(1e-3, 3e-3)
@@ -42,7 +42,7 @@ def deck(seed, part):
 
 
 def figures(implam, folder, seed, part):
-    """Run a model; return what is printed of it."""
+    """Run a model; return the printed figures."""
     path = Path(folder) / "model.nml"
     path.write_text(deck(seed, part), encoding="utf-8")
     subprocess.run([implam, path, "--output", folder], check=True, capture_output=True)

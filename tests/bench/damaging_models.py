@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Random impacts with cohesive interfaces that delaminate; each is run in several ways that must give the same results.
-Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (ways left out, such as two_ranks,three_ranks)
+"""Random impacts with cohesive interfaces that delaminate; each is run in several variants with equal results.
+Usage: damaging_models.py IMPLAM [COUNT] [FIRST] [LEFT_OUT]     (variants left out, such as two_ranks,three_ranks)
 
 Each model is run unchanged, and then on two and three ranks, in other units (mm-t-s), rotated by 90 degrees, mirrored,
 stopped and restarted, and with G_c larger by 1e-12. Differences of this perturbed run are those of round-off. A model
 passes if the run ends with exit code 0, or with 3 and a message; if the dissipated energy is G_c times the delaminated
-area to 1e-6; if it takes less than a minute of processor time; and if all ways give the same failed points of the
+area to 1e-6; if it takes less than a minute of processor time; and if all variants give the same failed points of the
 interfaces, the same failed plies of each element and the same delaminated area. Differences of the area are printed."""
 
 import csv
@@ -26,8 +26,8 @@ LAYUPS = ((0, 90, 0), (90, 0, 90), (0, 90, 90, 0), (0, 45, 90, -45, -45, 90, 45,
           (30, -30, 90, -30, 30), (0, 60, -60, -60, 60, 0))
 EXIT_DONE, EXIT_CONVERGENCE, EXIT_STOPPED = 0, 3, 75
 AREA, ENERGY = "delaminated_area", "energy_delamination"
-SAME_AREA = 1e-6  # of the area; it has the points that are parting, too
-MINUTE = 60  # seconds of the processor
+SAME_AREA = 1e-6  # of the area; it includes points of partial damage
+MINUTE = 60  # processor seconds
 os.environ |= {"OMP_NUM_THREADS": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_hwloc_base_binding_policy": "none",
                "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
@@ -60,7 +60,7 @@ def model(seed):
 
 
 def deck(s, turned=False, mirrored=False, scale=(1, 1, 1)):
-    """Return its deck; `scale` are the units of length, mass and time that it is written in, in those of SI."""
+    """Return its deck; `scale` has the units of length, mass and time in which it is written, relative to SI."""
     length, mass, _ = scale
     stress, toughness = mass / length, mass  # the unit of time is the second
     x, y = (1, 0) if turned else (0, 1)
@@ -112,13 +112,13 @@ def row_of(folder, number):
 
 
 def names_of(points):
-    """Return the places of points in whole nanometres."""
+    """Return the positions of points in whole nanometres."""
     return [tuple(point) for point in np.round(1e9 * points).astype(int).tolist()]
 
 
 def damage_of(folder, place, unit):
-    """Return the points separated and the plies failed at the end, by place: `place` gives x and y in the model
-    as it is, `unit` that of length."""
+    """Return the points separated and the plies failed at the end, by position: `place` maps x and y to the unchanged
+    model, `unit` is the unit of length."""
     with h5py.File(folder / "model.h5") as file:
         last = file["times"][max(file["times"])]
         mesh = file["meshes"][max(file["meshes"])]
@@ -142,8 +142,8 @@ def run_in(folder, text, implam, launcher=(), stop_after=None):
 
 
 def ways(s, seconds, implam, folder, left_out):
-    """Yield each way to run a model: its name, exit code, last row, and the place and unit of its points."""
-    # Several ranks share the cores; a rank alone that yields would wait for everybody.
+    """Yield each variant of a model: its name, exit code, last row, and the map and unit of its positions."""
+    # Several ranks share the cores; a single rank that yields would wait for other processes.
     mpirun = ("env", "OMPI_MCA_mpi_yield_when_idle=1", "mpirun", "--allow-run-as-root", "-n")
     changed = s | {"G_c": s["G_c"] * (1 + 1e-12)}
     for name, options, keywords, place in (
@@ -158,12 +158,12 @@ def ways(s, seconds, implam, folder, left_out):
 
 
 def as_it_is(x, y):
-    """Return a place of the model as it is."""
+    """Return a position of the unchanged model."""
     return x, y
 
 
 def faults_of(seed, implam, folder, left_out):
-    """Run a model in all ways; return what is reported of it, and what is wrong."""
+    """Run all variants of a model; return its report and its faults."""
     s = model(seed)
     code, said, seconds, row = run_in(folder / "plain", deck(s), implam)
     if code == EXIT_CONVERGENCE and said:
@@ -195,7 +195,7 @@ def faults_of(seed, implam, folder, left_out):
 
 
 def main(implam, count="40", first="1", left_out=""):
-    """Print a line a model, and how many pass."""
+    """Print a line per model, and the number that pass."""
     passed = 0
     for seed in range(int(first), int(first) + int(count)):
         with tempfile.TemporaryDirectory() as folder:

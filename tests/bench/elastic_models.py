@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Semi-analytic responses: peak force and history on meshes and steps that `&case accuracy` chooses, to one and three
-times its error. See README.md."""
+"""Semi-analytic responses: peak force and history on meshes and steps that `&case accuracy` chooses, within one and
+three times the requested error. See README.md."""
 import argparse
 import csv
 import json
@@ -34,12 +34,12 @@ DECK = """&case name='{name}' kinematics='linear' {case} /
 
 
 def limit_time(seconds):
-    """End a run after some seconds of the processor."""
+    """End a run after some processor seconds."""
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
 
 
 def random_models(count, seed):
-    """Cross-ply plates and balls of all sizes that low-velocity impact knows, all laws."""
+    """Cross-ply plates and balls over the range of low-velocity impact, all laws."""
     random = np.random.default_rng(seed)
 
     def spread(low, high):
@@ -64,7 +64,7 @@ def random_models(count, seed):
 
 
 def deck_of(model, case='', mesh='', impactor='', time='', more=''):
-    """The model as a deck."""
+    """The deck of the model."""
     law = ("law='hertz'" if model.law == 'hertz' else
            f"law='tan_sun' dent='{model.law}' q={model.q} alpha_cr={model.alpha_cr} " +
            (f'beta={model.beta}' if model.law == 'tan_sun' else ''))
@@ -75,7 +75,7 @@ def deck_of(model, case='', mesh='', impactor='', time='', more=''):
 
 
 class Run:
-    """One run: exit code, processor time, log, history, and how far it is from the semi-analytic response."""
+    """One run: exit code, processor time, log, history, and errors against the semi-analytic response."""
 
     def __init__(self, program, deck, name, seconds=60):
         with tempfile.TemporaryDirectory() as folder:
@@ -113,7 +113,7 @@ class Run:
 
 
 def over_estimates(summary, answered):
-    """Errors of peak force, its time, time in contact and the ball's velocity over the run's estimates."""
+    """Errors of peak force, its time, contact duration and the ball's velocity over the run's estimates."""
     times, forces, speeds, _ = answered
     exact = {'peak_force': forces.max(), 'peak_force_at': times[forces.argmax()],
              'contact_duration': np.count_nonzero(forces > 0)*times[1], 'impactor_velocity': speeds[-1]}
@@ -123,20 +123,20 @@ def over_estimates(summary, answered):
 
 
 def compare(program, model, case, seconds=60):
-    """One row of the table: the run with some keys of the case, its errors, and these over its estimates."""
+    """One row of the table: the run with some keys of the case, its errors, and their ratios to its estimates."""
     run = Run(program, deck_of(model, case=case), model.name, seconds)
     if run.code:
         return run, None, None
     tau = model.contact_time()
     end = run.key('time', 'end')[0]
-    # A long contact depends on low modes: its peak and history change by less than 0.1 % with twice as many.
+    # A long contact depends on low modes: with twice as many modes peak and history change by less than 0.1 %.
     long = end > 300*tau
     answered = response(model, run.key('mesh', 'patch')[0], end, *((20, 20) if long else (60, 50)))
     return run, run.errors(*answered[:2]), over_estimates(run.summary, answered)
 
 
 def named_by(said, summary, bound):
-    """What informs a user that a model may miss: a warning of the check, or the run's estimate beyond the bound, %."""
+    """What warns a user of an error: a warning of the check, or the run's estimate beyond the bound, %."""
     estimate = summary.get('estimated_errors', {}).get('peak_force') or 0
     beyond = summary and 100*estimate > bound*summary['peak_force']
     return [name for name, warns in (('check', ': warning:' in said), ('estimate', beyond)) if warns]
@@ -151,7 +151,7 @@ def main():
     parser.add_argument('--count', type=int, default=40)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--longest', type=float, default=2000,
-                        help='contacts that last more rises than this have no response here')
+                        help='models with contacts of more rise times than this are left out')
     parser.add_argument('--seconds', type=int, default=60, help='processor time after which a run is ended')
     parser.add_argument('--only', type=int, nargs='+', help='numbers of models')
     parser.add_argument('--case', default='', help='more keys of &case')

@@ -6,7 +6,7 @@ import re
 from explicit_runs import INPUT, Run, explicit, row, steps_of  # first: sets the path
 from solver_runs import change_deck
 
-# Keys changed in the small model of breaking plies and interfaces; a key without a value is left out.
+# Keys changed in the small model of failing plies and interfaces; a key without a value is removed.
 EXTREMES = {
     'as it is': [],
     'plies of .02 mm beside a core of 10 mm': ['laminate%angles=0, 90, 0, 90, 0',
@@ -31,7 +31,7 @@ EXTREMES = {
 
 
 def extremes(program, options):
-    """A model of breaking plies and interfaces, at extremes of its keys."""
+    """A model of failing plies and interfaces, at extremes of its keys."""
     text = (INPUT/'small/breaking_rounds.nml').read_text(encoding='utf-8')
     for name, settings in EXTREMES.items():
         if options.only and not any(word in name for word in options.only):

@@ -1,4 +1,4 @@
-"""Central differences on several ranks: bytewise comparison of histories, and messages and bytes of a step."""
+"""Central differences on several ranks: bytewise comparison of histories, and messages and bytes per step."""
 
 import pathlib
 import re
@@ -12,11 +12,11 @@ import breaking_models
 import damaging_models
 from solver_runs import change_deck
 
-CHECKPOINT = .53  # of the run; the last one of it
+CHECKPOINT = .53  # fraction of the run; its last checkpoint
 
 
 def history_on(program, folder, number, *arguments):
-    """History of a run on some ranks, its bytes; what it printed last if it ends otherwise."""
+    """History of a run on some ranks, as bytes; the last printed line if the run fails."""
     done = subprocess.run([*MPIRUN, str(number), program, *arguments], env=ENVIRONMENT, text=True, cwd=folder,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     if done.returncode:
@@ -34,7 +34,8 @@ def rank_texts(options):
 
 
 def ranks(program, options):
-    """Histories on 1, 2, 3 and 4 ranks, and from a checkpoint in the midst on each, byte for byte."""
+    """Histories on 1, 2, 3 and 4 ranks, and restarted from a checkpoint within the run on each, compared byte for
+    byte."""
     for name, text in rank_texts(options).items():
         end = float(re.search(r'\bend=([\d.e+-]+)', text)[1])
         deck = change_deck(text, [f'output%checkpoint_every={CHECKPOINT*end!r}', 'output%checkpoint_at_end=.false.'])
@@ -50,7 +51,7 @@ def ranks(program, options):
                 here = root/f'again_{number}'
                 shutil.copytree(root/'1', here)
                 history = next(here.glob('*_history.csv'))
-                # As a run leaves it that is killed before its last rows.
+                # The folder of a run that was killed before its last rows.
                 history.write_bytes(b''.join(history.read_bytes().splitlines(keepends=True)[:-5]))
                 found.append(history_on(program, here, number, 'restart', next(here.glob('*_restart.h5'))))
         wrong = [each for each in found if isinstance(each, str)]
@@ -65,15 +66,15 @@ def ranks(program, options):
 
 
 def rows_and_failures(history):
-    """Number of rows of a history, its bytes, and fibre failures in the last."""
+    """Number of rows of a history given as bytes, and fibre failures in the last row."""
     lines = [line for line in history.decode('utf-8').splitlines() if not line.startswith('#')]
     names = [name.strip() for name in lines[0].split(',')]
     return len(lines) - 1, float(lines[-1].split(',')[names.index('fibre_failures')])
 
 
 def sent(folder, ranks):
-    """Messages between neighbours, collective calls to each other rank, bytes of both, most of any rank: what Open
-    MPI's monitoring has counted."""
+    """Messages between neighbours, collective calls to each other rank, bytes of both, maximum over the ranks: as
+    counted by Open MPI's monitoring."""
     found = np.zeros((ranks, 4))
     for rank in range(ranks):
         for line in (folder/f'count.{rank}.prof').read_text(encoding='utf-8').splitlines():
@@ -86,7 +87,7 @@ def sent(folder, ranks):
 
 
 def messages(program, options):
-    """Messages and bytes of a step on several ranks, and the time on 64 that follows from them."""
+    """Messages and bytes per step on several ranks, and the time on 64 ranks that follows from them."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for cell in options.cells or (3, 1.5):

@@ -56,14 +56,15 @@ class Run:
         return max(row[column] for row in self.rows)
 
     def ledger(self):
-        """Least and largest share of the impact that is not accounted for, and what meeting surfaces lose."""
+        """Least and largest energy error over the impact energy, and the dissipation by surfaces that come into
+        contact."""
         impact = self.rows[0]['energy_impactor'] + self.rows[0]['energy_indentation']
         impact = max(impact, self.summary.get('energy_impact') or 0)
         errors = [row['energy_error']/impact for row in self.rows]
         return min(errors), max(errors), self.rows[-1]['energy_contact']/impact
 
     def wrong(self):
-        """What is to be said of a run that has not ended well; empty: nothing."""
+        """Why a run has failed; empty: it has not."""
         if not self.code:
             return ''
         return f'ends with {self.code}: {(self.said.splitlines() or [""])[-1][:100]}'
@@ -83,7 +84,7 @@ def row(name, figure, bound='', good=None):
 
 
 def steps_of(program, text):
-    """Steps of a run and their length, as the check foresees them; nothing if it says none."""
+    """Number and length of the steps of a run, as estimated by the check; empty if it prints none."""
     said = subprocess.run([program, 'check', '/dev/stdin'], env=ENVIRONMENT, capture_output=True, text=True,
                           input=text, check=False).stdout
     found = re.search(r'About ([\d.e+]+) steps? of ([\d.e+-]+)', said)
@@ -91,7 +92,7 @@ def steps_of(program, text):
 
 
 def panel_text(cell):
-    """The 25 J panel on cells of some mm."""
+    """The 25 J panel with cells of some mm."""
     elements = {3: '20, 30', 1.5: '38, 56', 1: '46, 72'}[cell]
     return change_deck((INPUT/'experiments/t700_m21_25J.nml').read_text(encoding='utf-8'),
                        [f'mesh%elements={elements}', f'mesh%cell={cell}e-3'])

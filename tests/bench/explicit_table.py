@@ -44,7 +44,7 @@ def elastic(program, options):
             if steps is None or steps > options.max_steps:
                 row(name, f'{steps or 0:.2g} steps, not run')
                 continue
-            # A straight line between rows of a half wave errs by less than .1 % with 20 rows in its rise.
+            # Linear interpolation of a half sine is in error by less than .1 % with 20 rows in the rise time.
             every = min(steps*step/2000, model.contact_time()/ROWS_IN_RISE)
             run = elastic_models.Run(program, f'{text}\n&output history_every={every} /', model.name, 7200)
             run_count += 1
@@ -63,7 +63,7 @@ def elastic(program, options):
 
 
 def peanut_text(cell):
-    """The peanut on cells of some mm; those of .6 mm have a patch and a core of whole ones."""
+    """The peanut with cells of some mm; for .6 mm patch and core are multiples of the cell."""
     text = (INPUT/'peanut.nml').read_text(encoding='utf-8').replace('mass_scaling=6', 'step=16e-6')
     text = change_deck(text, ['output%fields_every=4e-3'])
     if cell == .8:
@@ -73,7 +73,7 @@ def peanut_text(cell):
 
 
 def peanut(program, options):
-    """First growth, peak and area of the peanut by both ways."""
+    """First growth, peak and area of the peanut by both integrators."""
     for cell in options.cells or (.8, .6):
         text = peanut_text(cell)
         found = {}
@@ -107,13 +107,13 @@ def thresholds(program, options):
         if run.wrong():
             row(f'threshold {cell} mm', run.wrong(), '', False)
             continue
-        # While the area grows from twice the starter's to two cells off the border of the zone.
+        # While the area grows from twice the starter's to two cells from the border of the zone.
         start = 2*run.rows[0]['delaminated_area']
         end = math.pi*(.02 - 2e-3*cell)**2
         growing = [(after['force'], after['delaminated_area'] - before['delaminated_area'])
                    for before, after in zip(run.rows, run.rows[1:], strict=False)
                    if start < after['delaminated_area'] < end]
-        # Over time, as a testing machine would show it, and over the area.
+        # Mean over time, as a testing machine would measure it, and over the area.
         mean = np.mean([force for force, _ in growing])
         by_area = sum(force*area for force, area in growing)/sum(area for _, area in growing)
         ratio = mean/cohesive_study.CLOSED_FORM
@@ -138,7 +138,7 @@ def damaging(program, options):
         area = last['delaminated_area'] - (run.rows[0]['delaminated_area'] if model['starter'] else 0)
         cost, energy = model['G_c']*area, last['energy_delamination']
         right = abs(energy - cost) <= 1e-6*max(cost, 1e-12)
-        # What the tractions did beyond what is stored, recorded as fracture, friction or lost where surfaces meet.
+        # Work of the tractions beyond the energy stored and recorded as fracture, friction or contact loss.
         beyond = last['energy_algorithmic']/energy if energy > 0 else 0
         smallest, largest, contact = run.ledger()
         good = smallest > -2e-3 and largest < 5e-4
@@ -156,7 +156,7 @@ def damaging(program, options):
 
 
 def breaking(program, options):
-    """Random models whose plies break."""
+    """Random models whose plies fail."""
     held, worst = 0, [0.0, 0.0, 0.0]
     for seed in range(options.count):
         run = Run(program, explicit(breaking_models.deck(seed, 1), options.time), seconds=600)
@@ -175,13 +175,13 @@ def breaking(program, options):
 
 
 def remainder(run):
-    """Root mean square of what is not accounted for, over the impact."""
+    """Root mean square of the energy error over the impact energy."""
     impact = run.summary['energy_impact']
     return math.sqrt(np.mean([(entry['energy_error']/impact)**2 for entry in run.rows]))
 
 
 def halves(program, options):
-    """What half the step leaves of the remainder of the ledger."""
+    """Ratio of the energy error with half the step length to that with the full one."""
     texts = {'karas': (INPUT/'verify/karas.nml').read_text(encoding='utf-8'),
              'sun_chen_elastic': (INPUT/'verify/sun_chen_elastic.nml').read_text(encoding='utf-8'),
              'cohesive': (INPUT/'small/cohesive.nml').read_text(encoding='utf-8')}
@@ -201,7 +201,8 @@ def halves(program, options):
 
 
 def panels(program, options):
-    """Cost of the panels: foreseen, and paid with --run. The limits are parts of the 3060 s of implicit steps."""
+    """Cost of the panels: estimated, and measured with --run. The limits are fractions of the 3060 s of implicit
+    steps."""
     decks = [(f'25 J, {cell} mm', panel_text(cell), limit) for cell, limit in ((3, 153), (1.5, 765))]
     decks.append(('6.5 J, as it is', (INPUT/'experiments/t700_m21_6.5J.nml').read_text(encoding='utf-8'), 765))
     for name, deck, limit in decks:
@@ -224,7 +225,7 @@ def panels(program, options):
 
 
 def costs(program, options):
-    """Cost of a step against the number of elements: two runs, one with three times the steps of the other."""
+    """Cost of a step against the number of elements: from two runs, one with three times the steps of the other."""
     text = cohesive_study.THRESHOLD.read_text(encoding='utf-8')
     for elements in (20, 40, 80, 160, 190)[:3 if options.quick else 5]:
         smallest = max(20, 1_000_000//elements**2)
@@ -243,7 +244,7 @@ def costs(program, options):
 
 
 def scaling(program, options):
-    """What the factor of in-plane and rotary inertia changes of elastic and breaking impacts."""
+    """Effect of the factor of in-plane and rotary inertia on elastic impacts and impacts with ply failure."""
     decks = {name: (INPUT/path).read_text(encoding='utf-8') for name, path in (
         ('Sun-Chen', 'verify/sun_chen_elastic.nml'), ('Karas', 'verify/karas.nml'), ('peanut', 'peanut.nml'))}
     if options.run:
@@ -269,7 +270,7 @@ PARTS = {part.__name__: part for part in (elastic, peanut, thresholds, damaging,
 
 
 def main():
-    """Run the parts asked for."""
+    """Run the requested parts."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog='\n'.join(f'{name:12}{part.__doc__}' for name, part in PARTS.items()))
     parser.add_argument('program')
@@ -277,7 +278,7 @@ def main():
     parser.add_argument('--count', type=int, default=20, help='random models of a part')
     parser.add_argument('--first', type=int, default=1, help='first random model of damaging')
     parser.add_argument('--time', default='', help='keys of &time of damaging and breaking, as step_factor=0.45')
-    parser.add_argument('--max-steps', type=float, default=MAX_STEPS, help='longer elastic runs are left out')
+    parser.add_argument('--max-steps', type=float, default=MAX_STEPS, help='elastic runs of more steps are left out')
     parser.add_argument('--only', nargs='+', help='elastic models by name, as model_3 or karas; extremes by words')
     parser.add_argument('--cells', type=float, nargs='+', help='of peanut and thresholds, mm')
     parser.add_argument('--quick', action='store_true',

@@ -1,8 +1,9 @@
 """Semi-analytic response of an elastic impact: a ball on a simply supported cross-ply plate, by Navier's modes.
 
-The plate is Mindlin's with rotary inertia, the force is spread over a square patch in the middle, and the indentation
-is measured from the patch's mean deflection. Modes and ball move exactly under a force that is linear over a step; the
-force at the end of a step is the root of a scalar equation. Modes far above the frequencies of the force are static.
+The plate is Mindlin's with rotary inertia, the force is spread over a square patch in the centre, and the indentation
+is measured from the patch's mean deflection. Modes and ball are integrated exactly under a force that
+is linear over a step; the force at the end of a step is the root of a scalar equation. Modes of frequencies far above
+those of the force are static.
 """
 import dataclasses
 import math
@@ -12,7 +13,7 @@ import numpy as np
 
 @dataclasses.dataclass
 class Model:
-    """One impact, in SI units. Plies are symmetric about the middle, angles 0 or 90."""
+    """One impact, in SI units. Plies are symmetric about the mid-plane, angles 0 or 90."""
 
     length: tuple
     angles: list
@@ -38,7 +39,7 @@ class Model:
         return np.broadcast_to(self.ply, len(self.angles))
 
     def contact_time(self):
-        """tau: the indentation grows until the plate's resistance to waves carries the contact force."""
+        """tau: the rise time, after which the wave impedance of the plate carries the contact force."""
         bending = (self.moduli[0] + self.moduli[1])/2*self.thickness**3/12
         impedance = 8*math.sqrt(bending*self.density*self.thickness)
         tau = (impedance*self.velocity/self.k)**(2/3)/self.velocity
@@ -68,7 +69,7 @@ def matrices(model, m, n):
 
 
 def condensed(model, m, n):
-    """Stiffness against deflection alone, the rotations free."""
+    """Stiffness of the deflection with the rotations condensed out."""
     k11, k12, k13, k22, k23, k33 = matrices(model, m, n)
     det = k22*k33 - k23**2
     return k11 - (k12**2*k33 - 2*k12*k13*k23 + k13**2*k22)/det
@@ -102,7 +103,7 @@ def modes(model, patch, cutoff):
 
 
 class Contact:
-    """The indentation law with its memory."""
+    """The indentation law with its history variables."""
 
     def __init__(self, model):
         self.model, self.alpha_max, self.dent, self.separated = model, 0.0, 0.0, False
@@ -154,7 +155,7 @@ class Contact:
 
 
 def response(model, patch, end, fineness=100, cutoff=60):
-    """Times and forces of the response, the ball's velocity and the patch's deflection, from touch to `end`."""
+    """Times and forces of the response, the ball's velocity and the patch's deflection, from first contact to `end`."""
     tau = model.contact_time()
     dt = tau/fineness
     steps = math.ceil(end/dt)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Cost of implicit runs relative to an older program: steps of large plates, Sun and Chen's plate, peanut,
-thresholds, specimens under load steps. Both programs run alternately. See README.md."""
+"""Cost of implicit runs relative to an older program: steps of large plates, Sun and Chen's plate, peanut, thresholds,
+specimens under load steps. Both programs run alternately. See README.md."""
 import argparse
 import os
 import pathlib
@@ -18,7 +18,7 @@ IMPLICIT_PEANUT = ["time%integrator='generalized_alpha'", 'time%step=16e-6']
 
 
 def plate(kinematics, elements, steps):
-    """A plate of about 60 000 unknowns, each step of 1 us."""
+    """A plate of about 60 000 unknowns with steps of 1 us."""
     return DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6, more='')
 
 
@@ -28,7 +28,7 @@ def stored(name, *settings):
     return change_deck(text, settings)
 
 
-# Name: deck, whether the steps alone are compared, and the limit of the ratio; of sun_chen that of the difference, s.
+# Name: deck, whether only the steps are compared, and the limit of the ratio; for sun_chen that of the difference, s.
 CASES = {
     'plate, linear, a step': (lambda: plate('linear', 71, 100), True, 1.4),
     'plate, von Karman, a step': (lambda: plate('von_karman', 55, 100), True, 1.4),
@@ -43,7 +43,7 @@ CASES = {
 
 
 def measure(program, text, steps_alone):
-    """Seconds of the processor of a run, or of its steps, and the largest force."""
+    """Processor seconds of a run, or of its steps, and the largest force."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         seconds = run_deck(program, text, folder)

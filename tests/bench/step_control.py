@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Adaptive steps against fixed ones at equal error of the force history, in solves and factorizations."""
+"""Adaptive steps against fixed ones at equal error of the force history: numbers of solves and factorizations."""
 import argparse
 import json
 import math
@@ -14,12 +14,12 @@ import numpy as np
 from elastic_models import ENVIRONMENT, deck_of, random_models
 
 INPUT = pathlib.Path(__file__).resolve().parents[2] / 'input'
-# Time to the end of the run over that of the last contact: a run is to show the rebound and the plate after it.
+# Time of the end of the run over that of the last contact, so that the run includes the rebound.
 BEYOND = 2.4
 
 
 def with_keys(text, group, **keys):
-    """A deck with keys of a group set anew."""
+    """A deck with changed keys of a group."""
     for key, value in keys.items():
         text = re.sub(rf'(?m)(^&{group}\b[^/]*?)\s+{key}=[^/=]*?(?=\s+\w+=|\s*/)', r'\1', text)
         text = re.sub(rf'(?m)^&{group}\b', f'&{group} {key}={value}', text)
@@ -27,7 +27,7 @@ def with_keys(text, group, **keys):
 
 
 def random_decks(program, numbers):
-    """Random elastic models with the mesh of the manual's advice, up to 2.4 times the end of the contact."""
+    """Random elastic models with the mesh that the manual recommends, up to 2.4 times the end of the contact."""
     models = random_models(max(numbers), 1)
     for number in numbers:
         model = models[number - 1]
@@ -80,13 +80,14 @@ class Run:
         return math.sqrt(np.sum((mine - finest.force)**2)/np.sum(finest.force**2))
 
     def deflection_error(self, finest):
-        """The same of the deflection."""
+        """Relative error of the deflection history (L2)."""
         mine = np.interp(finest.time, self.time, self.deflection)
         return math.sqrt(np.sum((mine - finest.deflection)**2)/np.sum(finest.deflection**2))
 
 
 def cost_at(error, runs, price):
-    """Solves and factorizations for an error, between runs on a straight line of logarithms; None: out of range."""
+    """Solves and factorizations for a given error, by linear interpolation of logarithms between runs; None: out of
+    range."""
     points = sorted((run_error, run.solves + price*run.factors) for run_error, run in runs)
     errors = [point[0] for point in points]
     if not min(errors) <= error <= max(errors):
@@ -102,7 +103,7 @@ def main():
     parser.add_argument('--errors', type=float, nargs='+', default=(2, 1), help='of the force history, %%')
     parser.add_argument('--random', type=int, nargs='*', default=(1, 2, 3, 39, 11, 24), help='random elastic models')
     parser.add_argument('--tolerances', type=float, nargs='+', default=(1e-2, 3e-3, 1e-3, 3e-4))
-    parser.add_argument('--only', help='models whose names begin so')
+    parser.add_argument('--only', help='models whose names begin with this')
     parser.add_argument('--verbose', action='store_true')
     options = parser.parse_args()
     program = os.path.abspath(options.program)

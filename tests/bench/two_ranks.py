@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Speed-up of two ranks over one: implicit steps of plates of 200 000 unknowns, and the measured 25 J panel
-by central differences, on its cells of 1.5 mm up to .72 ms. See README.md."""
+by central differences, with cells of 1.5 mm up to .72 ms. See README.md."""
 import argparse
 import os
 import pathlib
@@ -26,7 +26,7 @@ def decks(steps):
 
 
 def phases_of(program, ranks, text):
-    """How often each part of a run came, and its seconds by the wall clock."""
+    """Number of calls of each part of a run, and its wall-clock seconds."""
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, 'deck.nml').write_text(text)
         subprocess.run(['mpirun', '-n', str(ranks), program, f'{folder}/deck.nml', '--output', folder],
@@ -37,12 +37,12 @@ def phases_of(program, ranks, text):
 
 
 def main():
-    """Print a line a deck."""
+    """Print a line per deck."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('program')
     parser.add_argument('--factorization', default='automatic', help='of two ranks')
     parser.add_argument('--steps', type=int, default=300, help='of the plates')
-    parser.add_argument('--repeat', type=int, default=3, help='runs of each, in turns; medians are printed')
+    parser.add_argument('--repeat', type=int, default=3, help='runs of each, alternately; medians are printed')
     arguments = parser.parse_args()
     program = os.path.abspath(arguments.program)
     for name, text in decks(arguments.steps):

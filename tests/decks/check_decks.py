@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Holds `implam check` against decks whose faults are known.
+"""Compares the output of `implam check` with the expected faults of decks.
 
 usage: check_decks.py IMPLAM
 
 Every deck in bad/ begins with one comment for each fault, `! expect LINE: FRAGMENT`; the program must end with
 exit code 2 and report exactly these faults, one a line, each as `FILE:LINE: ...FRAGMENT...` (LINE 0: the deck as a
 whole, reported as `FILE: ...`). The decks in good/ must pass, with the warnings that `! expect-warning` lists.
-Files that no editor would write are made on the spot.
+Files that no editor would write are generated.
 """
 import os
 import re
@@ -19,14 +19,14 @@ EXPECTATION = re.compile(rb"^! expect(-warning)? (\d+): (.*?)\r?$", re.MULTILINE
 
 
 def run(program, path):
-    """Exit code and output lines of a check that must not take long, and must do without MPI: here it cannot start."""
+    """Exit code and output lines of a check that must be fast and must not use MPI, which cannot start here."""
     done = subprocess.run([program, "check", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60,
                           env=dict(os.environ, OMPI_MCA_pml="none"))
     return done.returncode, done.stdout.decode("utf-8", "replace").splitlines()
 
 
 def complaints(program, path, expected_code, errors, warnings):
-    """What the program did otherwise than expected."""
+    """Differences of the program's output from the expected one."""
     code, lines = run(program, path)
     found = [line for line in lines if line.startswith(path + ":") and not line.endswith(": no errors.")]
     wrong = []
@@ -48,7 +48,7 @@ def complaints(program, path, expected_code, errors, warnings):
 
 
 def expectations(path):
-    """The errors and warnings that a deck says it has."""
+    """The errors and warnings that a deck expects."""
     with open(path, "rb") as deck:
         found = EXPECTATION.findall(deck.read())
     errors = [(int(line), text.decode()) for is_warning, line, text in found if not is_warning]
@@ -57,7 +57,7 @@ def expectations(path):
 
 
 def made_decks(folder):
-    """Decks of bytes: name, exit code, errors, warnings."""
+    """Decks as bytes: name, exit code, errors, warnings."""
     with open(os.path.join(HERE, "good", "impact.nml"), "rb") as deck:
         good = deck.read()
     length = len(good.splitlines())
@@ -78,7 +78,7 @@ def made_decks(folder):
 
 
 def check_made_decks(program):
-    """Decks that are made on the spot, and paths that are none."""
+    """Generated decks, and paths that are no decks."""
     wrong = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, content, code, errors, warnings in made_decks(folder):
@@ -105,7 +105,7 @@ def main():
             path = os.path.join(folder, name)
             errors, warnings = expectations(path)
             if kind == "bad" and not errors:
-                wrong[name] = ["the deck says no fault that it has"]
+                wrong[name] = ["the deck expects no fault"]
             else:
                 wrong[name] = complaints(program, path, code, errors, warnings)
     failed = {name: lines for name, lines in wrong.items() if lines}

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Holds the manual's page of every group, and those of the results, against the program.
+"""Compares the manual's page of every group, and those of the results, with the program.
 
 usage: check_manual.py IMPLAM [--write]
 
 The table of a page must be what `implam explain --markdown GROUP` prints, and every ```fortran block of a page must
-be a deck that `implam check` passes, once the groups it leaves out are filled in from tests/decks/good/impact.nml.
+be a deck that `implam check` accepts, completed by the groups that it lacks from tests/decks/good/impact.nml.
 The same holds for the tables of `history` and `fields`, and the page of the energy ledger must define each of its
-entries. The page of the summary must name each of its members and show what the program prints, the page of the command
-line each exit code. No table stands on two pages. With --write the tables are replaced.
+entries. The page of the summary must name each of its members and show the printed lines, the page of the command
+line each exit code. No table is on two pages. With --write the tables are replaced.
 """
 import json
 import os
@@ -18,21 +18,21 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 APP = os.path.join(HERE, "..", "..", "src", "app")
-# Members that the sources write; those of a verification are in a file of its own.
+# Members written by the sources; those of a verification are in their own file.
 MEMBER = re.compile(r"json%(?:put|put_null|open_object|open_list)\('(\w+)'")
 OTHER_FILES = ("verifications.f90",)
 MANUAL = os.path.join(HERE, "..", "..", "doc", "manual")
 TABLE = re.compile(r"^\| (?:key|name) \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
 RESULTS = ("history", "fields")
-# Columns of the history that belong to the ledger.
+# Columns of the history in the ledger.
 ENTRY = re.compile(r"^\| `(energy_\w+|work_external)`", re.MULTILINE)
 EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
 # Values of materials, and their sources.
 MATERIALS = re.compile(r"^\| key \|.*?\n\n(?:- .*\n)+", re.DOTALL | re.MULTILINE)
 GROUP = re.compile(r"^&(\w+).*?/[ ]*$", re.DOTALL | re.MULTILINE)
-# Groups that a static example puts in place of these of the deck that fills in the rest.
+# Groups that replace these of the completing deck in a static example.
 TRANSIENT = ("impactor", "indentation", "time")
-# The same for one that begins from another run's end.
+# The same for an example that starts from the final state of another run.
 STRIKING = ("impactor", "indentation")
 
 
@@ -43,7 +43,7 @@ def ask(program, *words):
 
 
 def completed(example):
-    """An example with the groups it lacks."""
+    """An example completed by missing groups."""
     with open(os.path.join(HERE, "good", "impact.nml"), encoding="utf-8") as deck:
         rest = deck.read()
     own = [match.group(1) for match in GROUP.finditer(example)]
@@ -58,7 +58,7 @@ def completed(example):
 
 
 def check_table(program, topic, wrong):
-    """Hold the table of a page against the program's and return the page; note in `wrong` what differs."""
+    """Compare the table of a page with the program's and return the page; add differences to `wrong`."""
     path = os.path.join(MANUAL, topic + ".md")
     if not os.path.exists(path):
         wrong.append(f"{path}: there is no such page")
@@ -77,7 +77,7 @@ def check_table(program, topic, wrong):
 
 
 def check_examples(program, topic, text, wrong):
-    """Note in `wrong` which examples of a page are not decks."""
+    """Add examples of a page that are not valid decks to `wrong`."""
     path = os.path.join(MANUAL, topic + ".md")
     examples = EXAMPLE.findall(text)
     if not examples:
@@ -92,7 +92,7 @@ def check_examples(program, topic, text, wrong):
 
 
 def check_materials(program, wrong):
-    """Note in `wrong` if the page of published materials has other values or sources than the program."""
+    """Add a message to `wrong` if the page of published materials has other values or sources than the program."""
     path = os.path.join(MANUAL, "materials.md")
     with open(path, encoding="utf-8") as page:
         text = page.read()
@@ -107,7 +107,7 @@ def check_materials(program, wrong):
 
 
 def check_ledger(program, wrong):
-    """Note in `wrong` which entries of the energy ledger its page does not define."""
+    """Add entries of the energy ledger that its page does not define to `wrong`."""
     path = os.path.join(MANUAL, "energy_ledger.md")
     with open(path, encoding="utf-8") as page:
         defined = re.findall(r"^\*\*(\w+)\*\*", page.read(), re.MULTILINE)
@@ -117,7 +117,7 @@ def check_ledger(program, wrong):
 
 
 def members_of(value):
-    """Names of the members of a summary, of whatever depth."""
+    """Names of the members of a summary at any level."""
     if isinstance(value, dict):
         return {*value, *(name for inner in value.values() for name in members_of(inner))}
     return {name for inner in value for name in members_of(inner)} if isinstance(value, list) else set()
@@ -134,7 +134,7 @@ def written_members():
 
 
 def check_summary(program, wrong):
-    """Note in `wrong` which members of a summary its page does not name, and lines that a run does not print."""
+    """Add members of a summary that its page does not name, and lines that a run does not print, to `wrong`."""
     path = os.path.join(MANUAL, "summary.md")
     with open(path, encoding="utf-8") as page:
         text = page.read()
@@ -156,7 +156,7 @@ def check_summary(program, wrong):
 
 
 def check_exit_codes(program, wrong):
-    """Note in `wrong` which exit codes the page of the command line does not have, or has otherwise."""
+    """Add exit codes that the page of the command line lacks or describes differently to `wrong`."""
     path = os.path.join(MANUAL, "command_line.md")
     with open(path, encoding="utf-8") as page:
         listed = re.findall(r"^\| (\d+) \| [^|]+ \|$", page.read(), re.MULTILINE)
@@ -166,7 +166,7 @@ def check_exit_codes(program, wrong):
 
 
 def check_once(topics, wrong):
-    """Note in `wrong` tables of groups or results that stand on another page than their own."""
+    """Add tables of groups or results on other pages than their own to `wrong`."""
     doc = os.path.join(HERE, "..", "..", "doc")
     for folder, _, names in os.walk(doc):
         for name in names:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Holds the tables of results, `implam explain history` and `implam explain fields`, against what is promised of them
-and against the deck.
+"""Compares the tables of results, `implam explain history` and `implam explain fields`, with the public interface and
+with the deck.
 
 usage: check_results.py IMPLAM
 """
@@ -17,7 +17,7 @@ FIRST = [
     "time", "step", "force", "indentation", "impactor_displacement", "impactor_velocity", "deflection",
     "delaminated_area", "energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation",
     "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic", "energy_error"]
-# Words for dimensions that the deck's units are made of, and those that only results have.
+# Words for dimensions in the deck's units, and those that only results have.
 UNIT_WORDS = {"time", "length", "area", "force", "pressure", "energy", "mass", "volume", "degree"}
 ONLY_IN_RESULTS = {"radian"}
 
@@ -41,7 +41,7 @@ def words_of(unit):
 
 
 def faults_of_rows(program, topic):
-    """What is wrong with the rows of a table by themselves."""
+    """Faults of the rows of a table."""
     rows = table(program, topic)
     names = [row["name"] for row in rows]
     if len(rows) < 20 or len(set(names)) < len(names):
@@ -53,9 +53,9 @@ def faults_of_rows(program, topic):
         unknown = words_of(row["unit"]) - UNIT_WORDS - ONLY_IN_RESULTS
         if unknown or not row["unit"]:
             yield f"{topic}: {row['name']} has the unit {row['unit']}, which is not made of the deck's"
-        # A row that is too long for its text loses its end.
+        # A row longer than its text is cut off.
         if not re.fullmatch(r"`\w+`", row["name"]) or not row.get("meaning", "").endswith("."):
-            yield f"{topic}: the row of {row['name']} is not whole: {row}"
+            yield f"{topic}: the row of {row['name']} is cut off: {row}"
 
 
 def groups(program):
@@ -64,14 +64,14 @@ def groups(program):
 
 
 def faults_of_first_columns(program):
-    """Whether the first columns are those that were promised."""
+    """Whether the first columns are those of the public interface."""
     names = [row["name"].strip("`") for row in table(program, "history")]
     if names[:len(FIRST)] != FIRST:
         yield f"the first columns of the history are {names[:len(FIRST)]}"
 
 
 def idle_without(program, choice):
-    """Groups whose lack makes a choice of fields idle, as `implam check` reports for a deck with neither."""
+    """Groups without which a choice of fields has no effect, as `implam check` reports for a deck with neither."""
     with open(GOOD, encoding="utf-8") as deck:
         text = deck.read()
     for group in ("delamination", "ply_damage", "output"):
@@ -86,7 +86,7 @@ def idle_without(program, choice):
 
 
 def faults_of_choices(program):
-    """Whether &output offers the choices of the table, and says of each what it needs."""
+    """Whether &output offers the choices of the table with the groups that each requires."""
     needs = {}
     for row in table(program, "fields"):
         if row["choice"] != "-":
@@ -104,7 +104,7 @@ def main():
     program = os.path.abspath(sys.argv[1])
     wrong = [*faults_of_rows(program, "history"), *faults_of_rows(program, "fields"),
              *faults_of_first_columns(program), *faults_of_choices(program)]
-    print("\n".join(wrong) or "the tables of results agree with the deck and with what is promised")
+    print("\n".join(wrong) or "the tables of results agree with the deck and with the public interface")
     return 1 if wrong else 0
 
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Holds the sources against the rule that every group and key of the deck is named in the folder of its physics alone.
+"""Checks that every group and key of the deck is named only in the folder of its physics.
 
 usage: check_rows.py IMPLAM
 
 Every key that `implam explain` lists has one row, `'GROUP | KEY | ...'`, in one folder of src, and so has every group.
-A text that is the name of a key or group, or a list of such names, stands only in folders with a row of that name;
-elsewhere constants of these folders serve. Names that mean something else are listed below, each with its reason.
+A text that is the name of a key or group, or a list of such names, is only in folders with a row of that name;
+elsewhere constants of these folders are used. Names with another meaning are listed below, each with its reason.
 """
 import functools
 import os
@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 SRC = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src")
-# Texts that are no names of keys: file, texts, reason. One that no longer stands there is a breach too.
+# Texts that are no names of keys: file, texts, reason. An entry without its text in the file is a breach, too.
 OTHERS = (
     ("app/material_explain.f90", "materials", "the list of materials that `implam explain` is asked for"),
     ("app/result_explain.f90", "history fields", "tables of results that `implam explain` is asked for"),
@@ -32,21 +32,22 @@ OTHERS = (
     ("case/deck_library.f90", "e", "the exponent of a number"),
     ("case/deck_library.f90", "pressure", "a physical dimension"),
     ("deck/deck_scanner.f90", "end", "&end, which closes a group in old decks"),
+    ("deck/allowed_values.f90", "name", "a kind of value"),
     ("deck/deck_values.f90", "name", "a kind of value"),
     ("state/states.f90", "time step iterations stress force", "an item of a checkpoint"),
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("linalg/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
     ("mesh/support_deck.f90", "face", "bearing of the plate, a choice of its bearing"),
-    ("model/load_cases.f90", "time", "what grows from step to step, in messages"),
+    ("model/load_cases.f90", "time", "the variable of the steps, in messages"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),
     ("results/output_parameters.f90", "displacement rotation velocity delamination energy_release ply_damage stress",
      "fields, which users choose by these words"),
     ("tangent/tangent_operators.f90", "factorization", "a timer"),
 )
-# The noun of what a number counts, as in counted(to_text(n), 'step'), is no key.
+# The counted noun, as in counted(to_text(n), 'step'), is no key.
 NOUN = re.compile(r"(\bcounted\([^']*), '[a-z ]+'\)")
-# Groups that `implam explain` explains on request only.
+# Groups that `implam explain` lists only on request.
 HIDDEN = ("controls",)
 
 
@@ -64,7 +65,7 @@ def explained(program):
 
 @functools.cache
 def texts(source):
-    """The texts in quotes of a Fortran source, with the lines they begin in; continued ones are joined."""
+    """The texts in quotes of a Fortran source, with the lines in which they begin; continued ones are joined."""
     found, line, place = [], 1, 0
     while place < len(source):
         mark = source[place]
@@ -88,7 +89,7 @@ def texts(source):
 
 
 def breaches(sources, groups, keys):
-    """What breaks the rule: one sentence each."""
+    """Breaches of the rule: one sentence each."""
     quoted = [(path, line, text) for path, source in sources.items() for line, text in texts(source)]
     rows, owners = {}, {}
     for path, line, text in quoted:
@@ -102,7 +103,7 @@ def breaches(sources, groups, keys):
     wanted = [(group,) for group in groups] + keys
     found = [f"&{'%'.join(name)} has {len(rows.get(name, []))} rows: {', '.join(rows.get(name, []))}"
              for name in wanted if len(rows.get(name, [])) != 1]
-    found += [f"{places[0]}: `implam explain` does not know the row of &{'%'.join(name)}"
+    found += [f"{places[0]}: `implam explain` does not list the row of &{'%'.join(name)}"
               for name, places in rows.items() if name not in wanted]
     others = {(path, text): reason for path, several, reason in OTHERS for text in several.split()}
     known = set()
@@ -116,7 +117,7 @@ def breaches(sources, groups, keys):
             elif path.split("/")[0] not in owners[name]:
                 found.append(f"src/{path}:{line}: '{text}' is named here, but {name} belongs to "
                              f"{' and '.join(sorted(owners[name]))}")
-    return found + [f"src/{path}: no '{text}' stands here any more ({reason})"
+    return found + [f"src/{path}: no '{text}' is here any more ({reason})"
                     for (path, text), reason in others.items() if (path, text) not in known]
 
 

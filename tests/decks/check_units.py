@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Decks in wrong units: `implam check` has to name the value and the unit it seems to be in.
+"""Decks with wrong units: `implam check` must name the value and the unit in which it probably is.
 
 usage: check_units.py IMPLAM
 
-Each row changes values of a deck of input/ as people who mix up units do. The decks of input/ themselves get no warning
-but that of process zones, which is true of them.
+Each row changes values of a deck of input/ as by a mistake of units. The decks of input/ themselves get no warning
+except that of process zones, which is correct.
 """
 import pathlib
 import re
@@ -14,7 +14,7 @@ import tempfile
 
 INPUT = pathlib.Path(__file__).resolve().parents[2]/'input'
 MODULI = ('E1', 'E2', 'G12', 'G13', 'G23')
-# What is wrong, the deck, changes (key, factor), and the keys one of which has to be named with one of the units.
+# The mistake, the deck, changes (key, factor), and the key that must be named with its unit.
 ROWS = (
     ('moduli in GPa', 'sun_chen', tuple((key, 1e-9) for key in MODULI), 'E1', 'GPa'),
     ('moduli in MPa', 'sun_chen', tuple((key, 1e-6) for key in MODULI), 'E1', 'MPa'),
@@ -50,7 +50,7 @@ def changed(text, key, factor):
 
 
 def sandwiches():
-    """Decks with a core of honeycomb, which has next to no stiffness and strength in its plane."""
+    """Decks with a honeycomb core, which has almost no in-plane stiffness and strength."""
     path = INPUT/'sun_chen.nml'
     text = path.read_text()
     for modulus in ('4', '1e6'):

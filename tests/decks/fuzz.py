@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Spoils valid decks at random and holds `implam check` against them: it must pass or refuse each, with exit
-code 0 or 2, never crash, hang or print a backtrace. Keys and groups that `implam explain` lists are put in at random.
+"""Modifies valid decks at random and runs `implam check` on them: it must accept or refuse each, with exit code 0
+or 2, and never crash, hang or print a backtrace. Keys and groups that `implam explain` lists are inserted at random.
 
 usage: fuzz.py IMPLAM [DECK ...] [--count N] [--seed S] [--keep FOLDER] [--run]
 
-Without decks those in good/ are spoilt. Decks that break the program are kept in FOLDER. With --run decks stay decks:
-numbers and keys change, and those that pass the check are run. They must end with exit code 0 or 3 within a minute of
-processor time, with finite numbers only and a ledger that closes to a thousandth of the largest energy.
+Without decks those in good/ are modified. Decks on which the program fails are kept in FOLDER. With --run decks stay
+valid: numbers and keys change, and those that pass the check are run. They must end with exit code 0 or 3 within a
+minute of processor time, with finite numbers only and a ledger that closes to a thousandth of the largest energy.
 """
 import argparse
 import csv
@@ -33,7 +33,7 @@ PIECES = [b"&", b"/", b"'", b'"', b"!", b"=", b",", b"(", b")", b"%", b"*", b"\n
 
 
 def vocabulary(program):
-    """Every key that `implam explain` lists, with its group and the words it takes."""
+    """Every key that `implam explain` lists, with its group and its allowed words."""
     def explained(*words):
         return subprocess.run([program, "explain", *words], stdout=subprocess.PIPE, timeout=60, check=True).stdout
 
@@ -45,7 +45,7 @@ def vocabulary(program):
 
 
 def entry(known, chance):
-    """A key with a value that suits it, or not; now and then in a group of its own."""
+    """A key with a valid or invalid value; sometimes in its own group."""
     group, key, words = chance.choice(known)
     values = chance.choices(words or PLAUSIBLE, k=chance.choice([1, 1, 1, 2, 3]))
     if chance.randrange(4) == 0:
@@ -55,7 +55,7 @@ def entry(known, chance):
 
 
 def enter(deck, known, chance):
-    """The deck with one more key, most often in the group it belongs to, in place of what is there or not."""
+    """The deck with one more key, usually in its group, replacing an existing one or not."""
     text = entry(known, chance)
     if text.startswith(b"\n"):
         return deck + text
@@ -71,7 +71,7 @@ def enter(deck, known, chance):
 
 
 def spoil(deck, known, chance):
-    """The deck with one thing changed."""
+    """The deck with one random change."""
     start = chance.randrange(len(deck) + 1)
     end = min(len(deck), start + int(chance.expovariate(1 / 12)) + 1)
     kind = chance.randrange(12)
@@ -106,7 +106,7 @@ def spoil(deck, known, chance):
 
 
 def fault(program, path):
-    """What is wrong with the program's response to a deck, or nothing."""
+    """The fault of the program's response to a deck, or None."""
     try:
         done = subprocess.run([program, "check", path], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
     except subprocess.TimeoutExpired:
@@ -123,7 +123,7 @@ def fault(program, path):
 
 
 def alter(deck, known, chance):
-    """The deck with one number or key changed to something that may make sense."""
+    """The deck with one number or key changed to a reasonable value."""
     if chance.randrange(2):
         return enter(deck, known, chance)
     number = chance.choice(list(NUMBER.finditer(deck)))
@@ -133,7 +133,7 @@ def alter(deck, known, chance):
 
 
 def fault_of_run(program, path):
-    """What is wrong with the run of a deck, or nothing; nothing if the check refuses the deck or its mesh is large."""
+    """The fault of the run of a deck, or None; None if the check refuses the deck or its mesh is large."""
     if fault(program, path) or subprocess.run([program, "check", path], stdout=subprocess.DEVNULL).returncode:
         return fault(program, path)
     with open(path, "rb") as deck:
@@ -144,7 +144,7 @@ def fault_of_run(program, path):
         done = subprocess.run([program, path, "--output", folder], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (60, 60)))
         if done.returncode == -9 and b" left, step " in done.stdout:
-            # It has many steps to do, and does them.
+            # The run has many steps and takes its time.
             return None
         if done.returncode not in (0, 3) or b"backtrace" in done.stdout.lower():
             return f"exit code {done.returncode}: {done.stdout[-300:]!r}"
@@ -156,13 +156,13 @@ def fault_of_run(program, path):
 
 
 def fault_of_history(rows):
-    """What is wrong with the numbers of a run, or nothing."""
+    """The fault of the numbers of a run, or None."""
     values = [{key: float(text) for key, text in row.items()} for row in rows]
     if not all(math.isfinite(value) for row in values for value in row.values()):
         return "numbers that are not finite"
     largest = max((abs(row[key]) for row in values for key in row if key.startswith("energy_")), default=0)
     unaccounted = max((abs(row["energy_error"]) for row in values), default=0)
-    return f"{unaccounted:.2e} of {largest:.2e} unaccounted for" if unaccounted > 1e-3*largest else None
+    return f"{unaccounted:.2e} of {largest:.2e} energy error" if unaccounted > 1e-3*largest else None
 
 
 def main():
@@ -198,7 +198,7 @@ def main():
                 kept = os.path.join(asked.keep, f"fuzz-{asked.seed}-{number}.nml")
                 os.replace(path, kept)
                 print(f"{kept}: {wrong}")
-    print(f"{asked.count} decks, {failed} broke the program")
+    print(f"{asked.count} decks, {failed} with a failure of the program")
     return 1 if failed else 0
 
 

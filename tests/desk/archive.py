@@ -1,4 +1,4 @@
-"""Makes the source archive twice: each holds the commit and what git does not ignore, and nothing else.
+"""Makes the source archive twice: each contains the commit and the files that git does not ignore, and no others.
 Usage: archive.py CPACK BUILD SOURCE"""
 
 import subprocess
@@ -12,7 +12,7 @@ from solver_runs import require
 
 
 def known_files(source):
-    """Return what git knows or does not ignore, of that what is there."""
+    """Return the existing files that git tracks or does not ignore."""
     listed = subprocess.run(["git", "-C", source, "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
                             check=True, capture_output=True, text=True).stdout
     return {name for name in listed.split("\0") if name and (source / name).is_file()}
@@ -25,9 +25,9 @@ def archived_files(archive):
 
 
 def main():
-    """Make it twice in the clone, as a second release does."""
+    """Make the archive twice in the clone, as for a second release."""
     cpack, build, source = sys.argv[1], *map(Path, sys.argv[2:])
-    expected = known_files(source) | {"COMMIT"}  # before the first, which might leave files there
+    expected = known_files(source) | {"COMMIT"}  # before the first archive, which might leave files
     for stale in build.glob("implam-*.tar.gz"):
         stale.unlink()
     for _ in range(2):

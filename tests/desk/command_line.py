@@ -1,4 +1,4 @@
-"""What the command line prints, and that nothing of a user's is overwritten.
+"""The texts of the command line; files of the user are not overwritten.
 Usage: command_line.py IMPLAM FOLDER"""
 
 import os
@@ -29,30 +29,30 @@ def output_of(implam, *words, cwd=None, code=0):
 
 
 def check_help(implam):
-    """Help by all its names; without a word it comes too, with the code of misuse."""
+    """Help by all its names; without arguments it is printed with the exit code of misuse."""
     page = output_of(implam, "--help")
     require(page == output_of(implam, "-h") == output_of(implam, "help"), "-h, help and --help differ.")
     require(max(map(len, page.splitlines())) <= 96, "A line of the help is longer than 96 characters.")
     for word in ("check", "explain", "restart", "new", "--output", "--wall-limit", "75", "USR1"):
-        require(word in page, f"The help does not speak of {word}.")
+        require(word in page, f"The help does not contain {word}.")
     bare = output_of(implam, code=EXIT_USAGE)
-    require(bare.startswith(page) and "No deck given" in bare, "`implam` alone does not help.")
+    require(bare.startswith(page) and "No deck given" in bare, "`implam` alone does not print the help.")
     print("help: done")
 
 
 def check_explain(implam):
-    """One key by each way to write it."""
+    """Explain one key, written in every accepted form."""
     expected = output_of(implam, "explain", "plate%length")
     require("length" in expected, expected)
     for words in (["explain", "plate.length"], ["explain", "plate", "length"], ["explain", "&plate", "length"],
                   ["explain", "plate length"], ["help", "plate", "length"], ["help", "plate.length"]):
         require(output_of(implam, *words) == expected, f"implam {' '.join(words)} differs from explain plate%length.")
     slip = output_of(implam, "explain", "plate", "lenght", code=EXIT_USAGE)
-    require("did you mean length" in slip, "No help with a slip.")
+    require("did you mean length" in slip, "No suggestion for a misspelt key.")
     three = output_of(implam, "explain", "plate", "length", "edges", code=EXIT_USAGE)
-    require("one deck" in three, "Three topics pass.")
+    require("one deck" in three, "Three topics are accepted.")
     column = output_of(implam, "explain", "impactor_velocity")
-    require(column == output_of(implam, "explain", "history", "impactor_velocity"), "A column with its table differs.")
+    require(column == output_of(implam, "explain", "history", "impactor_velocity"), "A table and its column differ.")
     for words in (["plate", "length"], ["length"]):
         slip = output_of(implam, "explain", *words, "--markdown", code=EXIT_USAGE)
         require("--markdown prints tables of groups" in slip, slip)
@@ -76,7 +76,7 @@ def check_slips(implam, folder):
                          (["--no-such=5", deck], "see implam help"),
                          (["nothing", "else"], "one deck")):
         require(meant in output_of(implam, *map(str, words), cwd=folder, code=EXIT_USAGE), f"{words} is not {meant}")
-    require("not the deck" in output_of(implam, "restart", str(deck), code=EXIT_FILES), "A deck is restarted.")
+    require("not the deck" in output_of(implam, "restart", str(deck), code=EXIT_FILES), "A deck is accepted.")
     text = deck.read_text(encoding="utf-8")
     for right, slip, meant in (("&plate", "&palte", "&plate"), ("velocity=", "veloctiy=", "velocity"),
                                ("law=", "lwa=", "law")):
@@ -84,14 +84,14 @@ def check_slips(implam, folder):
         printed = output_of(implam, "check", str(deck), code=EXIT_DECK)
         require(f"did you mean {meant}?" in printed, printed)
     deck.write_text(text, encoding="utf-8")
-    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A file that is not there.")
+    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A missing file passes.")
     output_of(implam, str(deck), f"--output={folder / 'equals'}")
     require((folder / "equals" / "cohesive_summary.json").exists(), "--output=DIR has no effect.")
     print("slips: done")
 
 
 def check_interrupt(implam, folder):
-    """A signal is reported at once and not after the step, of 3 s here; a restart says whose deck it is."""
+    """A signal is reported at once, not after the step, which takes 3 s here; a restart names the deck of the run."""
     deck = folder / "long.nml"
     text = (HERE.parents[1] / "input" / "peanut.nml").read_text(encoding="utf-8")
     deck.write_text(text.replace("&case ", "&case refine=2 "), encoding="utf-8")
@@ -115,7 +115,7 @@ def check_interrupt(implam, folder):
 
 
 def check_cut_step(implam, folder):
-    """Check and run say in one sentence that the stable step is shorter than the deck's."""
+    """Check and run report in one sentence that the stable step is shorter than the deck's."""
     deck = folder / "cut.nml"
     text = (HERE.parents[1] / "input" / "small" / "cohesive.nml").read_text(encoding="utf-8").partition("&time")[0]
     sentence = "The step of the deck, 1e-5, is longer and is not taken.\n"
@@ -146,12 +146,12 @@ def check_pages(implam, folder):
                   'printf "%s\\n" "${COMPREPLY[@]}"')
         found = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, check=True).stdout
         require(expected in found.split(), f"'{typed}' completes to {found.split()}.")
-    require("zsh" in output_of(implam, "completion", "fish", code=EXIT_USAGE), "fish is completed.")
+    require("zsh" in output_of(implam, "completion", "fish", code=EXIT_USAGE), "Completions for fish are printed.")
     print("pages: done")
 
 
 def check_zsh(implam, folder):
-    """In a zsh as it is started by hand, with the file where zsh looks for completions, the first key completes."""
+    """In an interactive zsh with the file in its folder of completions, the first key completes."""
     if not shutil.which("zsh"):
         print("skipped: zsh is not installed, its completions are not tried")
         return
@@ -175,7 +175,7 @@ def check_zsh(implam, folder):
 
 
 def read_until(terminal, words):
-    """Return what a terminal shows up to some words; all of half a minute if they do not come."""
+    """Return the text of a terminal up to some words, or all text of half a minute if they are missing."""
     said, latest = "", time.monotonic() + 30
     while words not in said and time.monotonic() < latest:
         if select.select([terminal], [], [], 0.1)[0]:
@@ -184,34 +184,35 @@ def read_until(terminal, words):
 
 
 def check_new(implam, folder):
-    """The deck to start from passes the check without a warning, grows a delamination, and overwrites nothing."""
+    """The starter deck passes the check without a warning, grows a delamination, and overwrites nothing."""
     output_of(implam, "new", cwd=folder)
     printed = output_of(implam, "check", "impact.nml", cwd=folder)
     require("no errors" in printed and "warning:" not in printed, f"The starter has faults: {printed}")
     before = (folder / "impact.nml").read_bytes()
-    require("stays as it is" in output_of(implam, "new", cwd=folder, code=EXIT_FILES), "No word of the file there.")
+    require("stays as it is" in output_of(implam, "new", cwd=folder, code=EXIT_FILES), "An existing file passes.")
     require((folder / "impact.nml").read_bytes() == before, "`implam new` overwrites.")
     output_of(implam, "new", "mine.nml", cwd=folder)
-    require((folder / "mine.nml").read_bytes() == before, "The name makes another deck.")
+    require((folder / "mine.nml").read_bytes() == before, "With a name the deck differs.")
     require("Wrote d7136.nml" in output_of(implam, "new", "--rig", "d7136", cwd=folder), "No deck of the rig.")
     printed = output_of(implam, "check", "d7136.nml", cwd=folder)
     thickness, energy = (float(re.search(rf"{name} +([\d.e+-]+)", printed)[1])
                          for name in ("thickness of the laminate", "impact energy"))
     require("no errors" in printed and 4 <= thickness <= 6, printed)
-    require(abs(energy - 6.7*thickness) < 0.01*energy, "Not the energy that D7136 asks for.")
-    require(printed.count("warning:") <= 2, "More is left than a line for plies and one for interfaces.")
-    require("d7136" in output_of(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "No word of the rigs there are.")
-    require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig without new.")
+    require(abs(energy - 6.7*thickness) < 0.01*energy, "The energy is not that of D7136.")
+    require(printed.count("warning:") <= 2, "There are more warnings than one for plies and one for interfaces.")
+    require("d7136" in output_of(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "The rigs are not listed.")
+    require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig is accepted without new.")
     output_of(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
     run_coarse(implam, folder)
     history = read_history(folder / "results" / "coarse_history.csv")
     area = history["delaminated_area"]
     print(f"new: peak force {max(history['force']):.0f} N, area {area[0]:.3g} to {area[-1]:.3g} m2")
-    require(area[0] == 0 and area[-1] > 1e-4 and history["force"][-1] == 0, "No growth, or the blow is not over.")
+    require(area[0] == 0 and area[-1] > 1e-4 and history["force"][-1] == 0, "No growth, or the impact has not ended.")
 
 
 def run_coarse(implam, folder):
-    """Run the deck to start from on cells of twice the size, in an eighth of the time; only these are warned of."""
+    """Run the starter deck with cells of twice the size, for an eighth of the processor time; only these are warned
+    of."""
     text = (folder / "impact.nml").read_text(encoding="utf-8")
     for fine, coarse in (("elements=26, 20", "elements=14, 12"), ("cell=1e-3", "cell=2e-3"),
                          ("patch=2e-3", "patch=4e-3")):

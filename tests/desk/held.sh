@@ -1,6 +1,7 @@
 #!/bin/bash
 # Runs a program that is suspended as soon as it has written a checkpoint, until a signal stops it (USR1): a job is then
-# stopped half-way on a machine of any speed, if the run takes seconds from there. Usage: held.sh CHECKPOINT PROGRAM WORD...
+# stopped within its run on a machine of any speed, if the rest of the run takes seconds. Usage: held.sh CHECKPOINT
+# PROGRAM WORD...
 checkpoint=$1
 shift
 state() { stat --format='%i %y' "$checkpoint" 2>&1; }

@@ -23,7 +23,7 @@ file(WRITE "${CMAKE_BINARY_DIR}/found" "${program}\\n${Implam_DECKS}")
 
 
 def main():
-    """Install, look for every file, run, and find the package from another project."""
+    """Install, check every file, run, and find the package from another project."""
     cmake, build, folder = sys.argv[1], sys.argv[2], Path(sys.argv[3]).resolve()
     shutil.rmtree(folder, ignore_errors=True)
     prefix, work = folder / "prefix", folder / "work"

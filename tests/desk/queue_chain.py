@@ -1,6 +1,6 @@
-"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is stopped and comes again,
-gives the table of the same sweep without a queue; a chain that is stopped by its limit again and again ends with the
-history of an undisturbed run, bit for bit.
+"""Jobs of a real Slurm, started here on one node: an array of a sweep, of which a task is stopped and
+requeued, gives the table of the same sweep without a queue; a chain of jobs that reach their time limit ends with the
+history of an uninterrupted run, bit for bit.
 Usage: queue_chain.py IMPLAM FOLDER     (exit code 77: skipped, with the reason)"""
 
 import csv
@@ -22,14 +22,15 @@ DECK = HERE.parents[1] / "input/small/damage.nml"
 
 
 def write_program(path, code):
-    """Write what is called in the program's place."""
+    """Write a script that is called in place of the program."""
     path.write_text(f"#!/bin/bash\n{code}\n", encoding="utf-8")
     path.chmod(0o755)
     return str(path)
 
 
 def submit_chain(implam, slurm, folder):
-    """Submit a job of a minute's limit that comes again until the run has ended; all parts but the last are held."""
+    """Submit a job with a limit of a minute that is requeued until the run has ended; all parts but the last are
+    suspended."""
     held = write_program(folder / "held", f"""
 if ((${{SLURM_RESTART_COUNT:-0}} >= {PARTS - 1})); then exec {implam} "$@"; fi
 exec {HERE}/held.sh {folder}/results/deck_restart.h5 {implam} "$@" """)
@@ -38,14 +39,14 @@ exec {HERE}/held.sh {folder}/results/deck_restart.h5 {implam} "$@" """)
 
 
 def check_chain(slurm, folder, number, expected):
-    """Wait for the end of the chain, whose history is the expected one."""
+    """Wait for the end of the chain and compare its history with the expected one."""
     job = slurm.end_of(number, 800)
     printed = (folder / f"deck.{number}.txt").read_text(encoding="utf-8")
     print(f"chain: {job['JobState']}, requeued {job['Restarts']} times")
     require(job["JobState"] == "COMPLETED", f"The chain has ended with {job['JobState']}:\n{printed}")
     require(int(job["Restarts"]) >= PARTS - 1, f"The chain has {job['Restarts']} requeues only.")
     history = (folder / "results/deck_history.csv").read_bytes()
-    require(history == expected, "The history of the chain is not that of the undisturbed run.")
+    require(history == expected, "The history of the chain is not that of the uninterrupted run.")
 
 
 SWEEP = """deck = "swept.nml"
@@ -58,11 +59,11 @@ SWEEP = """deck = "swept.nml"
 
 
 def table_of(folder):
-    """Return the rows of a sweep's table but for what each run has taken."""
+    """Return the rows of a sweep's table without their times."""
     with (folder / "table.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
-        require(float(row.pop("cpu_time")) > 0, "A case has taken no time.")
+        require(float(row.pop("cpu_time")) > 0, "The time of a case is zero.")
     return rows
 
 
@@ -73,7 +74,7 @@ def array(implam, slurm, folder):
     (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
     sweep = [sys.executable, "-m", "implam_post.sweep", "sweep.toml"]
     run([*sweep, "--output", "plain", "--program", implam], folder=folder)
-    # The first task is held until it is released; the last word it is called with is the folder of its results.
+    # The first task is suspended until it is released; its last argument is the folder of its results.
     held = write_program(folder / "held", f"""
 if [[ ${{SLURM_ARRAY_TASK_ID:-}} != 1 || ${{SLURM_RESTART_COUNT:-0}} != 0 ]]; then
   exec {implam} "$@"
@@ -88,15 +89,15 @@ exec {HERE}/held.sh "${{!#}}/damage_restart.h5" {implam} "$@" """)
     ended = [slurm.end_of(f"{number}_{task}", 300) for task in (1, 2, 3, 4)]
     states, again = [job["JobState"] for job in ended], [int(job["Restarts"]) for job in ended]
     print(f"array: {', '.join(states)}, requeued {again} times")
-    # scancel sends again where Slurm requires it, so that the task may be stopped twice.
-    require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "The tasks have not ended so.")
+    # scancel repeats the signal where Slurm requires it, so the task may be stopped twice.
+    require(states == ["COMPLETED"] * 4 and again[0] >= 1 and not any(again[1:]), "Not only the first was requeued.")
     run([*sweep, "--output", "queued", "--program", implam, "--table"], folder=folder)
     require(table_of(folder / "queued") == table_of(folder / "plain"), "The table is not that without a queue.")
 
 
 def main():
     """Start Slurm, run the jobs, end it."""
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # by way of the end of Slurm's daemons
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # with an orderly end of Slurm's daemons
     implam, folder = os.path.abspath(sys.argv[1]), Path(sys.argv[2]).resolve()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -109,7 +110,7 @@ def main():
     place = tempfile.mkdtemp(prefix="slurm")  # paths of sockets have to be short
     try:
         with Slurm(place) as slurm:
-            # Slurm looks at limits every half a minute: the array runs between.
+            # Slurm checks limits every half minute: the array runs between two checks.
             number = submit_chain(implam, slurm, folder)
             array(implam, slurm, folder / "array")
             check_chain(slurm, folder, number, expected)

@@ -1,4 +1,4 @@
-"""Job scripts without a queue: what they ask for, and what they do when `scontrol` and `qsub` are played by others.
+"""Job scripts without a queue: their requests, and their calls of replacements for `scontrol` and `qsub`.
 Usage: queue_scripts.py IMPLAM FOLDER"""
 
 import os
@@ -19,7 +19,7 @@ DECK = HERE.parents[1] / "input/small/damage.nml"
 
 
 def write_deck(folder, *settings):
-    """Put the deck into a new folder."""
+    """Write the deck to a new folder."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     text = change_deck(DECK.read_text(encoding="utf-8"), ["case%name='deck'", "output%directory='results'", *settings])
@@ -32,12 +32,12 @@ def check_requests(implam, folder):
     run([implam, "queue", "slurm", "--time", "1:30:00"], folder=folder)  # the only deck of the folder
     script = (folder / "deck.slurm").read_text(encoding="utf-8")
     for line in ("--ntasks=1", "--time=1:30:00", "--signal=B:USR1@600", "--no-requeue"):
-        require(line in script, f"The script does not ask for {line}.")
+        require(line in script, f"The script does not request {line}.")
     run([implam, "queue", "slurm", "deck.nml"], EXIT_FILES, folder)
     require((folder / "deck.slurm").read_text(encoding="utf-8") == script, "The script was overwritten.")
     run([implam, "queue", "pbs", "deck.nml", "--ranks", "8"], folder=folder)
     script = (folder / "deck.pbs").read_text(encoding="utf-8")
-    require("ncpus=8:mpiprocs=8" in script and "mpirun -n 8" in script, "The script does not ask for eight ranks.")
+    require("ncpus=8:mpiprocs=8" in script and "mpirun -n 8" in script, "The script does not request eight ranks.")
     for words, code in ((["lsf", "deck.nml"], EXIT_USAGE), (["slurm", "none.nml"], EXIT_DECK), ([], EXIT_USAGE),
                         (["slurm", "deck.nml", "--time", "90"], EXIT_USAGE),
                         (["slurm", "deck.nml", "--ranks", "0"], EXIT_USAGE), (["slurm", "array.txt"], EXIT_FILES)):
@@ -48,20 +48,20 @@ def check_requests(implam, folder):
 
 
 def check_memory(implam, folder):
-    """The estimate is no less than what a run takes, and no more than twice."""
+    """The estimate of memory is at least the peak of a run, and at most twice as large."""
     for settings in ([], ["mesh%elements=40,40"]):
         write_deck(folder, *settings, "time%end=50e-6")
         printed = run([implam, "check", folder / "deck.nml"])
         estimate = int(re.search(r"and (\d+) MB of memory", printed)[1])
         run([implam, folder / "deck.nml", "--output", folder])
-        # The largest of the children so far, of which this is the largest.
+        # Maximum over the child processes so far, of which this one is the largest.
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024 / 1e6
         print(f"memory: estimate {estimate} MB, peak {peak:.0f} MB")
         require(0.95 * peak < estimate < 2 * peak, "The estimate of memory is wrong.")
 
 
 def play(folder, name, code):
-    """Put a program that notes how it was called into folder/bin; return the environment that finds it."""
+    """Write a program that records its calls to folder/bin; return the environment that finds it."""
     (folder / "bin").mkdir(exist_ok=True)
     path = folder / "bin" / name
     path.write_text(f"#!/bin/bash\necho {name} \"$@\" >> {folder}/calls\n{code}\n", encoding="utf-8")
@@ -70,11 +70,12 @@ def play(folder, name, code):
 
 
 def check_chain_of_pbs(implam, folder):
-    """Each job ends ahead of its limit and submits the next; the last one none; the history is the undisturbed one."""
+    """Each job ends before its limit and submits the next, the last one none; the history is that of an uninterrupted
+    run."""
     write_deck(folder, "time%end=2e-3", "time%step=2e-6", "output%checkpoint_every=0.5e-3")
     run([implam, "deck.nml", "--output", "whole"], folder=folder)
     run([implam, "queue", "pbs", "deck.nml", "--chain"], folder=folder)
-    # A limit of a few seconds, and a program that is held at each checkpoint: the time is over before the end.
+    # A limit of a few seconds, and a program that is suspended at each checkpoint: the limit is reached before the end.
     script = folder / "deck.pbs"
     script.write_text(re.sub(r"USR1 \d+", "USR1 4", script.read_text(encoding="utf-8")), encoding="utf-8")
     held = folder / "held"
@@ -96,11 +97,11 @@ def check_chain_of_pbs(implam, folder):
     print(f"chain of PBS: {parts + 1} jobs")
     require(code == 0 and len(calls) == parts >= 1, f"The chain ends with {code} after {parts} jobs.")
     same = (folder / "results/deck_history.csv").read_bytes() == (folder / "whole/deck_history.csv").read_bytes()
-    require(same, "The history of the chain is not that of the undisturbed run.")
+    require(same, "The history of the chain is not that of the uninterrupted run.")
 
 
 def check_signals(implam, folder):
-    """A single job that is stopped passes the signal on and ends with 75; `restart` goes on."""
+    """A single job that is stopped forwards the signal and ends with 75; `restart` continues the run."""
     write_deck(folder, "time%end=20e-3")
     run([implam, "queue", "slurm", "deck.nml"], folder=folder)
     script = folder / "deck.slurm"
@@ -116,7 +117,7 @@ def check_signals(implam, folder):
     again = subprocess.run(["bash", script, "restart"], cwd=folder, stdout=subprocess.DEVNULL, timeout=120, check=False)
     ended = len((folder / "results/deck_history.csv").read_text(encoding="utf-8").splitlines())
     print(f"signals: {rows} rows, then {ended}")
-    require(again.returncode == 0 and ended > rows, "The job does not go on.")
+    require(again.returncode == 0 and ended > rows, "The job does not continue.")
 
 
 def main():

@@ -1,4 +1,4 @@
-"""A Slurm of one node, started for a test and ended with it: munge, slurmctld and slurmd of Debian's slurm-wlm."""
+"""A Slurm of one node that is started and ended by a test: munge, slurmctld and slurmd of Debian's slurm-wlm."""
 
 import os
 import shutil
@@ -38,11 +38,11 @@ PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue")
 
 
 class MissingError(Exception):
-    """Why no Slurm can be started here."""
+    """The reason why no Slurm can be started here."""
 
 
 def _free_ports(number):
-    """Return ports that nobody listens on."""
+    """Return ports that are free."""
     sockets = [socket.socket() for _ in range(number)]
     for one in sockets:
         one.bind(("", 0))
@@ -56,7 +56,7 @@ class Slurm:
     """The daemons; used with `with`, so that they end with the test."""
 
     def __init__(self, folder):
-        """Prepare it in a folder of short path, where its files go."""
+        """Prepare its files in a folder with a short path."""
         os.environ["PATH"] += ":/usr/sbin:/sbin"
         missing = [name for name in PROGRAMS if shutil.which(name) is None]
         if missing:
@@ -87,7 +87,7 @@ class Slurm:
         return self
 
     def __exit__(self, *_):
-        """End jobs and what was started, last first."""
+        """End jobs and started daemons, last first."""
         self.ask("scancel", "--me")
         for _ in range(40):
             if not self.ask("squeue", "-h"):
@@ -102,7 +102,7 @@ class Slurm:
                 daemon.wait()
 
     def ask(self, *words):
-        """Return what a command of Slurm says; nothing while it fails."""
+        """Return the output of a Slurm command; empty if it fails."""
         done = subprocess.run([str(word) for word in words], env=self.environment, capture_output=True, text=True,
                               timeout=30, check=False)
         return done.stdout if done.returncode == 0 else ""
@@ -116,24 +116,24 @@ class Slurm:
         return done.stdout.strip().split(";")[0]
 
     def job(self, number):
-        """Return what Slurm knows of a job, by name."""
+        """Return Slurm's record of a job, by name."""
         said = self.ask("scontrol", "show", "job", "-o", number).split()
         return dict(item.split("=", 1) for item in said if "=" in item)
 
     def end_of(self, number, seconds):
-        """Wait for the end of a job; return what is known of it then."""
+        """Wait for the end of a job; return its record then."""
         ends = ("COMPLETED", "FAILED", "TIMEOUT", "CANCELLED", "NODE_FAIL")
         self.wait(lambda: self.job(number).get("JobState") in ends, f"job {number}", seconds)
         return self.job(number)
 
     def _start(self, name, *words):
-        """Start a daemon in the foreground, so that it is ours to end."""
+        """Start a daemon in the foreground, so that this process can end it."""
         with (self.folder / f"{name}.txt").open("wb") as output:
             self._daemons.append(subprocess.Popen([shutil.which(name), *words], env=self.environment, stdout=output,
                                                   stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL))
 
     def wait(self, holds, what, seconds=40):
-        """Wait until something holds."""
+        """Wait until a condition is met."""
         for _ in range(int(2 * seconds)):
             if holds():
                 return

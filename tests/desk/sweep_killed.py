@@ -1,5 +1,5 @@
-"""A sweep of 24 decks, six of each kind with random inputs, that is killed twice, once alone and once with all that it
-has started, gives the table and the statistics of the same sweep left alone.
+"""A sweep of 24 decks, six of each kind with random inputs, that is killed twice, once alone and once with all its
+child processes, gives the table and the statistics of the same sweep without interruption.
 Usage: sweep_killed.py IMPLAM FOLDER"""
 
 import os
@@ -29,7 +29,7 @@ number = 6
 
 
 def processes(folder):
-    """Return the processes that name the folder on their command lines."""
+    """Return the processes with the folder on their command lines."""
     found = []
     for path in Path("/proc").glob("[0-9]*/cmdline"):
         try:
@@ -42,7 +42,7 @@ def processes(folder):
 
 
 def kill(numbers):
-    """Kill processes, none of which sees another one end."""
+    """Kill processes, suspended first so that none reacts to the end of another."""
     for stop in (signal.SIGSTOP, signal.SIGKILL):
         for number in numbers:
             try:
@@ -52,12 +52,12 @@ def kill(numbers):
 
 
 def ended(output):
-    """Return how many cases have a record."""
+    """Return the number of cases with a record."""
     return len(list(output.glob("cases/*/run.json")))
 
 
 def main():
-    """Run it alone, then with kills."""
+    """Run the sweep without interruption, then with kills."""
     implam, folder = os.path.abspath(sys.argv[1]), Path(sys.argv[2]).resolve()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -79,9 +79,9 @@ def main():
         require(ended(killed) < CASES, "It was killed too late.")
     run([*words, "--output", killed])
     rows, expected = table_of(killed), table_of(folder / "alone")
-    require(len(rows) == CASES and rows == expected, "The table is not that of the sweep left alone.")
+    require(len(rows) == CASES and rows == expected, "The table is not that of the uninterrupted sweep.")
     printed = [(output / "statistics.csv").read_text(encoding="utf-8") for output in (killed, folder / "alone")]
-    require(printed[0] == printed[1], "The statistics are not those of the sweep left alone.")
+    require(printed[0] == printed[1], "The statistics are not those of the uninterrupted sweep.")
     print(f"{CASES} cases: the same table and statistics")
 
 

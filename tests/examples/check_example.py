@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Adds a key to the deck by a patch and shows that this takes one folder and its tests alone.
+"""Adds a key to the deck by a patch and checks that this changes one folder and its tests only.
 
 usage: check_example.py PATCH --compiler MPIFORT --modules FOLDER --tiers TIER... --objects OBJECT... [FLAG...]
 
-The patch is put on a copy of the folder and of its tests. The copy is compiled against the modules of the folders
-before it, as the build does. Then `app`'s table, as it stands, is compiled against the copy and must explain the new
-keys; and the patch's unit tests are run.
+The patch is applied to a copy of the folder and of its tests. The copy is compiled with the modules of the folders
+before it, as in the build. Then the unchanged table of `app` is compiled with the copy and must explain the new keys;
+and the patch's unit tests are run.
 """
 import argparse
 import os
@@ -38,7 +38,7 @@ end program explain_group
 
 
 def run(*words, **settings):
-    """Runs a command; ends with what it said if it fails."""
+    """Runs a command; exits with its output if it fails."""
     done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, **settings)
     if done.returncode:
         sys.exit(f"{' '.join(words[:4])} ... failed:\n{done.stdout}")
@@ -46,7 +46,7 @@ def run(*words, **settings):
 
 
 def one_folder(patch):
-    """The folder of src that the patch changes; there must be one, and nothing else but its tests."""
+    """The folder of src that the patch changes; it must be the only one besides its tests."""
     paths = re.findall(r"^\+\+\+ b/(\S+)$", patch, re.MULTILINE)
     folders = {path.split("/")[1] for path in paths if path.startswith("src/")}
     if len(folders) != 1:
@@ -59,7 +59,7 @@ def one_folder(patch):
 
 
 def in_order(folder):
-    """The sources of a folder, those that others use first."""
+    """The sources of a folder in the order of their dependencies."""
     uses, module_of = {}, {}
     for name in sorted(os.listdir(folder)):
         if name.endswith(".f90"):
@@ -83,26 +83,26 @@ def in_order(folder):
 
 
 class Workplace:
-    """A folder that sources are compiled in."""
+    """A folder in which sources are compiled."""
 
     def __init__(self, folder, asked):
         self.folder, self.asked = folder, asked
 
     def compile(self, sources, layers, flags=()):
-        """Compiles sources that see what was compiled here before and the modules of some layers."""
+        """Compiles sources with the modules compiled here before and those of some layers."""
         found = [f"-I{os.path.join(self.asked.modules, layer)}" for layer in layers]
         run(self.asked.compiler, "-c", "-O0", *flags, "-I.", *found, *sources, cwd=self.folder)
         return [os.path.join(self.folder, os.path.splitext(os.path.basename(source))[0] + ".o") for source in sources]
 
     def link(self, name, objects):
-        """Links a program with whatever it needs of the build's objects, those compiled here before them."""
+        """Links a program with the required objects of the build; those compiled here have precedence."""
         run("ar", "rcs", "lower.a", *self.asked.objects, cwd=self.folder)
         run(self.asked.compiler, *objects, "lower.a", "-o", name, cwd=self.folder)
         return os.path.join(self.folder, name)
 
 
 def explain_keys(work, layers, patch):
-    """Has the unchanged table of `case` explain the keys that the patch adds."""
+    """Checks that the unchanged table of `case` explains the keys that the patch adds."""
     added = re.findall(r"^\+ +'(\w+) \| (\w+) \|", patch, re.MULTILINE)
     if not added:
         sys.exit("the patch adds no key")
@@ -117,7 +117,7 @@ def explain_keys(work, layers, patch):
 
 
 def run_tests(work, layers, tests, objects):
-    """Compiles and runs the patch's tests with the stand-in for pFUnit."""
+    """Compiles and runs the patch's tests with the replacement of pFUnit."""
     run(sys.executable, os.path.join(FRAMEWORK, "generate_asserts.py"), os.path.join(work.folder, "asserts.f90"))
     names = ["test_failures", "test_cases", "comparisons", "asserts", "test_runs", "funit", "pfunit"]
     sources = ["asserts.f90" if name == "asserts" else os.path.join(FRAMEWORK, name + ".f90") for name in names]

@@ -1,4 +1,4 @@
-!> What the examples show, with a figure and a tolerance each.
+!> Comparison of the figures of the examples with their tolerances.
 module example_checks
   use kinds, only: wp
   implicit none
@@ -7,11 +7,11 @@ module example_checks
 
 contains
 
-  !> Prints a figure and ends the program with code 1 if it is off.
+  !> Prints a figure and ends the program with code 1 if its error exceeds the tolerance.
   subroutine require(what, found, expected, tolerance)
     !> What the figure is
     character(len=*), intent(in) :: what
-    !> The figure, and what it should be
+    !> The figure, and its expected value
     real(wp), intent(in) :: found, expected
     !> Largest difference allowed
     real(wp), intent(in) :: tolerance

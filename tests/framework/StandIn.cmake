@@ -1,5 +1,5 @@
-# A small stand-in for pFUnit, used where that is not installed: the same test files (.pf) and the
-# same CMake call. It always runs on MPI; a test program on one process needs no mpirun.
+# A small replacement for pFUnit, used where that is not installed: the same test files (.pf) and the same CMake call.
+# It always runs on MPI; a test program on one process needs no mpirun.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(framework_dir ${CMAKE_CURRENT_BINARY_DIR}/framework)
 file(MAKE_DIRECTORY ${framework_dir})

@@ -1,5 +1,5 @@
-!> Comparisons behind the asserts. Arrays come flattened, with their shapes beside them; a scalar has no shape
-!> and is compared with every element of the other side. A NaN is never equal to, less or greater than anything.
+!> Comparisons used by the asserts. Arrays are flattened and passed with their shapes; a scalar has no shape and is
+!> compared with every element of the other side. A NaN is never equal to, less or greater than anything.
 module comparisons
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use, intrinsic :: iso_fortran_env, only: int64, real32, real64
@@ -8,23 +8,23 @@ module comparisons
   private
   public :: compare, compare_strings, KEEP_ALL, TRIM_ALL, IGNORE_DIFFERENCES, IGNORE_ALL
 
-  !> How blanks in strings count: all of them
+  !> Treatment of blanks in strings: all of them count
   integer, parameter :: KEEP_ALL = 1
-  !> Not those at the beginning and the end
+  !> Leading and trailing ones do not count
   integer, parameter :: TRIM_ALL = 2
-  !> Any number of them in a row is as good as one, none at the beginning and the end
+  !> Several in a row count as one, leading and trailing ones do not count
   integer, parameter :: IGNORE_DIFFERENCES = 3
-  !> None of them
+  !> None of them count
   integer, parameter :: IGNORE_ALL = 4
 
-  !> Compares whole numbers or reals by the relation named.
+  !> Compares integers or reals by the given relation.
   interface compare
     module procedure compare_integers, compare_reals
   end interface compare
 
 contains
 
-  !> Whole numbers, exactly.
+  !> Integers, exactly.
   subroutine compare_integers(relation, expected, found, shape_expected, shape_found, message, location)
     !> 'equal', 'different', '<', '<=', '>' or '>='
     character(len=*), intent(in) :: relation
@@ -32,9 +32,9 @@ contains
     integer(int64), intent(in) :: expected(:), found(:)
     !> Their shapes
     integer, intent(in) :: shape_expected(:), shape_found(:)
-    !> What the author of the test wishes to say about it
+    !> Message of the test's author
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands
+    !> Position of the assert
     type(SourceLocation), intent(in), optional :: location
     logical :: holds(size(found))
     integer :: i
@@ -73,9 +73,9 @@ contains
     integer, intent(in) :: shape_expected(:), shape_found(:)
     !> Largest difference allowed, a real of any kind; absent: 0; a text here is the message
     class(*), intent(in), optional :: tolerance
-    !> What the author of the test wishes to say about it
+    !> Message of the test's author
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands
+    !> Position of the assert
     type(SourceLocation), intent(in), optional :: location
     logical :: holds(size(found))
     real(real64) :: allowed
@@ -95,7 +95,7 @@ contains
     end associate
   end subroutine compare_reals
 
-  !> Does the relation hold between two reals? No arithmetic is done on a NaN, which a debug build would trap.
+  !> Whether the relation holds between two reals. No arithmetic is done on a NaN, which a debug build would trap.
   pure logical function real_holds(relation, expected, found, tolerance) result(holds)
     !> Name of the relation
     character(len=*), intent(in) :: relation
@@ -125,7 +125,7 @@ contains
     end select
   end function real_holds
 
-  !> Are two numbers equal, or no further apart than allowed? Infinity is close to itself only.
+  !> Whether two numbers are equal to the tolerance. Infinity is equal to itself only.
   pure logical function close(a, b, allowed)
     !> The two numbers and the difference allowed
     real(real64), intent(in) :: a, b, allowed
@@ -141,11 +141,11 @@ contains
     character(len=*), intent(in) :: relation
     !> The two sides
     character(len=*), intent(in) :: expected, found
-    !> How blanks count; absent: trailing and leading ones do not
+    !> Treatment of blanks; absent: leading and trailing ones do not count
     integer, intent(in), optional :: whitespace
-    !> What the author of the test wishes to say about it
+    !> Message of the test's author
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands
+    !> Position of the assert
     type(SourceLocation), intent(in), optional :: location
     character(len=:), allocatable :: e, f
     integer :: blanks
@@ -163,7 +163,7 @@ contains
   pure function reduced(string, blanks) result(short)
     !> The string
     character(len=*), intent(in) :: string
-    !> How blanks count
+    !> Treatment of blanks
     integer, intent(in) :: blanks
     character(len=:), allocatable :: short
     integer :: i
@@ -184,13 +184,13 @@ contains
     end if
   end function reduced
 
-  !> Notes a failure if the shapes do not go together.
+  !> Adds a failure if the shapes do not conform.
   logical function shapes_differ(shape_expected, shape_found, message, location)
-    !> The two shapes; a scalar expected goes with every shape
+    !> The two shapes; an expected scalar conforms with every shape
     integer, intent(in) :: shape_expected(:), shape_found(:)
-    !> What the author of the test wishes to say about it
+    !> Message of the test's author
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands
+    !> Position of the assert
     type(SourceLocation), intent(in), optional :: location
     character(len=80) :: text
 
@@ -203,7 +203,7 @@ contains
 
   !> The sentence of a failure.
   pure function statement(relation, expected, found, remark) result(text)
-    !> Name of the relation, both sides and what else there is to say
+    !> Name of the relation, both sides and further text
     character(len=*), intent(in) :: relation, expected, found, remark
     character(len=:), allocatable :: text
 
@@ -217,7 +217,7 @@ contains
     end select
   end function statement
 
-  !> Where in an array the element with a given number stands; empty for a scalar.
+  !> Position in an array of the element with a given number; empty for a scalar.
   pure function position(number, dims) result(text)
     !> Number of the element in the order of storage
     integer, intent(in) :: number
@@ -236,7 +236,7 @@ contains
     text = ' at element ('//text(2:)//')'
   end function position
 
-  !> How far two numbers are apart and may be; empty where order is in question.
+  !> Difference of two numbers and its tolerance; empty for relations of order.
   pure function apart(relation, a, b, allowed) result(text)
     !> Name of the relation
     character(len=*), intent(in) :: relation
@@ -267,7 +267,7 @@ contains
     end select
   end function real_of
 
-  !> The message, also where it stands in place of the tolerance.
+  !> The message, also if it is passed in place of the tolerance.
   pure function remark(tolerance, message) result(text)
     !> A real, or the message
     class(*), intent(in), optional :: tolerance
@@ -284,7 +284,7 @@ contains
     end select
   end function remark
 
-  !> A whole number written out.
+  !> An integer as text.
   pure function text_of_integer(value) result(text)
     !> The number
     integer(int64), intent(in) :: value
@@ -295,7 +295,7 @@ contains
     text = trim(buffer)
   end function text_of_integer
 
-  !> A real written out, to its last digit.
+  !> A real as text, to its last digit.
   pure function text_of_real(value) result(text)
     !> The number
     real(real64), intent(in) :: value

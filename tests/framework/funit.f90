@@ -1,4 +1,4 @@
-!> What a test file on one process uses.
+!> Modules for a test file on one process.
 module funit
   use asserts
   use comparisons, only: KEEP_ALL, TRIM_ALL, IGNORE_DIFFERENCES, IGNORE_ALL

@@ -1,5 +1,5 @@
-"""Writes the Fortran module `asserts`: one overload for each pair of kinds and ranks, all handing
-their arguments, flattened, to the comparisons. Usage: generate_asserts.py FILE"""
+"""Writes the Fortran module `asserts`: one overload for each pair of kinds and ranks, which passes
+its flattened arguments to the comparisons. Usage: generate_asserts.py FILE"""
 
 import sys
 
@@ -32,7 +32,7 @@ CLASSES = {
     "assertIsInfinite": (".not. (ieee_is_nan({0}) .or. ieee_is_finite({0}))", "infinity"),
 }
 HEAD = """\
-!> Asserts that tests call; each notes a failure if what it expects is not so.
+!> Asserts that tests call; each adds a failure if its condition is not met.
 module asserts
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite, ieee_is_nan
   use, intrinsic :: iso_fortran_env, only: int32, int64, real32, real64

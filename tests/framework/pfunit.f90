@@ -1,4 +1,4 @@
-!> What a test file on several processes uses.
+!> Modules for a test file on several processes.
 module pfunit
   use funit
   use test_cases, only: MpiTestCase, MpiTestMethod

@@ -1,5 +1,5 @@
-"""Turns a test file (.pf) into Fortran: asserts become calls that know their place, and a module
-MODULE_run follows that runs every test of the file. Usage: preprocess.py IN.pf OUT.F90"""
+"""Turns a test file (.pf) into Fortran: asserts become calls with their positions, and a module
+MODULE_run is added that runs every test of the file. Usage: preprocess.py IN.pf OUT.F90"""
 
 import re
 import sys
@@ -16,7 +16,7 @@ MODULE = re.compile(r"^\s*module\s+(?!procedure\b|subroutine\b|function\b)(\w+)\
 
 @dataclass
 class Test:
-    """A test, or (with no name yet) the one that the next subroutine will be."""
+    """A test, or (without a name) the one that the next subroutine will be."""
 
     options: dict
     name: str = ""
@@ -27,7 +27,7 @@ class Test:
 
 @dataclass
 class Suite:
-    """What the directives of one file declare."""
+    """The declarations by directives of one file."""
 
     module: str = ""
     name: str = ""
@@ -79,7 +79,7 @@ class Translator:
             if found:
                 self.directive(number, found.group(1).lower(), found.group(1), found.group(2))
             elif line.lstrip().startswith("@"):
-                self.error(number, "a directive stands on one line with nothing after it")
+                self.error(number, "a directive is on one line with nothing after it")
             else:
                 self.declaration(number, line)
                 self.out.append(line)
@@ -90,7 +90,7 @@ class Translator:
         return "\n".join(self.out + run_module(self.suite)) + "\n"
 
     def directive(self, number, keyword, spelling, text):
-        """Replace a directive by Fortran, or note what it announces."""
+        """Replace a directive by Fortran, or store what it applies to."""
         if keyword.startswith(("assert", "mpiassert")):
             name = spelling[3:] if keyword.startswith("mpi") else spelling
             arguments = f"{text}, " if text and text.strip() else ""
@@ -117,7 +117,7 @@ class Translator:
             self.error(number, f"@{spelling} is not known here")
 
     def declaration(self, number, line):
-        """Notes the names that the directives before them wait for."""
+        """Store the names to which the preceding directives apply."""
         module, subroutine, kind = MODULE.match(line), SUBROUTINE.match(line), TYPE.match(line)
         if module and not self.suite.module:
             self.suite.module = module.group(1)

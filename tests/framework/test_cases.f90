@@ -1,18 +1,18 @@
-!> What a test is given: a fixture, a parameter, processes.
+!> Arguments of a test: a fixture, a parameter, processes.
 module test_cases
   use mpi, only: MPI_COMM_NULL, MPI_Comm_rank, MPI_Comm_size
   implicit none
   private
   public :: AbstractTestParameter, TestCase, ParameterizedTestCase, MpiTestCase, MpiTestMethod
 
-  !> A value that a test is run with
+  !> A value with which a test is run
   type, abstract :: AbstractTestParameter
   contains
     procedure(to_string), deferred :: toString
   end type AbstractTestParameter
 
   abstract interface
-    !> The value written out, for the name of the test.
+    !> The value as text, for the name of the test.
     function to_string(this) result(string)
       import :: AbstractTestParameter
       !> The value
@@ -21,7 +21,7 @@ module test_cases
     end function to_string
   end interface
 
-  !> Ground for a test: set up before it, torn down after it
+  !> Fixture of a test: set up before it, torn down after it
   type :: TestCase
   contains
     procedure :: setUp
@@ -29,11 +29,11 @@ module test_cases
     procedure :: join
   end type TestCase
 
-  !> Ground that is built from a parameter
+  !> Fixture that is built from a parameter
   type, extends(TestCase) :: ParameterizedTestCase
   end type ParameterizedTestCase
 
-  !> Ground for a test on several processes
+  !> Fixture of a test on several processes
   type, extends(ParameterizedTestCase) :: MpiTestCase
     private
     !> Processes that run the test
@@ -45,35 +45,35 @@ module test_cases
     procedure :: getNumProcesses
   end type MpiTestCase
 
-  !> A test on several processes without more ground than these
+  !> A test on several processes without further fixture
   type, extends(MpiTestCase) :: MpiTestMethod
   end type MpiTestMethod
 
 contains
 
-  !> Nothing to set up.
+  !> No set-up.
   subroutine setUp(this)
-    !> Ground for the test
+    !> The fixture
     class(TestCase), intent(inout) :: this
   end subroutine setUp
 
-  !> Nothing to tear down.
+  !> No tear-down.
   subroutine tearDown(this)
-    !> Ground for the test
+    !> The fixture
     class(TestCase), intent(inout) :: this
   end subroutine tearDown
 
   !> A test on one process needs no communicator.
   subroutine join(this, communicator)
-    !> Ground for the test
+    !> The fixture
     class(TestCase), intent(inout) :: this
     !> Processes that run the test
     integer, intent(in) :: communicator
   end subroutine join
 
-  !> Takes the processes that run the test.
+  !> Sets the processes that run the test.
   subroutine join_processes(this, communicator)
-    !> Ground for the test
+    !> The fixture
     class(MpiTestCase), intent(inout) :: this
     !> Processes that run the test
     integer, intent(in) :: communicator
@@ -83,7 +83,7 @@ contains
 
   !> Communicator of the processes that run the test.
   integer function getMpiCommunicator(this)
-    !> Ground for the test
+    !> The fixture
     class(MpiTestCase), intent(in) :: this
 
     getMpiCommunicator = this%communicator
@@ -91,7 +91,7 @@ contains
 
   !> Rank of this process among them.
   integer function getProcessRank(this)
-    !> Ground for the test
+    !> The fixture
     class(MpiTestCase), intent(in) :: this
     integer :: ignored
 
@@ -100,7 +100,7 @@ contains
 
   !> Number of processes that run the test.
   integer function getNumProcesses(this)
-    !> Ground for the test
+    !> The fixture
     class(MpiTestCase), intent(in) :: this
     integer :: ignored
 

@@ -1,10 +1,10 @@
-!> What failed so far in the test that runs on this process, and where.
+!> Failures so far in the current test on this process, with their positions.
 module test_failures
   implicit none
   private
   public :: SourceLocation, anyExceptions, add_failure, take_failures
 
-  !> Place of an assert in a test file
+  !> Position of an assert in a test file
   type :: SourceLocation
     !> Path of the test file
     character(len=512) :: file = '?'
@@ -12,23 +12,23 @@ module test_failures
     integer :: line = 0
   end type SourceLocation
 
-  !> One line a failed assert; the asserts of a test have no other way to reach the run that it belongs to
+  !> One line per failed assert; asserts have no other access to the run of their test
   character(len=:), allocatable, save :: failures
 
 contains
 
-  !> Has an assert failed in the current test on this process?
+  !> Whether an assert has failed in the current test on this process.
   logical function anyExceptions()
     anyExceptions = allocated(failures)
   end function anyExceptions
 
-  !> Notes that an assert failed.
+  !> Adds a failed assert.
   subroutine add_failure(reason, message, location)
-    !> What was expected and what was found
+    !> Expected and found values
     character(len=*), intent(in) :: reason
-    !> What the author of the test wishes to say about it
+    !> Message of the test's author
     character(len=*), intent(in), optional :: message
-    !> Where the assert stands
+    !> Position of the assert
     type(SourceLocation), intent(in), optional :: location
     type(SourceLocation) :: place
     character(len=12) :: line
@@ -43,9 +43,9 @@ contains
     failures = failures//new_line('a')
   end subroutine add_failure
 
-  !> Returns the failures of the test that ended, and resets them.
+  !> Returns the failures of the completed test, and resets them.
   subroutine take_failures(text)
-    !> One line a failure; empty if there was none
+    !> One line per failure; empty if there was none
     character(len=:), allocatable, intent(out) :: text
 
     if (allocated(failures)) then

@@ -1,4 +1,4 @@
-!> A run of tests: which are run, on which processes, what became of them, and how the program ends.
+!> A run of tests: selection, processes, results, and the exit code of the program.
 module test_runs
   use, intrinsic :: iso_fortran_env, only: output_unit
   use mpi, only: MPI_CHARACTER, MPI_COMM_NULL, MPI_COMM_WORLD, MPI_INTEGER, MPI_UNDEFINED, &
@@ -18,9 +18,9 @@ module test_runs
     integer :: rank = 0, processes = 1
     !> Processes of the current test; MPI_COMM_NULL on those that do not take part
     integer, public :: communicator = MPI_COMM_NULL
-    !> How many tests were run, failed, were left out
+    !> Numbers of tests run, failed and disabled
     integer :: finished = 0, failed = 0, disabled = 0
-    !> Is each test announced?
+    !> Whether each test is announced
     logical :: verbose = .false.
     !> Only tests with this text in their name are run
     character(len=:), allocatable :: pattern
@@ -80,7 +80,7 @@ contains
     begins = colour == 0
   end function begins
 
-  !> Collects what became of the current test on all processes.
+  !> Collects the results of the current test on all processes.
   subroutine ends(this)
     !> The run
     class(test_run), intent(inout) :: this
@@ -111,7 +111,7 @@ contains
     this%disabled = this%disabled + 1
   end subroutine skips
 
-  !> Sums up and ends the program. A run without a test has failed, too.
+  !> Prints the totals and ends the program. A run without a test has failed, too.
   subroutine finish(this)
     !> The run
     class(test_run), intent(inout) :: this
@@ -125,7 +125,7 @@ contains
     if (this%failed > 0 .or. this%finished == 0) stop exit_failed
   end subroutine finish
 
-  !> Joins the texts of all processes on the first one, each line with the rank it comes from.
+  !> Joins the texts of all processes on the first one, each line with its rank.
   subroutine gather(text, rank, processes)
     !> Text of this process; on the first one afterwards that of all
     character(len=:), allocatable, intent(inout) :: text

@@ -32,7 +32,7 @@ KILLS = 6
 
 def check_h5(folder):
     with h5py.File(folder / "sample.h5") as file:
-        assert file["provenance/citation"][()].decode().startswith("The Implam developers"), "no word on how to cite"
+        assert file["provenance/citation"][()].decode().startswith("The Implam developers"), "no citation"
         assert file["provenance/deck"][()].decode().startswith("&case"), "the deck is not in the file"
         assert file["part"][()].decode() == "quarter"
         assert len(file["restarts"]) == 1
@@ -98,7 +98,7 @@ def check_vtk(folder):
 
 
 def check_checkpoint(path):
-    """The seal holds, and what is in the file belongs together."""
+    """The check value is right, and the items of the file are of one time."""
     content = path.read_bytes()
     seal = content[:512].decode().split("\n")
     assert seal[:2] == ["IMPLAM CHECKPOINT", "format 5"]
@@ -132,7 +132,7 @@ def kill_session(run):
 
 
 def check_kills(command, folder):
-    """Whenever the run is killed, the checkpoint is whole."""
+    """Whenever the run is killed, the checkpoint is complete."""
     path = folder / "sample_restart.h5"
     for k in range(KILLS):
         path.unlink(missing_ok=True)
@@ -159,7 +159,7 @@ def main():
         if vtk_is_installed:
             check_vtk(folder)
         else:
-            print("VTK is not installed, so its reader was left out")
+            print("VTK is not installed, its reader was not tested")
         check_kills(command, folder)
     print(f"outputs are right on {ranks} rank(s)")
 

@@ -1,7 +1,6 @@
-!> Writes sample files for check_outputs.py, on any number of ranks: `write_samples fields|checkpoints FOLDER`.
-!> Fields: a quarter plate of two layers, with values that follow from the places of the points, at times 0, 1 and 2;
-!> then a restart from time 1 and a last output at 1.5. Checkpoints: one after the other, number n filled with n, until
-!> killed.
+!> Writes sample files for check_outputs.py, on any number of ranks: `write_samples fields|checkpoints FOLDER`. Fields:
+!> a quarter plate of two layers, with values computed from the positions of the points, at times 0, 1 and 2; then a
+!> restart from time 1 and a last output at 1.5. Checkpoints: one after the other, number n filled with n, until killed.
 program write_samples
   use checkpoints, only: checkpoint_archive_t
   use communicators, only: communicator_t, finish_mpi, start_mpi
@@ -24,7 +23,7 @@ program write_samples
     'displacement | points | length | displacement | - | Displacement.', &
     'gap | points | length | gap | - | Product of x and y.', &
     'stress_N | cells | pressure | stress | - | Number of the element, growing with time.']
-  !> Text that stands for a deck
+  !> Text in place of a deck
   character(len=*), parameter :: deck = "&case name='sample' /"//new_line('a')
   type(communicator_t) :: communicator
   type(error_t), allocatable :: error
@@ -53,8 +52,8 @@ contains
     type(fields_file_t) :: fields, again
     integer, allocatable :: points(:), cells(:)
 
-    points = dealt(points_across*points_along*layers)
-    cells = dealt(across*along*layers)
+    points = share_of(points_across*points_along*layers)
+    cells = share_of(across*along*layers)
     call fields%describe(rows)
     call again%describe(rows)
     call fields%create(communicator, base, this_run(sample_build(), deck, communicator%size), 'quarter', error)
@@ -67,18 +66,18 @@ contains
     call write_time(again, 1.5_wp, 2, points, cells, error)
   end subroutine write_fields
 
-  !> This rank's share of numbered things, dealt like cards with the last first.
-  function dealt(number) result(mine)
-    !> How many there are
+  !> This rank's share of numbered items, distributed cyclically with the last first.
+  function share_of(number) result(mine)
+    !> Number of items
     integer, intent(in) :: number
-    !> Numbers of those that this rank has
+    !> Numbers of the rank's items
     integer, allocatable :: mine(:)
     integer :: i
 
     mine = pack([(i, i=number, 1, -1)], [(mod(i, communicator%size) == communicator%rank, i=number, 1, -1)])
-  end function dealt
+  end function share_of
 
-  !> Place of a point.
+  !> Position of a point.
   pure function place(point)
     !> Its number
     integer, intent(in) :: point
@@ -152,7 +151,7 @@ contains
     call fields%finish(error)
   end subroutine write_time
 
-  !> Writes checkpoints without end.
+  !> Writes checkpoints endlessly.
   subroutine write_checkpoints(path, error)
     !> Path of the file
     character(len=*), intent(in) :: path

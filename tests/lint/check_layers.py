@@ -1,9 +1,9 @@
-"""Checks that folders of the program see those of earlier tiers only. Usage:
+"""Checks that folders of the program use those of earlier tiers only. Usage:
 check_layers.py COMPILER MODULES LAYERS TIER...
 
 TIERs are names of folders with a slash before each new tier. LAYERS is a file with a line NAME=FOLDER;FOLDER for each
 folder of the program: where its compiler looks for modules. Modules of the program are in folders of MODULES. For each
-folder a module of every other is used in a probe, which must compile only if that is of an earlier tier.
+folder a module of every other one is used in a probe, which must compile only if the other is of an earlier tier.
 README.md and doc/architecture.md list the same folders in the same tiers.
 Prints one line a breach and ends with code 1 if there is any.
 """
@@ -35,19 +35,19 @@ def compiles(compiler, module, searched):
 
 
 def breaches(compiler, modules, searched, tiers):
-    """Sentences on folders that see too little or too much."""
+    """Sentences on folders that use too few or too many others."""
     for name, folders in searched.items():
         for other, tier in tiers.items():
             module = min(path.stem for path in Path(modules, other).glob("*.mod"))
             allowed = tier < tiers[name]
             if other != name and compiles(compiler, module, folders) != allowed:
-                yield f"{name} {'sees none' if allowed else 'can use'} of the modules of {other}"
+                yield f"{name} {'can use none' if allowed else 'can use some'} of the modules of {other}"
 
 
 def listed(root):
     """Tiers of the folders by the pages that list them: page, and folder to number."""
     text = Path(root, "README.md").read_text(encoding="utf-8")
-    row = re.search(r"Tiers: (.*?) \(", text)
+    row = re.search(r"Tiers, from the lowest: (.*?) \(", text)
     yield "README.md", {name: number for number, tier in enumerate(row[1].split("; "), 1) for name in tier.split(", ")}
     text = Path(root, "doc", "architecture.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\d+) \| (\w+) \|", text, re.M)
@@ -65,7 +65,7 @@ def main(arguments):
     for page, places in listed(Path(__file__).resolve().parents[2]):
         found += [f"{page}: {name} has another tier, or none"
                   for name in tiers.keys() | places.keys() if places.get(name) != tiers.get(name, -1) + 1]
-    print("\n".join(found) if found else f"{len(tiers)} folders see those of earlier tiers only")
+    print("\n".join(found) if found else f"{len(tiers)} folders use those of earlier tiers only")
     return 1 if found or not searched else 0
 
 

@@ -4,17 +4,17 @@ check_pages.py [ROOT] [--write] [--sentences]
 
 - Relative links lead to files, and to headings, that exist.
 - Files named in quotes exist: with their path from the root or from src/, or by a bare name somewhere in the project.
-- A name quoted with its file, as in `wp` in `base/kinds.f90` or `wp` (`base/kinds.f90`), stands in that file.
-- A block of code after <!-- from PATH --> stands in that file, line by line; "..." stands for lines left out.
+- A name quoted with its file, as in `wp` in `base/kinds.f90` or `wp` (`base/kinds.f90`), is in that file.
+- A block of code after <!-- from PATH --> is in that file, line by line; "..." marks lines left out.
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
-- Pages say what holds now: the words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
+- Pages describe the present state: words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
 - doc/testing.md has five questions for each page under doc/ but the news, numbered 1 to 5.
-- The page of a group of the deck says what is warned of, and has limits.
-- Displayed equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; those that text
-  refers to exist.
+- The page of a group of the deck lists its warnings and limits.
+- Displayed equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; equations
+  referred to exist.
 
---write writes the lists of doc/index.md anew. --sentences counts the sentences of more than 30 words and prints them.
+--write updates the lists of doc/index.md. --sentences counts the sentences of more than 30 words and prints them.
 Prints one line a breach, as file:line: sentence, and ends with code 1 if there is any.
 """
 
@@ -22,7 +22,7 @@ import re
 import sys
 from pathlib import Path
 
-# Words of a sentence: as a habit, and at most.
+# Words of a sentence: usual and largest number.
 LONGEST, LIMIT = 30, 40
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`\n]+)`")
@@ -33,14 +33,14 @@ REFERRED = re.compile(r"\(([A-Z]\d+)\)")
 FORMULA = re.compile(r"\$[^$\n]+\$")
 FENCE = re.compile(r"^ *```")
 ORIGIN = re.compile(r"^<!-- from (\S+) -->$")
-# A file in a folder of the project, a source by the folder of src/ that it is in, or a bare name of one.
+# A file in a folder of the project, a source with its folder in src/, or the bare name of one.
 PATHS = re.compile(r"^(?:src|tests|input|doc|cmake|postproc|\.ci)/[\w./*-]*$")
 SOURCES = re.compile(r"^(?:[a-z_]+/)?[\w-]+\.(?:f90|pf|c|py)$")
-# A name and the file that it is in.
+# A name and the file that contains it.
 MEMBER = re.compile(r"`(\w+)`\s+(?:in\s+|of\s+|\()`((?:\w+/)+[\w-]+\.(?:f90|pf|py))`")
-# Names that stand for others: <name>, GROUP_deck.f90.
+# Names with placeholders: <name>, GROUP_deck.f90.
 PLACEHOLDER = re.compile(r"<|[A-Z]{2}")
-# Files that a patch of an example makes.
+# Files that a patch of an example creates.
 PATCHED = re.compile(r"^\+\+\+ \w/(\S+)", re.MULTILINE)
 DIARY = re.compile(
     r"\b(?:as it was then|was then|as it was when|before the deck had|before (?:that|this) change|formerly|used to be|"
@@ -51,12 +51,12 @@ QUESTIONS = re.compile(r"^\*\*\[[^\]]+\]\(([^)]+)\)\*\*\n\n((?:\d+\..*\n)+)", re
 BEGIN, END = "<!-- lists: written by tests/lint/check_pages.py --write -->", "<!-- end of the lists -->"
 ROW = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
 TERM = re.compile(r"^\*\*(.+?)\*\*(.*?)(?=^\*\*|^#|\Z)", re.MULTILINE | re.DOTALL)
-# What ends with a full stop without ending a sentence.
+# Abbreviations with a full stop that do not end a sentence.
 SHORT = re.compile(r"\b(?:et al|Eqs?|Sec|Fig|No|e\.g|i\.e|vs|cf|(?<!\d )J|Proc|Comput|Mech|Appl|Int|Numer|Meth|Eng)\.")
 
 
 def pages(root):
-    """The pages of the project, news apart."""
+    """The pages of the project, without news."""
     found = [root / "README.md", root / "CHANGELOG.md"]
     for folder in ("doc", "tests"):
         found += sorted((root / folder).rglob("*.md"))
@@ -64,7 +64,7 @@ def pages(root):
 
 
 def pages_of(doc):
-    """The pages under doc/, news apart."""
+    """The pages under doc/, without news."""
     return [page for page in sorted(doc.rglob("*.md")) if "news" not in page.relative_to(doc).parts]
 
 
@@ -122,7 +122,7 @@ class Names:
         self.patched = {name for path in patches for name in PATCHED.findall(path.read_text(encoding="utf-8"))}
 
     def missing(self, word):
-        """Does a quoted word name a file that is not there?"""
+        """Whether a quoted word names a file that does not exist."""
         if PLACEHOLDER.search(word) or word in self.patched:
             return False
         if PATHS.match(word):
@@ -144,7 +144,7 @@ def check_names(page, names):
 
 
 def check_members(page, root):
-    """Breaches of quoted names that the file quoted with them lacks."""
+    """Breaches of quoted names that the quoted file lacks."""
     lines = prose(page)
     text = "\n".join(line for line, _ in lines)
     for found in MEMBER.finditer(text):
@@ -175,7 +175,7 @@ def check_quotes(page, root):
 
 
 def first_missing(quote, lines):
-    """The first line of a quote that the lines of a file lack, or None. Indentation does not count."""
+    """The first line of a quote that the lines of a file lack, or None. Indentation is ignored."""
     lines = [line.strip() for line in lines]
     best = 0
     for start in range(len(lines)):
@@ -196,13 +196,13 @@ def first_missing(quote, lines):
 
 
 def check_diary(page, root):
-    """Breaches of pages that describe what was."""
+    """Breaches of pages that describe earlier states."""
     if page == root / "CHANGELOG.md" or page.parent == root / "doc" / "news":
         return
     for line, number in prose(page):
         found = DIARY.search(line)
         if found:
-            yield f'{page}:{number}: "{found.group()}" describes what was; say what holds'
+            yield f'{page}:{number}: "{found.group()}" describes an earlier state; describe the present one'
 
 
 def title(page):
@@ -216,7 +216,7 @@ def linked(items):
 
 
 def wrapped(text, width=118):
-    """A paragraph, or the item of a list, in lines; links stay whole."""
+    """A paragraph, or the item of a list, in lines; links are not divided."""
     margin = "  " if text.startswith("- ") else ""
     lines = [""]
     for word in re.split(r" (?![^\[]*\]\()", text):
@@ -258,7 +258,7 @@ def index_lists(doc):
 
 
 def check_index(root, write):
-    """Breaches of the index, whose lists are written anew if asked for."""
+    """Breaches of the index, whose lists are updated if requested."""
     index = root / "doc" / "index.md"
     if not index.exists():
         yield f"{index}:1: there is no index"
@@ -291,7 +291,7 @@ def paragraphs(page):
         if listed:
             continue
         stripped = line.strip()
-        # Equations and commands stand indented, apart from the text around them.
+        # Equations and commands are indented, separate from the text around them.
         starts = re.match(r"(?:[-*] |\d+\. |>|\||#|$|<!--)", stripped) or (line.startswith("    ") and not text)
         if starts and text:
             yield text, first
@@ -305,7 +305,7 @@ def paragraphs(page):
 
 
 def long_sentences(page, limit=LONGEST):
-    """The sentences of a page that are too long."""
+    """The sentences of a page above the usual number of words."""
     for sentence, number in sentences(page):
         words = [word for word in sentence.split() if re.search(r"\w", word)]
         if len(words) > limit:
@@ -313,7 +313,7 @@ def long_sentences(page, limit=LONGEST):
 
 
 def check_sentences(page, root):
-    """Breaches of sentences of far too many words."""
+    """Breaches of sentences above the largest number of words."""
     if page.is_relative_to(root / "doc") or page == root / "README.md":
         for number, words, text in long_sentences(page, LIMIT):
             yield f"{page}:{number}: a sentence of {words} words: {' '.join(text.split()[:8])} ..."
@@ -340,7 +340,7 @@ def check_equations(pages_of_theory):
 
 
 def check_questions(root):
-    """Breaches by pages without five questions in the reading test."""
+    """Pages without five questions in the reading test."""
     testing = root / "doc/testing.md"
     if not testing.exists():
         return
@@ -354,7 +354,7 @@ def check_questions(root):
 
 
 def check_groups(root):
-    """Breaches by pages of groups that do not say what is warned of, or where the limits are."""
+    """Pages of groups without their warnings or limits."""
     for page in sorted((root / "doc" / "manual").glob("*.md")):
         text = page.read_text(encoding="utf-8")
         for heading in ("What is warned of", "Limits"):

@@ -1,9 +1,9 @@
 """Checks that every public procedure and type-bound procedure is reached from the main program. Usage:
 check_reach.py FOLDER
 
-A name counts as reached if a procedure that is reached mentions it. Calls through a variable are followed by its
-type; where that cannot be decided, they reach every binding of that name. So what is reported is not used, but not all
-that is unused is reported. Ends with code 1 if something is reported or stands in EXCEPTIONS without need.
+A name is reached if a reached procedure mentions it. Calls through a variable are resolved by its type; where that
+cannot be decided, they reach every binding of that name. So reported names are unused, but not all unused names are
+reported. Ends with code 1 if a name is reported or is in EXCEPTIONS without need.
 """
 
 import re
@@ -13,9 +13,9 @@ from pathlib import Path
 import check_style
 from fortran_units import read_modules
 
-# What only tests reach, and why it stays in the program.
+# Names that only tests reach, and why they stay in the program.
 CLOSED_LIST = "tests compare every row of results with a closed list, which is next to the meaning of the cells"
-LINEAR_ALGEBRA = "a folder of procedures that stand for themselves, each with its test"
+LINEAR_ALGEBRA = "a folder of independent procedures, each with its test"
 EXCEPTIONS = {
     "numberings: numbering_t%owns": LINEAR_ALGEBRA,
     "result_tables: is_number_type": CLOSED_LIST,
@@ -29,7 +29,7 @@ INTRINSIC = ""
 
 
 def after_brackets(text, start):
-    """Position behind the brackets that open at a position."""
+    """Position after the brackets that open at a position."""
     depth = 0
     for position in range(start, len(text)):
         depth += (text[position] in "([") - (text[position] in ")]")
@@ -39,7 +39,7 @@ def after_brackets(text, start):
 
 
 def chain_at(text, start):
-    """Names joined by % from a position on, and the position behind them."""
+    """Names joined by % from a position on, and the position after them."""
     names = []
     while True:
         found = re.compile(r"\s*([a-z]\w*)\s*").match(text, start)
@@ -73,7 +73,7 @@ class Walk:
             self.follow(self.waiting.pop())
 
     def reach_unnamed(self):
-        """Reach what is called without its name: operators, assignments and finalizers."""
+        """Reach procedures called without their name: operators, assignments and finalizers."""
         for module in self.modules.values():
             names = [name for name in module.generics if "(" in name]
             names += [name for each in module.types.values() for name in each.finals]
@@ -84,18 +84,18 @@ class Walk:
                     self.call(each, name)
 
     def reach(self, procedure):
-        """Note a procedure."""
+        """Store a procedure."""
         key = (procedure.module, id(procedure))
         if key not in self.reached:
             self.reached.add(key)
             self.waiting.append(procedure)
 
     def is_reached(self, procedure):
-        """Return whether a procedure was noted."""
+        """Return whether a procedure was stored."""
         return (procedure.module, id(procedure)) in self.reached
 
     def find(self, name, procedure):
-        """Procedures that a name means in a procedure: one, those of a generic name, or none."""
+        """Procedures to which a name refers in a procedure: one, those of a generic name, or none."""
         host = procedure
         while host:
             if name in host.inner:
@@ -113,7 +113,7 @@ class Walk:
         return []
 
     def exported(self, module, name):
-        """Procedures behind a name of a module."""
+        """Procedures to which a name of a module refers."""
         module = self.modules.get(module)
         if not module:
             return []
@@ -140,7 +140,7 @@ class Walk:
         return found[0] if len(found) == 1 else UNKNOWN
 
     def lineage(self, each):
-        """A type and those it extends."""
+        """A type and its parents."""
         found = []
         while each:
             found.append(each)
@@ -153,7 +153,7 @@ class Walk:
         return self.modules[each.module].uses.get(each.parent, (0, each.parent))[1]
 
     def heirs(self, each):
-        """A type and those that extend it."""
+        """A type and its extensions."""
         return [t for types in self.types.values() for t in types if each in self.lineage(t)]
 
     def variable(self, name, procedure):
@@ -167,7 +167,7 @@ class Walk:
         return UNKNOWN
 
     def call(self, kind, name):
-        """Reach a binding of a type, its overrides and what it overrides; return the procedures behind it."""
+        """Reach a binding of a type, its overrides and the binding it overrides; return its procedures."""
         targets = []
         for each in {id(t): t for heir in self.heirs(kind) for t in self.lineage(heir)}.values():
             for binding in [name, *each.generics.get(name, [])]:
@@ -221,7 +221,7 @@ class Walk:
         return kinds[0] if kinds and all(k is kinds[0] for k in kinds) else UNKNOWN
 
     def follow(self, procedure):
-        """Reach what a procedure mentions."""
+        """Reach the names that a procedure mentions."""
         names = dict(procedure.types)
         for text in procedure.statements:
             self.enter(text, procedure)
@@ -276,7 +276,7 @@ def main(arguments, exceptions=EXCEPTIONS):
             print(f"{name} is not reached from the main program")
     for name in exceptions:
         if name not in names:
-            print(f"{name} stands among the exceptions but is reached, or is no more")
+            print(f"{name} is among the exceptions but is reached, or does not exist")
     if set(names) == set(exceptions) and modules:
         print(f"{len(modules)} modules: all that is public is reached but {len(names)} exceptions")
         return 0

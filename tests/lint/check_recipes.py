@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 
 SPACK = "packaging/spack/spack_repo/implam/packages/implam/package.py"
-# Packages of setup.sh for tests and Python commands only.
+# Packages of setup.sh only for tests and Python commands.
 NOT_BUILT_WITH = {"hdf5-tools", "python3-venv"}
 
 
 def words(text, pattern):
-    """Blank-separated words of the first match, without the marks of continued lines."""
+    """Blank-separated words of the first match, without continuation marks."""
     found = re.search(pattern, text, re.DOTALL)
     return set(found[1].replace("\\", " ").split()) if found else set()
 

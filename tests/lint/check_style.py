@@ -1,9 +1,9 @@
 """Checks that the Fortran sources keep the rules of the project. Usage:
 check_style.py FOLDER... [--layout FOLDER...]
 
-Folders after --layout, those of tests, need only be laid out well. Prints one line a breach, as
-file:line: sentence, and ends with code 1 if there is any. A type may have more than so many components if its
-documentation says why, in a sentence with "because".
+In folders after --layout, those of tests, only the layout is checked. Prints one line a breach, as
+file:line: sentence, and ends with code 1 if there is any. A type may exceed the number of components if its
+documentation gives the reason, in a sentence with "because".
 """
 
 import re
@@ -13,24 +13,24 @@ from pathlib import Path
 
 MAX_COLUMNS = 120
 MAX_PROCEDURE = 100
-# Lines and branches of a procedure in the folders of the implicit solution, where what steers is hard to follow.
+# Lines and branches of a procedure in the folders of the implicit solution, where control flow is hard to follow.
 CORE = {"tangent", "linalg", "steps", "statics", "dynamics", "stepping"}
 MAX_CORE_PROCEDURE, MAX_BRANCHES = 60, 15
 BRANCH = re.compile(r"\bif\s*\(|\.and\.|\.or\.|^case\s*\(|^(?:\w+\s*:\s*)?do\b(?!\s*=)")
 MAX_FILE = 400
 MAX_FILE_OF_TESTS = 600
 MAX_COMPONENTS = 15
-# Part of a program's lines that one of its folders may have, for programs of more lines than that.
+# Fraction of a program's lines allowed in one folder, for programs of more lines than the second number.
 MAX_FOLDER, SMALL_PROGRAM = 0.15, 5000
 INDENT = 2
 SUFFIXES = (".f90", ".F90", ".pf")
-# What has one name and one spelling, and the others; a public column is refactorisations.
+# Terms with one name and one spelling, and the others; a public column is refactorisations.
 SPELLINGS = {
     "factorization": re.compile(r"(?<!re)factoris|factoris(?!ations\b)", re.IGNORECASE),
     "time stepping": re.compile(r"\bmarch(es|ed|ing)?\b", re.IGNORECASE),
     "contact and ties": re.compile(r"\bseparations\b", re.IGNORECASE),
 }
-# Libraries whose modules are made to be used whole.
+# Libraries whose modules are used without `only`.
 WHOLE_MODULES = {"mpi", "mpi_f08", "hdf5"}
 
 PREFIX = (
@@ -77,7 +77,7 @@ class Scope:
 
 
 def without_strings(line, quote):
-    """The line without comment and contents of strings, and the quote left open at its end."""
+    """The line without comment and contents of strings, and the quote still open at its end."""
     out = []
     for character in line:
         if quote:
@@ -95,7 +95,7 @@ def without_strings(line, quote):
 
 
 def statements(lines):
-    """The statements of a file. Documented means that a line starting with !> stands right above."""
+    """The statements of a file. Documented: a line starting with !> is directly above."""
     current, documented, quote = None, False, ""
     for number, line in enumerate(lines, 1):
         if line.lstrip().startswith("!"):
@@ -134,13 +134,13 @@ def split_top(text):
 
 
 def initialised(entity):
-    """Does a declared entity carry a value?"""
+    """Whether a declared entity has a value."""
     flat = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", entity))
     return "=" in flat
 
 
 class Checker:
-    """Walks through the statements of one file and collects breaches."""
+    """Reads the statements of one file and collects breaches."""
 
     def __init__(self, path):
         """Read the file."""
@@ -151,11 +151,11 @@ class Checker:
         self.bound = set()
 
     def report(self, line, sentence):
-        """Note a breach."""
+        """Add a breach."""
         self.breaches.append((line, f"{self.path}:{line}: {sentence}"))
 
     def check(self, whole):
-        """Return the breaches of the layout, or of the whole set of rules, in the order of lines."""
+        """Return the breaches of the layout, or of all rules, in the order of lines."""
         self.check_layout(MAX_FILE if whole else MAX_FILE_OF_TESTS)
         for statement in statements(self.lines) if whole else ():
             self.check_indent(statement)
@@ -165,7 +165,7 @@ class Checker:
         return [text for _, text in sorted(self.breaches)]
 
     def check_layout(self, max_lines):
-        """Check what needs no understanding of Fortran."""
+        """Check rules that need no parsing of Fortran."""
         if len(self.lines) > max_lines:
             self.report(len(self.lines), f"the file has more than {max_lines} lines")
         for number, line in enumerate(self.lines, 1):
@@ -200,7 +200,7 @@ class Checker:
                 self.report(statement.line, f"{part.group(1)} is called within the selector of an associate")
 
     def check_words(self, statement):
-        """Check for statements that have no place in the project."""
+        """Check for statements that are not allowed in the project."""
         text = statement.text
         action = re.sub(r"^if\s*\(.*?\)\s*(?=(error\s+)?stop\b|go\s*to\b)", "", text)
         if re.match(r"save\b(?!\s*=)", text) or re.search(r",\s*save\b.*::", text):
@@ -215,7 +215,7 @@ class Checker:
             self.report(statement.line, f"use {used.group(1)} without only")
 
     def walk(self, statement):
-        """Follow the nesting and check what begins or ends here."""
+        """Update the nesting and check what begins or ends here."""
         text = statement.text
         inner = self.scopes[-1] if self.scopes else None
         around = next((scope for scope in reversed(self.scopes) if scope.kind == "procedure"), None)
@@ -267,10 +267,10 @@ class Checker:
         self.require_doc(statement, f"{unit.group(1)} {unit.group(2)}")
         self.scopes.append(Scope(unit.group(1), statement.line, unit.group(2)))
         if unit.group(1) == "module" and unit.group(2) != self.path.stem.lower():
-            self.report(statement.line, f"module {unit.group(2)} stands in a file of another name")
+            self.report(statement.line, f"module {unit.group(2)} is in a file of another name")
 
     def close(self, scope, statement):
-        """Check what is known only at the end of a scope."""
+        """Check rules at the end of a scope."""
         if scope.kind == "module":
             if "implicit" not in scope.statements:
                 self.report(scope.line, f"module {scope.name} has no implicit none")
@@ -289,19 +289,19 @@ class Checker:
             )
 
     def doc_above(self, line):
-        """Documentation that stands right above a line."""
+        """Documentation directly above a line."""
         first = line - 1
         while first > 0 and self.lines[first - 1].lstrip().startswith("!>"):
             first -= 1
         return " ".join(self.lines[first : line - 1])
 
     def require_doc(self, statement, what):
-        """Check that documentation stands above a statement."""
+        """Check that documentation is above a statement."""
         if not statement.documented:
             self.report(statement.line, f"{what} has no !> documentation above it")
 
     def check_declaration(self, statement, scope):
-        """Check a declaration by where it stands."""
+        """Check a declaration by its scope."""
         found = DECLARATION.match(statement.text)
         if not found or not scope:
             return
@@ -323,7 +323,7 @@ class Checker:
 
 
 def folder_breaches(folder, files):
-    """Folders of a program that have too large a part of its lines."""
+    """Folders of a program with too large a fraction of its lines."""
     lines = {}
     for path in files:
         name = path.relative_to(folder).parts[0]

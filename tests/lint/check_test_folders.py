@@ -1,8 +1,8 @@
 """Checks that unit tests follow the folders of the program. Usage:
 check_test_folders.py ROOT
 
-Every folder of src has tests of the same name under tests/unit, and every test uses, itself or by its helpers, a module
-of the folder that it is in. Prints one line a breach and ends with code 1 if there is any.
+Every folder of src has tests in a folder of the same name under tests/unit, and every test uses, itself or by its
+helpers, a module of that folder. Prints one line a breach and ends with code 1 if there is any.
 """
 
 import re
@@ -36,7 +36,7 @@ def used_by(path, helpers):
 
 
 def breaches(root):
-    """One sentence a breach."""
+    """One sentence per breach."""
     owners = {name: path.parent.name for name, path in modules_of(sorted(root.glob("src/*/*.f90"))).items()}
     shared = sorted(root.glob("tests/support/*.f90"))
     for folder in sorted(path for path in (root / "src").iterdir() if path.is_dir()):

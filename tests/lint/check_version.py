@@ -9,7 +9,7 @@ import re
 import sys
 from pathlib import Path
 
-# Files with the version, and where it stands in them.
+# Files with the version, and its position in them.
 PLACES = {
     "CITATION.cff": r"^version: (\S+)$",
     "CHANGELOG.md": r"^## (\S+)",
@@ -21,13 +21,13 @@ PLACES = {
 
 CITED = "src/results/run_provenance.f90"
 DEPRECATED = "src/case/deprecated_keys.f90"
-# Rows of it: group, key, value, replacement, first version that warns.
+# Rows of the table: group, key, value, replacement, first version that warns.
 ROW = re.compile(r"'(\w+) *\| *(\w+) *\| *[^|']+\| *[^|']+\| *(\d+)\.(\d+)\.\d+ *'")
 COMMENT = re.compile(r"^ *!.*$", re.MULTILINE)
 
 
 def overdue(text, version):
-    """Sentences on deprecated keys that the version must refuse: one minor version has warned."""
+    """Sentences on deprecated keys that this version must refuse, as one minor version has warned."""
     major, minor = (int(number) for number in version.split(".")[:2])
     for group, key, since_major, since_minor in ROW.findall(COMMENT.sub("", text)):
         if (major, minor) > (int(since_major), int(since_minor)):
@@ -35,7 +35,7 @@ def overdue(text, version):
 
 
 def differing_citation(cff, source):
-    """Sentences on a title or a year of CITATION.cff that the citation in the program does not have."""
+    """Sentences on a title or a year of CITATION.cff that the program's citation lacks."""
     title = re.search(r'^title: "Implam: ([^"]+)"$', cff, re.MULTILINE).group(1)
     year = re.search(r"^date-released: (\d+)", cff, re.MULTILINE).group(1)
     for part in (title, f"({year})"):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Finds invented and everyday words where the field has a term. Usage: check_words.py ROOT
 
-Looks at names (split at underscores), comments, strings and pages of all sources, tests, decks, pages and scripts.
+Checks names (split at underscores), comments, strings and pages of all sources, tests, decks, pages and scripts.
 WORDS are refused everywhere, NAMES only as parts of names in code. Public names of decks and results stay. Prints one
 line a breach, as file:line: word: what to say instead, and ends with code 1 if there is any.
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FOLDERS = ("src", "tests", "cmake", "doc", "postproc", "input", "packaging", ".ci")
-# Texts in the root.
+# Texts in the root folder.
 FILES = ("README.md", "CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "setup.sh")
 SUFFIXES = (".f90", ".pf", ".c", ".in", ".py", ".toml", ".nml", ".md", ".txt", ".cmake", ".j2", ".sh", ".def", ".ipynb",
             "")  # fmt: skip
@@ -20,7 +20,7 @@ CODE = (".f90", ".pf", ".py")
 # Folders without text of the project, and this checker with its test.
 SKIPPED = re.compile(r"(?:^|/)(?:build|__pycache__|\.venv|[^/]+\.egg-info)/|^tests/lint/(?:test_)?check_words\.")
 
-# Words and phrases, as regular expressions, and what to say instead.
+# Words and phrases, as regular expressions, and their replacements.
 WORDS = {
     r"answers?": "unit-load solution, response, result",
     r"crowds?|company": "many points; batch of right-hand sides",
@@ -50,7 +50,7 @@ WORDS = {
     r"adrift": "unrestrained",
     r"what it was made of": "the data it was computed from",
     r"go(?:es)? through the plate": "perforates",
-    r"follow(?:s|ed)? (?:its|their) damage": "adaptive, grow with the damage",
+    r"follow(?:s|ed|ing)? (?:(?:its|their|the) )?damage": "adaptive, grow with the damage",
     r"ask(?:s|ed)? for more": "require",
     r"bears?|borne": "carry, support; of a name: have",
     r"held against": "compared with, tested by",
@@ -72,6 +72,21 @@ WORDS = {
     r"first touch(?:es)?": "first contact",
     r"(?:ca|wo|is|are|was|were|has|have|had|does|do|did|need|would|should|could|must)n'{1,2}t": "not, written out",
     r"in the plane(?! (?:of|x|y|z)(?!\w))": "in-plane",
+    r"go(?:es)? without stress": "stress-free strains",
+    r"winding (?:paths?|ways?)": "non-proportional path",
+    r"fl(?:y|ies) apart": "separate",
+    r"blows?": "impact",
+    r"dearer": "costlier",
+    r"stopwatch(?:es)?": "timer",
+    r"(?:s|seconds|minutes?) of (?:the|a) processor": "processor time",
+    r"dealt(?: out)?": "distributed, cyclically",
+    r"set anew|in the midst": "changed; within, during",
+    r"to and fro|by turns": "cyclic; alternately",
+    r"whatever the step": "for any step",
+    r"proves? nothing": "the test is void",
+    r"(?:not |un)accounted for": "energy error",
+    r"sound (?:ply|plies|constants)": "undamaged",
+    r"what is not there": "zero, absent, missing",
 }
 # Parts of names in code.
 NAMES = {
@@ -87,7 +102,7 @@ NAMES = {
     r"look|looks|looked": "check, observe",
     r"deepest|steepest|likeliest": "max_ or most probable of what",
 }
-# Names of decks, results and libraries that stay, as they stand in the text.
+# Names of decks, results and libraries that are kept, as in the text.
 PUBLIC = (
     r"least_squares|at_(?:least|most)|most_common|(?:os|pty)\.fork|broken_strip",
     r"[\"`\[]scenes?[\"`\]]",
@@ -107,25 +122,25 @@ class Breach:
     instead: str
 
     def __str__(self):
-        """As compilers print it."""
+        """In the format of compilers."""
         return f"{self.path}:{self.line}: {self.word}: {self.instead}"
 
 
 def pattern(words):
-    """Pattern of words that stand alone or between underscores, and the advice for each."""
+    """Pattern of words alone or between underscores, and the advice for each."""
     bound = [rf"(?<![^\W_])(?:{word})(?![^\W_])" for word in words]
     return [(re.compile(word, re.IGNORECASE), advice) for word, advice in zip(bound, words.values(), strict=True)]
 
 
 EVERYWHERE, IN_NAMES = pattern(WORDS), pattern(NAMES)
-# Any of them, so that most lines are searched once.
+# Any of them, so that most lines are searched only once.
 ANY = re.compile("|".join(word.pattern for word, _ in EVERYWHERE + IN_NAMES), re.IGNORECASE)
 STAYS = re.compile("|".join(f"(?:{name})" for name in PUBLIC))
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 
 
 def code_of(line, suffix):
-    """The names of a line of code, without strings and comment."""
+    """The names in a line of code, without strings and comment."""
     mark = "#" if suffix == ".py" else "!"
     return STRING.sub(" ", line).split(mark)[0]
 

@@ -1,4 +1,4 @@
-"""What the modules of Fortran sources hold: procedures, types with their bindings, generic names and what they use."""
+"""Contents of the modules of Fortran sources: procedures, types with their bindings, generic names and used modules."""
 
 import re
 from dataclasses import dataclass, field
@@ -55,7 +55,7 @@ class Module:
 
 
 def used_names(text):
-    """Local names that a use statement brings, each with its module and name there."""
+    """Local names made accessible by a use statement, each with its module and name there."""
     found = USE.match(text)
     names = {}
     for part in check_style.split_top(found.group(2) or found.group(3) or ""):
@@ -91,7 +91,7 @@ class Reader:
             self.take(statement.text)
 
     def take(self, text):
-        """Take the next statement."""
+        """Process the next statement."""
         procedure = check_style.PROCEDURE.match(text)
         if self.interface is not None:
             self.take_interface(text, procedure)
@@ -147,7 +147,7 @@ class Reader:
             self.module.public.add(self.type.name)
 
     def take_of_type(self, text):
-        """Take a statement of a derived type."""
+        """Process a statement of a derived type."""
         generic, binding = GENERIC.match(text), BINDING.match(text)
         if re.match(r"end\s*type\b", text):
             self.type = None
@@ -165,7 +165,7 @@ class Reader:
             self.type.components.update(declared(text))
 
     def take_interface(self, text, procedure):
-        """Take a statement of an interface."""
+        """Process a statement of an interface."""
         listed = re.match(r"(?:module\s+)?procedure\s*(?:::)?\s*(\w.*)$", text)
         if re.match(r"end\s*interface\b", text):
             self.interface = None

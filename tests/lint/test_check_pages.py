@@ -1,4 +1,4 @@
-"""Shows that the checker of pages accepts good ones and finds each kind of breach."""
+"""Shows that the checker of pages accepts good pages and finds each kind of breach."""
 
 import contextlib
 import io
@@ -38,10 +38,10 @@ FILES = {
 
 
 class PagesTest(unittest.TestCase):
-    """Checks folders made for the purpose."""
+    """Checks temporary folders."""
 
     def said(self, *options, **changed):
-        """Return the exit code and what the checker prints, with some files changed after the index was written."""
+        """Return exit code and output of the checker, with some files changed after the index was written."""
         with tempfile.TemporaryDirectory() as folder:
             for name, text in FILES.items():
                 path = Path(folder, name)
@@ -78,7 +78,7 @@ class PagesTest(unittest.TestCase):
         self.assertNotIn("no_key", self.index)
 
     def test_links(self):
-        """Links to no file and to no heading are found, those in code and of the web left alone."""
+        """Links to no file and to no heading are found; those in code and to the web are ignored."""
         self.assert_breach("# Page\n[x](none.md)\n", "page.md:2: the link to none.md leads nowhere")
         self.assert_breach("# Page\n[x](manual/case.md#none)\n", "manual/case.md has no heading #none")
         self.assert_breach("# Page\n[x](#none)\n", "page.md has no heading #none")
@@ -86,7 +86,7 @@ class PagesTest(unittest.TestCase):
         self.assertEqual(code, 0, said)
 
     def test_names(self):
-        """Names of files that are not there are found, with folder and without."""
+        """Names of files that do not exist are found, with folder and without."""
         for name in (
             "base/none.f90",
             "none.f90",
@@ -99,14 +99,14 @@ class PagesTest(unittest.TestCase):
         self.assert_breach("# Page\nRun `tests/none.py IMPLAM`.\n", "there is no file tests/none.py")
 
     def test_members(self):
-        """A name quoted with its file must stand there, also where the quote runs over two lines."""
+        """A name quoted with its file must be in it, also if the quote extends over two lines."""
         for place in ("in `base/kinds.f90`", "of\n`src/base/kinds.f90`", "(`base/kinds.f90`)"):
             self.assert_breach(f"# Page\nIt is `lost`\n{place}.\n", "kinds.f90 has no lost")
             code, said = self.said(page=f"# Page\nIt is `wp` {place}.\n")
             self.assertEqual(code, 0, said)
 
     def test_quotes(self):
-        """Quoted code must stand in its file, in order."""
+        """Quoted code must be in its file, in order."""
         quote = "# Page\n<!-- from src/base/kinds.f90 -->\n```fortran\n{}\n```\n"
         for lines in ("module none", "implicit none\nmodule kinds", "module kinds\ninteger, parameter :: wp = 8"):
             self.assert_breach(quote.format(lines), "src/base/kinds.f90 has no such line here")
@@ -119,7 +119,7 @@ class PagesTest(unittest.TestCase):
 
     def test_diary(self):
         """Words of a diary are found."""
-        self.assert_breach("# Page\nThe deck as it was then.\n", '"as it was then" describes what was')
+        self.assert_breach("# Page\nThe deck as it was then.\n", '"as it was then" describes an earlier state')
 
     def test_index(self):
         """An index that lacks a page, a key or a term is found, and one without its comments."""
@@ -140,20 +140,20 @@ class PagesTest(unittest.TestCase):
         self.assertIn("has no five questions", self.said(testing=asked.replace("3. Why?\n", "", 1))[1])
 
     def test_groups(self):
-        """The page of a group says what is warned of, and has limits."""
+        """The page of a group lists warnings and limits."""
         for lost in ("What is warned of", "Limits"):
             lacking = FILES["doc/manual/case.md"].replace(f"## {lost}\n", "")
             self.assertIn(f'has a section "{lost}"', self.said(**{"manual/case": lacking})[1])
 
     def test_longest(self):
-        """A sentence of more than forty words is a breach; displayed equations are no part of it."""
+        """A sentence of more than forty words is a breach; displayed equations are not part of it."""
         long = " ".join(["word"] * 41)
         self.assert_breach(f"# Page\n\n{long}.\n", "a sentence of 41 words")
         code, said = self.said(page=f"# Page\n\n{long[5:]}.\n\n$$\n{long} \\tag{{A1}}\n$$\n\nIt is $a = b + c$.\n")
         self.assertEqual(code, 0, said)
 
     def test_equations(self):
-        """Gaps in the numbers of equations are found, equations without one, and references to none."""
+        """Gaps in the numbers of equations are found, equations without a number, and references to missing ones."""
         good = "# Theory\n\n$$\na \\tag{A1}\n$$\n\n$$\nb \\tag{A2}\n$$\n\nBy (A1) and (A2).\n"
         self.assertEqual(self.said(theory=good)[0], 1)  # the index lacks the page
         gap, none = good.replace("A2}", "A3}"), good.replace("(A2)", "(A4)")
@@ -163,7 +163,7 @@ class PagesTest(unittest.TestCase):
         self.assertNotIn("equation", self.said(theory=good)[1])
 
     def test_sentences(self):
-        """Sentences of more than thirty words are counted; code, links and equations are one word or none."""
+        """Sentences of more than thirty words are counted; code, links and equations are at most one word."""
         long = " ".join(["word"] * 31)
         page = f"# Page\n\n{long}. {long[5:]}. `a b` [a b](page.md) et al. it.\n\n    {long}\n\n- {long}\n- a\n"
         page += f"\n|{long}|a|\n"

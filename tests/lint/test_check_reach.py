@@ -1,4 +1,4 @@
-"""Shows that the check of what is reached finds what is not, and raises no false alarm."""
+"""Shows that the check finds names that are not reached, and raises no false alarm."""
 
 import contextlib
 import io
@@ -204,7 +204,7 @@ CASES = {
         "make()",
         ["area_of", "measure", "shape_t%area"],
     ),
-    "what stands in a procedure that is not reached": (
+    "names in a procedure that is not reached": (
         "  call inner(plant)\n",
         "",
         [
@@ -239,7 +239,7 @@ class ReachTest(unittest.TestCase):
         return code, out.getvalue()
 
     def test_cases(self):
-        """What is not reached is reported, and nothing else."""
+        """Unreached names are reported, and no others."""
         for name, (old, new, missing) in CASES.items():
             with self.subTest(name):
                 self.assertIn(old, MAIN)
@@ -249,15 +249,15 @@ class ReachTest(unittest.TestCase):
                 self.assertEqual(code, 1 if missing else 0)
 
     def test_exceptions(self):
-        """One that is needed passes, one that is not fails."""
+        """A needed exception passes, an unneeded one fails."""
         main = MAIN.replace("longest([leaf])", "1")
         self.assertEqual(self.check(main, ["shapes: longest"])[0], 0)
         code, report = self.check(MAIN, ["shapes: longest"])
         self.assertEqual(code, 1)
-        self.assertIn("shapes: longest stands among the exceptions but is reached", report)
+        self.assertIn("shapes: longest is among the exceptions but is reached", report)
 
     def test_an_empty_folder_fails(self):
-        """A check of nothing is no check."""
+        """A check without files fails."""
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(check_reach.main([folder], {}), 1)
 

@@ -124,7 +124,7 @@ class StyleTest(unittest.TestCase):
         return code, out.getvalue()
 
     def test_good_code_passes(self):
-        """No false alarm."""
+        """There is no false alarm."""
         self.assertEqual(self.check(GOOD), (0, "1 files keep the rules\n"))
 
     def test_each_breach_is_found(self):
@@ -137,7 +137,7 @@ class StyleTest(unittest.TestCase):
                 self.assertIn(words, report)
 
     def test_test_files_are_laid_out_well(self):
-        """Of a test file only the layout counts."""
+        """In test files only the layout is checked."""
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
             path = Path(folder, "test_good.pf")
             path.write_text("module test_good\n@test\n", encoding="utf-8")
@@ -146,7 +146,7 @@ class StyleTest(unittest.TestCase):
             self.assertEqual(check_style.main(["--layout", folder]), 1)
 
     def test_many_components_may_have_a_reason(self):
-        """Fifteen are few, and a type with more says because of what."""
+        """Fifteen components are allowed, and more with a reason."""
         few = GOOD.replace("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY.rpartition(', &')[0]}\n")
         self.assertEqual(self.check(few)[0], 0)
         many = GOOD.replace("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n")
@@ -156,7 +156,7 @@ class StyleTest(unittest.TestCase):
         )
 
     def test_large_folders_are_found(self):
-        """A folder with 16 % of the lines, but not one with 14 %, nor any of a small program."""
+        """A folder with 16 % of the lines is a breach, not one with 14 %, nor any of a small program."""
         for heights, code in (([160] + 20 * [42], 1), ([140] + 20 * [43], 0), ([16] + 20 * [4], 0)):
             with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as out:
                 for i, height in enumerate(heights):
@@ -167,11 +167,11 @@ class StyleTest(unittest.TestCase):
                 self.assertEqual("part0:1: 1600 of 10000 lines are more than 15%" in out.getvalue(), code == 1)
 
     def test_the_public_column_keeps_its_name(self):
-        """It was spelt otherwise."""
+        """The public column keeps its spelling."""
         self.assertEqual(self.check("! 'refactorisations', but not a refactorization\n" + GOOD)[0], 0)
 
     def test_an_empty_folder_fails(self):
-        """A check of nothing is no check."""
+        """A check without files fails."""
         with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(check_style.main([folder]), 1)
 

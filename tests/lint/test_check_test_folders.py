@@ -8,10 +8,11 @@ from check_test_folders import breaches
 
 
 class Breaches(unittest.TestCase):
-    """What is found in a small tree."""
+    """Breaches in a small tree."""
 
     def found(self, **files):
-        """Breaches of a tree with these files, whose paths have two underscores for a slash and end with their type."""
+        """Breaches of a tree with these files; in their names two underscores replace a slash and the last part is the
+        type."""
         with tempfile.TemporaryDirectory() as name:
             for path, text in files.items():
                 place = Path(name, *path.split("__")[:-1]).with_suffix("." + path.split("__")[-1])
@@ -20,7 +21,7 @@ class Breaches(unittest.TestCase):
             return list(breaches(Path(name)))
 
     def test_folders(self):
-        """Tests are in the folder of what they use, directly or by a helper."""
+        """Tests are in the folder of the modules that they use, directly or by a helper."""
         source = {"src__plate__shapes__f90": "module shapes\nend module shapes\n",
                   "src__mesh__cells__f90": "module cells\nend module cells\n",
                   "tests__unit__mesh__test_cells__pf": "  use cells, only: cell_t\n"}

@@ -1,4 +1,4 @@
-"""Shows that the checker of words finds them where they stand, and nothing else."""
+"""Shows that the checker of words finds them at their positions, and nothing else."""
 
 import contextlib
 import io
@@ -27,7 +27,7 @@ class CheckWords(unittest.TestCase):
     """Words, names and public names."""
 
     def test_words_are_found_in_comments_strings_and_names(self):
-        """Words stand alone or between underscores; parts of names are refused in code alone."""
+        """Words are found alone or between underscores; parts of names are refused only in code."""
         self.assertEqual(
             found(CODE, "good.f90"),
             [(1, "tells"), (3, "crowd"), (3, "most"), (4, "he"), (4, "settled"), (5, "haste")],
@@ -48,23 +48,30 @@ class CheckWords(unittest.TestCase):
                          [(1, "Whole Plate"), (2, "on the wall")])  # fmt: skip
 
     def test_words_of_loads_and_histories_are_found(self):
-        """They stand for carrying, comparing and history variables."""
+        """Words for carrying, comparing and history variables."""
         self.assertEqual(found("! What the point remembers\n! A plate bears it, held against tests", "a.f90"),
                          [(1, "remembers"), (2, "bears"), (2, "held against")])  # fmt: skip
 
     def test_names_of_python_are_checked_outside_docstrings(self):
-        """Prose in docstrings may use everyday words that are no names."""
+        """Docstrings may use everyday words that are refused in names."""
         self.assertEqual(found('"""A fall\nof much."""\nmuch = 1  # much\nrounds = "much"\n', "a.py"),
                          [(3, "much"), (4, "rounds")])  # fmt: skip
 
     def test_ledgers_and_places_have_their_terms(self):
-        """Energies are recorded, not booked; a key is, and does not stand, in a place."""
+        """Energies are recorded; positions are described by 'is'."""
         self.assertEqual(found("Booked energy leaves no trace.\na comma stands where a key is", "page.md"),
                          [(1, "Booked"), (1, "leaves no trace"), (2, "stands where")])  # fmt: skip
         self.assertEqual(found("handbook, bookmark; it stands alone", "page.md"), [])
 
+    def test_everyday_words_of_tests_are_found(self):
+        """Impacts, timers, paths and stress-free strains have their terms."""
+        text = "! Strains that go without stress\n! A blow, by a stopwatch\n! Layers follow damage along a winding path"
+        self.assertEqual(found(text, "a.f90"), [(1, "go without stress"), (2, "blow"), (2, "stopwatch"),
+                                                (3, "follow damage"), (3, "winding path")])  # fmt: skip
+        self.assertEqual(found("! Blowing winds follow a path; stop, watch.", "a.f90"), [])
+
     def test_advice_is_printed(self):
-        """A breach says what to write instead."""
+        """A breach has its replacement."""
         self.assertEqual(str(check_words.check_text("a tup", "page.md")[0]), "page.md:1: tup: impactor")
 
     def run_on(self, files):
@@ -78,7 +85,7 @@ class CheckWords(unittest.TestCase):
             return code, printed.getvalue()
 
     def test_a_breach_fails(self):
-        """One word in a page, a deck or a script is enough."""
+        """One word in a page, a deck or a script is a breach."""
         self.assertEqual(self.run_on({"doc/page.md": "Lag of damage.\n", "setup.sh": "true\n"}), (0, "0 breaches\n"))
         for name in ("doc/page.md", "input/small/deck.nml", "README.md", "setup.sh", ".ci/run", "packaging/a.def"):
             code, printed = self.run_on({name: "one\nhaste\n"})

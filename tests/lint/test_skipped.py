@@ -29,7 +29,7 @@ test_c (tests.test_c.CTest.test_c) ... ok
 
 
 class SkippedTest(unittest.TestCase):
-    """What is printed for a run."""
+    """The printed list for a run."""
 
     def printed(self, run):
         """Return the lines printed for a run."""
@@ -41,7 +41,7 @@ class SkippedTest(unittest.TestCase):
         return output.getvalue().splitlines()
 
     def test_reasons(self):
-        """Each reason once, and a test that gives none."""
+        """Each reason is printed once, and a test without a reason is named."""
         self.assertEqual(self.printed(RUN), [
             "Skipped:", "  whole: sbatch is not installed", "  silent: without a reason",
             "  parts, a part of it: pyNastran is not installed"])

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 SKIPPED = 77
-# The builder of pages, the reader of Markdown and the theme: doc/requirements.txt.
+# Sphinx, the Markdown parser and the theme: doc/requirements.txt.
 NEEDED = ("sphinx", "myst_parser", "furo")
 
 

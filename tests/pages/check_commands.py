@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tries the commands of the pages that no test runs to the end: decks are checked, quick commands run, options and
+"""Tests the commands of the pages that no test runs completely: decks are checked, quick commands run, options and
 files of the others must exist. Usage: check_commands.py IMPLAM ROOT BUILD
 
 These are the lines of blocks marked `sh long` and `sh elsewhere` (page_commands.py), indented lines that begin with one
@@ -22,11 +22,11 @@ from page_commands import FENCE, INLINE, Command, parts_of
 PROGRAM = r"((?:build/|\.venv/bin/)?implam\S*|tests/\S+\.py|mpirun) (.*)$"
 LINE, FENCED = re.compile(r"^ {4,}" + PROGRAM), re.compile(PROGRAM, re.DOTALL)
 CTEST = re.compile(r"`?ctest [^`|]*?-([RL]) +'?([^\s`']+)")
-# Commands of the program that only read decks, and run at once.
+# Commands of the program that only read decks, and are run.
 QUICK = ("check", "explain", "help", "version", "man", "completion")
 # Commands with a file of an earlier run or of a list.
 LATER = ("restart", "queue")
-# Decks that stand for the reader's own.
+# Placeholders for decks of the reader.
 PLACEHOLDERS = re.compile(r"^(?:deck|panel|plate|DECK)\.nml$")
 
 
@@ -36,7 +36,7 @@ def words_of(text):
 
 
 def indented(lines):
-    """Programs and words of indented commands, lines that go on joined, with their numbers."""
+    """Programs and words of indented commands, continuation lines joined, with their numbers."""
     inside = False
     for number, line in enumerate(lines, 1):
         inside ^= bool(FENCE.match(line))
@@ -57,17 +57,17 @@ def commands(page):
         if match:
             yield part.line, match[1], words_of(match[2])
     for number, line in enumerate(text.splitlines(), 1):
-        # Capital letters stand for what the reader fills in, dots for what is left out.
+        # Capital letters are placeholders of the reader's input, dots mark omissions.
         for command in INLINE.findall(line):
             if not re.search(r"\b[A-Z]{2,}\b|\.\.\.|[|<]|\[", command):
                 yield number, "implam", words_of(command.removeprefix("implam "))
 
 
 class Checker:
-    """Tries commands from the root of the project."""
+    """Tests commands from the root of the project."""
 
     def __init__(self, program, root, build):
-        """Take the program and folders."""
+        """Set the program and folders."""
         self.program, self.root, self.build = program, root, build
         self.helps, self.numbers = {}, {}
 
@@ -79,14 +79,14 @@ class Checker:
         return done.returncode, done.stdout
 
     def help_of(self, name):
-        """What a command of Python prints about its options; empty where it is not installed."""
+        """The help of a Python command; empty where it is not installed."""
         script = self.root / ".venv" / "bin" / name
         if name not in self.helps:
             self.helps[name] = self.run(str(script), "--help")[1] if script.exists() else ""
         return self.helps[name]
 
     def fault_of_program(self, words):
-        """Try the program's own command: run it if quick, else check its deck."""
+        """Test a command of the program: run it if quick, else check its deck."""
         verb = words[0] if words else ""
         if verb in LATER:
             return ""
@@ -105,16 +105,16 @@ class Checker:
         given = [str(self.root / word) if word in decks else word for word in words] if verb in QUICK else [
             "check", *(str(self.root / deck) for deck in decks)]
         code, printed = self.run(self.program, *given)
-        # A run from another's end needs that first.
+        # A run from the final state of another one needs that run first.
         return "" if code == 0 or "initial_state" in printed else printed.strip()
 
     def fault_of_options(self, options, text):
-        """Options that a help or a source does not name."""
+        """Options that a help or a source does not list."""
         unknown = [option for option in options if option.split("=")[0] not in text]
         return f"unknown option {unknown[0]}" if unknown and text else ""
 
     def fault(self, program, words):
-        """What is wrong with a command; empty: nothing."""
+        """The fault of a command; empty: none."""
         name = Path(program).name
         options = [word for word in words if word.startswith("--")]
         if program.startswith("tests/"):
@@ -132,14 +132,14 @@ class Checker:
         return f"there is no {missing[0]}" if missing else self.fault_of_options(options, self.help_of(name))
 
     def tests_of(self, option, pattern):
-        """Number of tests that ctest chooses."""
+        """Number of tests that ctest selects."""
         if (option, pattern) not in self.numbers:
             found = self.run("ctest", "--test-dir", str(self.build), "-N", f"-{option}", pattern)[1]
             self.numbers[option, pattern] = int(re.search(r"Total Tests: (\d+)", found)[1])
         return self.numbers[option, pattern]
 
     def is_registered(self, pattern):
-        """False for tests that are only there with the Python commands and their tools."""
+        """False for tests that exist only with the Python commands and their tools."""
         tools = {"postproc": "implam-plot", "lint_types": "mypy"}
         return all((self.root / ".venv/bin" / tool).exists() for name, tool in tools.items() if name in pattern)
 
@@ -159,7 +159,7 @@ class Checker:
 
 
 def unnamed(root):
-    """Commands of Python that no page of the manual gives."""
+    """Python commands that no page of the manual gives."""
     manual = "".join(page.read_text(encoding="utf-8") for page in (root / "doc" / "manual").glob("*.md"))
     project = tomllib.loads((root / "postproc" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     return [name for name in project["scripts"] if not re.search(rf"\b{name} ", manual)]

@@ -1,8 +1,8 @@
 """Builds the site and checks its links. Usage: check_links.py DOC FOLDER [--inner]        (target linkcheck)
 
 Links within the site: the file exists and has the anchor; a breach ends with code 1. External links: Sphinx's
-linkcheck. A server that reports a missing page is a breach; if no server can be reached, for want of a network, the
-links are listed as skipped. --inner leaves external links out. Ends with code 77 where Sphinx is not installed."""
+linkcheck. A server that reports a missing page is a breach; without a network, that is if no server can be reached, the
+links are listed as skipped. --inner excludes external links. Ends with code 77 where Sphinx is not installed."""
 
 import json
 import subprocess
@@ -13,7 +13,7 @@ from urllib.parse import unquote, urlsplit
 
 from build_site import main as build_site
 
-# What linkcheck calls links that a server serves, at their address or another.
+# Results of linkcheck for links that a server serves, at their address or another.
 SERVED = ("working", "redirected")
 
 
@@ -27,7 +27,7 @@ class Page(HTMLParser):
         self.feed(path.read_text(encoding="utf-8"))
 
     def handle_starttag(self, _tag, attrs):
-        """Keep what a tag defines or links to."""
+        """Store the definitions and links of a tag."""
         for name, value in attrs:
             if name in ("id", "name") and value:
                 self.anchors.add(value)
@@ -36,7 +36,7 @@ class Page(HTMLParser):
 
 
 def inner_breaches(site):
-    """Number of links within the site, and those that lead nowhere."""
+    """Number of links within the site, and the invalid ones."""
     pages = {path: Page(path) for path in sorted(site.rglob("*.html"))}
     checked, wrong = 0, []
     for path, page in pages.items():

@@ -1,4 +1,4 @@
-"""Commands and files of pages, as the tests of this folder read them.
+"""Commands and files of pages, for the tests of this folder.
 
 A block of code marked `sh` holds commands that a test runs, in the order of the page. `sh long` holds commands of
 minutes to hours, which a test starts and stops. `sh elsewhere` holds those that another page or test runs, or that need
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 FENCE = re.compile(r"^( *)```(.*)$")
 SAVED = re.compile(r"^ *<!-- file (\S+) -->$")
-# Marks of blocks with commands, and what a test does with them.
+# Marks of blocks with commands, and their treatment by the tests.
 KINDS = {"sh": "run", "sh long": "start", "sh elsewhere": "check"}
 # A command given within a sentence or a table.
 INLINE = re.compile(r"`(implam (?!FILE|queue)[^`\n]*)`")
@@ -53,7 +53,7 @@ def blocks(page):
 
 
 def is_complete(text):
-    """True if a command does not go on in the next line: quotes are closed, no backslash at the end."""
+    """True if a command is complete on its line: quotes are closed, no backslash at the end."""
     try:
         shlex.split(text, comments=True)
     except ValueError:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Runs the commands of the pages as a reader would: those of blocks marked `sh`, in the order of a page. Each page has
-a folder of its own that is laid out like a clone, with the program and the Python commands on the path. Each command
+"""Runs the commands of the pages like a reader: those of blocks marked `sh`, in the order of a page. Each page has its
+own folder, arranged like a clone, with the program and the Python commands on the path. Each command
 ends with code 0, unless it reports a Python package that is not installed. The times printed show which commands belong
 into `sh long`: those of more than half a minute on a usual processor. These are started, and after some seconds stopped
 by the signal TERM, as a queue would: they end with code 0, with code 75, or by the signal.
@@ -21,27 +21,27 @@ from page_commands import Command, SavedFile, parts_of
 
 SKIPPED = 77
 # Folders of the pages.
-PAGES = ("doc", "doc/manual", "doc/studies", "doc/theory")
-# Seconds after which a long command is stopped, time to read a deck and to do some steps; then for its orderly end.
-STARTED, ENDED = 10, 120
+PAGES = (".", "doc", "doc/manual", "doc/studies", "doc/theory")
+# Seconds after which a long command is stopped, enough to read a deck and do some steps; then for its orderly end.
+STARTED, ENDED = 5, 120
 STOPPED = (0, 75, -signal.SIGTERM)
-# Kinds of commands that are tried here.
+# Kinds of commands that are tested here.
 TRIED = ("run", "start")
-# What commands read of a clone, besides the decks, which they may add files to.
+# Files of a clone that commands read, besides the decks, to which they may add files.
 LINKED = (".venv", "doc", "postproc", "tests")
 
 
 def processor_time():
-    """Seconds of the processor that commands have taken so far."""
+    """Processor seconds used by commands so far."""
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     return usage.ru_utime + usage.ru_stime
 
 
 class Clone:
-    """A folder like a clone in which the program has been built."""
+    """A folder like a clone with the program built."""
 
     def __init__(self, implam, root, folder):
-        """Make it."""
+        """Create it."""
         self.folder = folder
         shutil.rmtree(folder, ignore_errors=True)
         (folder / "build").mkdir(parents=True)
@@ -50,8 +50,11 @@ class Clone:
             if (root / name).exists():
                 (folder / name).symlink_to(root / name)
         shutil.copytree(root / "input", folder / "input")
+        (folder / "temporary").mkdir()
         path = f"{folder / 'build'}:{folder / '.venv' / 'bin'}:{os.environ['PATH']}"
-        self.environment = os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg"}
+        # Scripts that are stopped leave their temporary folders.
+        self.environment = os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg",
+                                         "TMPDIR": str(folder / "temporary")}  # fmt: skip
 
     def save(self, file):
         """Save a file of the page."""
@@ -60,7 +63,7 @@ class Clone:
         path.write_text(file.text, encoding="utf-8")
 
     def run(self, command):
-        """Run a command; return what is wrong and the time of the processor."""
+        """Run a command; return its fault and its processor time."""
         begun = processor_time()
         done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)  # fmt: skip
@@ -72,7 +75,7 @@ class Clone:
         return fault, taken
 
     def start(self, command):
-        """Start a long command and stop it; return what is wrong and the time of the processor."""
+        """Start a long command and stop it; return its fault and its processor time."""
         begun = processor_time()
         with subprocess.Popen(["bash", "-c", command], cwd=self.folder, env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -85,7 +88,7 @@ class Clone:
         return fault, processor_time() - begun
 
     def stop(self, process):
-        """Stop a command and what it has started; return what it has printed."""
+        """Stop a command and its child processes; return the output."""
         os.killpg(process.pid, signal.SIGTERM)
         try:
             return process.communicate(timeout=ENDED)[0]
@@ -95,7 +98,7 @@ class Clone:
 
 
 def run_page(page, clone):
-    """Run the commands of a page; return what is wrong. After a fault the rest of the page is left out."""
+    """Run the commands of a page; return faults. After a fault the rest of the page is skipped."""
     for part in parts_of(page.read_text(encoding="utf-8")):
         if isinstance(part, SavedFile):
             clone.save(part)
@@ -122,7 +125,7 @@ def main(arguments):
             count += 1
     if not count:
         wrong = ["No page has commands to run."]
-    print("\n".join(wrong) or f"The commands of {count} pages run, in {processor_time() - begun:.0f} s of a processor.")
+    print("\n".join(wrong) or f"Commands of {count} pages run in {processor_time() - begun:.0f} s of processor time.")
     return 1 if wrong else 0
 
 

@@ -40,7 +40,7 @@ class OuterLinks(unittest.TestCase):
     """Records of linkcheck with and without a network."""
 
     def test_without_a_network_links_are_skipped(self):
-        """No server has reported anything."""
+        """No server has responded."""
         found = [record("https://a.org", "invalid"), record("#inner", "unchecked"), record("b.md", "local")]
         self.assertEqual(classified(found), ([], [], ["https://a.org"]))
 

@@ -1,5 +1,5 @@
-"""Runs the commands of the tutorial, page by page, as a reader would: the lines of blocks marked `sh`, in one folder
-that has the decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
+"""Runs the commands of the tutorial, page by page, like a reader: the lines of blocks marked `sh`, in one folder with
+the decks. Each command ends with code 0, and each picture of a page is drawn by one of them.
 Usage: tutorial.py IMPLAM ROOT FOLDER [--keep]      (--keep puts the pictures into doc/tutorial/pictures)
 
 Ends with code 77 where the Python commands are not installed."""

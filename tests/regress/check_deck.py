@@ -1,7 +1,7 @@
 """Runs a deck and its variants and compares the histories with what is expected, as implam-regress does (its --help
 describes the format). Usage: check_deck.py IMPLAM EXPECT.toml FOLDER        (implam_post on the PYTHONPATH)
 
-Decks lie in input/verify; `against = "deck.nml"` is the variant's own deck."""
+Decks are in input/verify; `against = "deck.nml"` is the variant's own deck."""
 
 import sys
 from pathlib import Path

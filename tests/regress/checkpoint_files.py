@@ -16,13 +16,13 @@ from pathlib import Path
 from restart import DAMAGE, IMPACT, SHORT, SINGLE_STEP, copy_run, go_on, main, split_at
 from solver_runs import EXIT_FILES, EXIT_STOPPED, checkpoint_of, history_of, require, run, run_deck, write_deck
 
-# What is said of each error of a write.
+# Text of the message for each error of a write.
 REASONS = {errno.ENOSPC: "no space is left on the disk", errno.EDQUOT: "the quota of this user on the disk is used up",
            errno.EFBIG: "the limit of the size of files (ulimit -f) is reached"}
 
 
 def check_damaged(implam, folder, _):
-    """Files that are not checkpoints, or not whole ones."""
+    """Files that are not checkpoints, or incomplete ones."""
     deck = write_deck(folder / "sound", IMPACT, split_at(0.53, SHORT))
     run_deck(implam, deck)
     sound = checkpoint_of(deck.parent).read_bytes()
@@ -41,7 +41,7 @@ def check_damaged(implam, folder, _):
         said = run([implam, "restart", path], EXIT_FILES)
         lines = [line for line in said.splitlines() if line.strip()]
         require(len(lines) == 1 and lines[0].startswith("implam: ") and lines[0].endswith("."),
-                f"{name}: not one sentence is said but\n{said}")
+                f"{name}: instead of one sentence\n{said}")
         require(path.read_bytes() == content, f"{name}: the file was changed.")
         print(f"{name}: {lines[0]}")
     said = run([implam, "restart", folder / "nowhere.h5"], EXIT_FILES)
@@ -49,14 +49,14 @@ def check_damaged(implam, folder, _):
 
 
 def one_sentence_of(said, what):
-    """Return what was said, which must be one sentence."""
+    """Return the printed text, which must be one sentence."""
     lines = [line for line in said.splitlines() if line.startswith("implam: ")]
-    require(len(lines) == 1 and lines[0].endswith("."), f"{what}: not one sentence is said but\n{said}")
+    require(len(lines) == 1 and lines[0].endswith("."), f"{what}: instead of one sentence\n{said}")
     return lines[0]
 
 
 def refuse(implam, checkpoint, what):
-    """Restart where it must be refused; no result may change."""
+    """Restart where it must be refused; no result may be changed."""
     def results():
         return {path.name: path.read_bytes() for path in checkpoint.parent.iterdir() if path.suffix != ".log"}
 
@@ -66,7 +66,8 @@ def refuse(implam, checkpoint, what):
 
 
 def check_found(implam, folder, _):
-    """A case named by its deck's file, and another one beside it that is older, newer or damaged."""
+    """A case named by the file of its deck, and a checkpoint of another one in the folder that is older, newer or
+    damaged."""
     deck = write_deck(folder / "whole", DAMAGE, ["time%end=60e-6"])
     text = deck.read_text(encoding="utf-8")
     unnamed = text.replace("name='damage'", "")
@@ -86,8 +87,8 @@ def check_found(implam, folder, _):
         if name == "rs":
             (here / "damage_restart.h5").write_bytes(content[:-1])
         said = run([implam, *way], folder=here)
-        require(f"{name}_restart.h5" in said, f"Nobody says what it goes on from:\n{said}")
-        require((here / f"{name}_history.csv").read_bytes() == references[name], f"{name} did not go on as it was.")
+        require(f"{name}_restart.h5" in said, f"The checkpoint read is not printed:\n{said}")
+        require((here / f"{name}_history.csv").read_bytes() == references[name], f"{name}: the history differs.")
         histories = sorted(path.name for path in here.glob("*_history.csv"))
         require(histories == ["damage_history.csv", "rs_history.csv"], f"There are {histories}.")
         print(f"{name} by {way}: the same to the last bit")
@@ -97,7 +98,7 @@ def check_found(implam, folder, _):
 
 
 def check_mixed(implam, folder, _):
-    """A run with checkpoints, another one in its folder without, then a restart."""
+    """A run with checkpoints, a run of another deck without checkpoints in its folder, then a restart."""
     deck = write_deck(folder / "both", DAMAGE, ["output%checkpoint_every=50e-6", "output%fields_every=50e-6"])
     run_deck(implam, deck)
     alone = copy_run(deck.parent, folder / "alone")
@@ -107,7 +108,7 @@ def check_mixed(implam, folder, _):
     said = run([implam, other, "--output", deck.parent])
     old = checkpoint.with_name(checkpoint.name + ".old")
     require(not checkpoint.exists() and old.read_bytes() == content and old.name in said,
-            f"The older checkpoint is still there, or nobody says where it is:\n{said}")
+            f"The older checkpoint has not been moved, or its place is not printed:\n{said}")
     refuse(implam, old, "history")
     history_of(deck.parent).rename(folder / "history.csv")
     refuse(implam, old, "fields")
@@ -115,11 +116,11 @@ def check_mixed(implam, folder, _):
     (folder / "history.csv").rename(deck.parent / "damage_history.csv")
     refuse(implam, old, "history alone")
     reference = history_of(alone).read_bytes()
-    require(go_on(implam, alone).read_bytes() == reference, "Alone it does not go on as it was.")
+    require(go_on(implam, alone).read_bytes() == reference, "Without other results the continued history differs.")
 
 
 def check_full(implam, folder, _):
-    """One write fails, anywhere in fields and checkpoint; afterwards there is space again."""
+    """One write fails, anywhere in fields and checkpoint; afterwards writes succeed again."""
     library, count = folder.resolve() / "full.so", folder.resolve() / "count"
     deck = write_deck(folder, DAMAGE)
     source = Path(__file__).resolve().parents[1] / "support/full_disk.c"
@@ -140,12 +141,12 @@ def check_full(implam, folder, _):
         require(not checkpoints, f"Write {number} of {writes} failed, and a checkpoint is left.")
         sentence = one_sentence_of(said, number)
         print(f"write {number} of {writes}: {sentence}")
-        require(reason in sentence, "The reason lacks.")
+        require(reason in sentence, "The reason is missing.")
 
 
 def check_limit(implam, folder, launcher):
     """The limit of the size of files, which by default ends a program by a signal, met at the start and while fields
-    are written. On two ranks HDF5 would wait for ever."""
+    are written. On two ranks HDF5 would wait forever."""
     settings = ["mesh%elements=24, 24", "output%fields_every=10e-6"]
     deck = write_deck(folder, DAMAGE, settings)
     for ranks in (1, 2):

@@ -22,10 +22,10 @@ IN_PLANE, TRANSVERSE = ("sigma11", "sigma22", "tau12"), ("tau13", "tau23")
 
 
 class Results:
-    """The last time in NAME.h5: mesh and fields."""
+    """The last written time of NAME.h5: mesh and fields."""
 
     def __init__(self, history_path):
-        """Read all of it."""
+        """Read mesh and fields."""
         with h5py.File(str(history_path).removesuffix("_history.csv") + ".h5") as file:
             last = file["times"][max(file["times"])]
             mesh = file[f"meshes/{int(last['mesh'][()]):08d}"]
@@ -38,7 +38,7 @@ class Results:
         self.low, self.high = corners[:, 0], corners[:, 1]
 
     def mean_strains(self):
-        """Return membrane strains (von Karman) and curvatures, means of the nine Gauss points, from the nodes."""
+        """Return membrane strains (von Karman) and curvatures from the nodes, as means of the nine Gauss points."""
         u, v, w = self.points["displacement"][self.connectivity].transpose(2, 0, 1)
         # Two components become two scalars in the file.
         tx, ty = (self.points[f"rotation_{i}"].ravel()[self.connectivity] for i in (1, 2))
@@ -55,7 +55,7 @@ class Results:
         return strains[:3].T, strains[3:].T
 
     def derivatives(self, along, across):
-        """Return the derivatives of the nine shapes by x and by y at a place of each element."""
+        """Return the derivatives of the nine shape functions by x and by y at a position in each element."""
         def shapes(t):
             return np.array([t * (t - 1), 2 * (1 - t * t), t * (t + 1)]) / 2, np.array([t - 0.5, -2 * t, t + 0.5])
         (a, da), (b, db) = shapes(along), shapes(across)
@@ -64,7 +64,7 @@ class Results:
 
 
 def heights(plies):
-    """Return z of the faces of the plies from the mid-plane."""
+    """Return z of the surfaces of the plies from the mid-plane."""
     thicknesses = [ply.thickness for ply in plies]
     return np.concatenate([[0], np.cumsum(thicknesses)]) - sum(thicknesses) / 2
 
@@ -76,7 +76,8 @@ def turned(angle, strains):
 
 
 def ply_stresses(material, angle, strains, failures):
-    """Return sigma11, sigma22 and tau12 of strains in the axes of the plate, with what failures left (Table 2)."""
+    """Return sigma11, sigma22 and tau12 for strains in the axes of the plate, with the stiffness left by failures
+    (Table 2)."""
     fibre, cracked, crushed = (failures & bit > 0 for bit in (1, 2, 4))
     left = [np.maximum(0.01**np.sum(modes, axis=0), 1e-3)
             for modes in ([fibre], [fibre, cracked], [fibre, cracked, crushed])]
@@ -119,7 +120,7 @@ def shares_of_crossply(plies):
 
 
 def check_navier(implam, folder):
-    """Stresses of a plate whose stresses are known, all five, in each of its plies."""
+    """All five stresses in each ply of a plate with a known solution."""
     names = [f"ply_{ply}_{name}" for ply in (1, 2, 3) for name in IN_PLANE + TRANSVERSE]
     faces = [f"ply_{ply}_{name}_{face}" for ply in (1, 2, 3) for name in IN_PLANE for face in ("top", "bottom")]
     deck_path = write_deck(folder / "navier", "navier_laminate.nml",
@@ -149,11 +150,11 @@ def check_navier(implam, folder):
 
 
 def check_damaged_layers(implam, folder):
-    """Stresses of layers, some of whose plies have failed, against strains from the nodes' motion."""
+    """Stresses of layers with some failed plies, against strains from the nodal displacements."""
     deck_path = write_deck(folder / "damage", "../small/damage.nml",
                            ["output%fields='displacement','rotation','ply_damage','stress','face_stress'"])
     results, plies = Results(run_deck(implam, deck_path)), plies_of(read_deck(deck_path))
-    require("jump" not in results.points and "delaminated_above" not in results.cells, "Unwanted fields are there.")
+    require("jump" not in results.points and "delaminated_above" not in results.cells, "There are other fields.")
     membrane, curvature = results.mean_strains()
     z, worst, failed = heights(plies), 0.0, 0
     for number, ply in enumerate(plies, start=1):
@@ -164,15 +165,15 @@ def check_damaged_layers(implam, folder):
             rights = ply_stresses(ply.material, ply.angle, membrane + place * curvature, failures)
             for right, name in zip(rights, IN_PLANE, strict=True):
                 found = results.cells[f"ply_{number}_{name}{suffix}"]
-                require(not np.any(found[~inside]), f"{name} of ply {number} stands in elements without this ply.")
+                require(not np.any(found[~inside]), f"{name} of ply {number} is non-zero in elements without this ply.")
                 worst = max(worst, np.max(np.abs(found - right)[inside]) / np.max(np.abs(right)))
     require(failed > 0, "No ply failed.")
     print(f"damaged layers: {failed} failures; the worst stress is {worst:.1e} of the largest of its kind off")
-    require(worst < 1e-13, "The stresses do not follow from the motion of the nodes.")
+    require(worst < 1e-13, "The stresses are not those of the nodal displacements.")
 
 
 def check_energy_release(implam, folder):
-    """G/G_c stands in intact cells along the front only, and its largest value is that of the history."""
+    """G/G_c is non-zero only in intact cells along the front, and its largest value is that of the history."""
     history_path = run_deck(implam, write_deck(folder / "release", "../small/delamination.nml",
                                                ["output%fields='delamination,energy_release'"]))
     results = Results(history_path)
@@ -189,7 +190,7 @@ def check_energy_release(implam, folder):
         common = np.minimum(results.high[i], results.high) - np.maximum(results.low[i], results.low)
         beside = np.all(common > -tiny, axis=1) & (np.sum(common > tiny, axis=1) == 1)
         require(below[i] and not apart[i], "There is a rate where the interface is not intact.")
-        require(np.any(apart & beside), "A rate stands away from the front.")
+        require(np.any(apart & beside), "A rate is given away from the front.")
     print(f"energy release: {np.count_nonzero(ratio)} cells ahead of the front, G/G_c up to {np.max(ratio):.3f}")
 
 
@@ -204,13 +205,13 @@ STRIP = """&case name='strip' kinematics='linear' /
 &static steps=1 /
 &output fields='onset' /
 """
-# Joined, it is the same strip; its lower layer is alone from 10 to 30 mm, where the starter is.
+# With the interface it is the same strip; with the starter the lower layer is separate from 10 to 30 mm.
 JOINED = "&delamination below_ply=2 G_c=1e3 law='cohesive' zone=0.06,0.02 /\n"
 APART = JOINED.replace("G_c", "starter_strip=0.01,0.03 G_c")
 
 
 def check_onset(implam, folder):
-    """The index of a bent strip is the shear stress of beam theory, Q/D times the moment of what is outside."""
+    """The index of a bent strip is the shear stress of beam theory, Q/D times the first moment of the outer part."""
     outer, inner = 1e-3, 0.5e-3
     bending = 2 * (130e9 * (outer**3 - inner**3) + 8e9 * inner**3) / 3
     expected = 50 / 0.02 / bending * 130e9 * (outer**2 - inner**2) / 2 / 50e6
@@ -224,9 +225,9 @@ def check_onset(implam, folder):
         worst = np.max(np.abs(index[loaded] / expected - 1))
         print(f"onset, {name}: {np.count_nonzero(loaded)} elements, {worst:.1e} off beam theory")
         require(worst < 1e-11, "The index is not that of beam theory.")
-        require(set(ply[loaded]) <= {1, 2}, "It stands in another interface.")
+        require(set(ply[loaded]) <= {1, 2}, "The largest index is in another interface.")
         alone = (np.abs(middle - 0.02) < 0.009) & (results.first_ply == 3)
-        require(name != "apart" or (np.any(alone) and not np.any(index[alone])), "A single ply has an interface.")
+        require(name != "apart" or (np.any(alone) and not np.any(index[alone])), "An index is given for a single ply.")
 
 
 INDENTED = """&case name='indented' kinematics='linear' /
@@ -244,7 +245,7 @@ LAYERED = """&delamination below_ply={}  G_c=1e13  law='cohesive'  zone=0.06,0.0
 
 
 def check_opening(implam, folder):
-    """The index where opening alone counts is the force that holds two layers together, beside the load."""
+    """The index of opening alone is the force that ties two layers beside the load."""
     fields = {0: "onset", 1: "gap", 2: "gap"}
     results = {}
     for below, field in fields.items():
@@ -258,21 +259,21 @@ def check_opening(implam, folder):
     held = np.zeros(len(middles[0]))
     for below in (1, 2):
         under = results[below].first_ply == below + 1
-        require(np.array_equal(middles[below][under], middles[0]), "The cells are others.")
+        require(np.array_equal(middles[below][under], middles[0]), "The cells differ.")
         gap = results[below].points["jump"][results[below].connectivity[under]][:, :, 2] @ weights
         held = np.maximum(held, 1e15 * gap)
     away = np.hypot(*middles[0].T)
     opening = 1e3 * results[0].cells["onset_index"]
     beside = (away > 5e-3) & np.all(middles[0] < 20e-3, axis=1)
     worst = np.max(np.abs(opening - held)[beside]) / np.max(held[beside])
-    print(f"opening: up to {np.max(held[beside]):.3g}, {worst:.3f} of it off what holds the layers together")
-    require(worst < 0.1, "Opening is not what holds the layers together.")
+    print(f"opening: up to {np.max(held[beside]):.3g}, {worst:.3f} of it from the tie stress of the layers")
+    require(worst < 0.1, "The opening stress is not the tie stress of the layers.")
     near = (away > 3e-3) & np.all(middles[0] < 20e-3, axis=1)
     worst = np.max(np.abs(opening - held)[near]) / np.max(held[near])
     print(f"nearer, up to {np.max(held[near]):.3g}, {worst:.3f} of it off")
-    require(worst < 0.28, "Opening is far from what holds the layers together near the patch.")
+    require(worst < 0.28, "The opening stress is far from the tie stress of the layers near the patch.")
     pressed = np.all(middles[0] < 2e-3, axis=1)
-    require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens what is under it.")
+    require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens the interface under it.")
 
 
 def table_of(implam, topic):
@@ -283,7 +284,7 @@ def table_of(implam, topic):
 
 
 def fields_of(history_path):
-    """Return place, unit and meaning of the fields in a file by their names, N for the number of a ply."""
+    """Return place, unit and meaning of the fields in a file by their names, N being the number of a ply."""
     found = {}
     with h5py.File(str(history_path).removesuffix("_history.csv") + ".h5") as file:
         last = file["times"][max(file["times"])]
@@ -295,7 +296,7 @@ def fields_of(history_path):
 
 
 def check_table(implam, folder):
-    """Each choice writes the fields that the table gives it, with their units and meanings; likewise the columns."""
+    """Each choice writes the fields of the table, with their units and meanings; likewise the columns."""
     rows = table_of(implam, "fields")
     for choice in sorted({row[3] for row in rows} - {"-"}):
         history_path = run_deck(implam, write_deck(folder / choice, "../small/damage.nml",
@@ -305,8 +306,8 @@ def check_table(implam, folder):
         found = fields_of(history_path)
         require(found == expected, f"{choice}: there are {found} and not {expected}.")
     columns = list(read_history(history_path))
-    # Of the one interface, below ply 2.
-    # Columns of lines and of a filter stand in decks with these only (lines.py, restart_growth.py).
+    # For the only interface, below ply 2.
+    # Columns of lines and of a filter exist only in decks with these (lines.py, restart_growth.py).
     in_all = [row for row in table_of(implam, "history")
               if not row[0].startswith(("line_", "load_factor", "force_filtered", "far_field_stress",
                                            "shortening", "nominal_strain", "gauge_strain"))]
@@ -316,7 +317,7 @@ def check_table(implam, folder):
 
 
 def check_columns(implam, folder):
-    """The columns of every part of the history hold what they are called."""
+    """The columns of every part of the history have the values of their names."""
     deck_path = write_deck(folder / "columns", "../small/damage.nml", ["output%fields='ply_damage'"])
     history_path = run_deck(implam, deck_path)
     history = {name: np.array(values) for name, values in read_history(history_path).items()}
@@ -328,16 +329,16 @@ def check_columns(implam, folder):
     error = energies - history["work_external"] - mass * velocity**2 / 2
     require(np.max(np.abs(error - history["energy_error"])) < 1e-15, "The energies do not add up to their error.")
     indentation = history["impactor_displacement"] - history["patch_deflection"]
-    require(np.allclose(history["indentation"], indentation, rtol=0, atol=1e-12), "The indentation is another one.")
+    require(np.allclose(history["indentation"], indentation, rtol=0, atol=1e-12), "The indentation differs.")
     steps = np.diff(history["time"])
-    require(np.allclose(steps, history["step_length"][1:], rtol=1e-9), "The step has another length.")
+    require(np.allclose(steps, history["step_length"][1:], rtol=1e-9), "The length of the step differs.")
     for name in ("iterations", "force_iterations", "contact_iterations"):
         require(np.all(np.cumsum(history[name]) == history[f"total_{name}"]), f"total_{name} is not the sum.")
     grown = history["delaminated_area"] - history["delaminated_area"][0]
     fracture = deck.number("delamination", "G_c") * grown
     require(np.allclose(history["energy_delamination"], fracture, rtol=1e-12) and grown[-1] > 0, "G_c A is missing.")
     released = history["energy_released"][-1] / fracture[-1]
-    require(0.5 < released < 1.5, f"{released} of G_c A is set free.")
+    require(0.5 < released < 1.5, f"{released} of G_c A is released.")
     require(np.all(history["solves"] >= history["total_iterations"]), "There are fewer solves than iterations.")
     require(np.all(history["refactorisations"] <= history["solves"]), "There are more factorizations than solves.")
     results = Results(history_path)
@@ -345,7 +346,7 @@ def check_columns(implam, folder):
     for bit, name in ((1, "fibre_failures"), (2, "matrix_cracks"), (4, "matrix_crushings")):
         counted = 4 * sum(np.count_nonzero(failure & bit) for failure in failures)
         require(history[name][-1] == counted, f"{name}: {history[name][-1]}, but {counted} in the fields.")
-    print(f"columns: {released:.2f} of G_c A set free, {history['matrix_cracks'][-1]:.0f} cracks as in the fields")
+    print(f"columns: {released:.2f} of G_c A released, {history['matrix_cracks'][-1]:.0f} cracks as in the fields")
 
 
 def main(implam, folder):

@@ -1,8 +1,8 @@
 """Limiting cases of clamps with a force: rigid clamps and no clamps. Usage: clamp_force.py IMPLAM FOLDER
 
-Four clamps that press hard hold the plate as rigid ones do, four that hardly press let it lift off as without any, and
-those between never hold it by more than they press, which they do while it is off the frame. Energy is conserved with
-all of them."""
+Four clamps with a large force act as rigid ones, four with a very small force let the plate lift off as without clamps,
+and those between hold it with their force while it is off the frame, and never with more. Energy is conserved with all
+of them."""
 
 import sys
 from pathlib import Path
@@ -30,13 +30,13 @@ SAME, CONSERVED = 5e-6, 1e-7  # of the largest force; of the impact. Measured: 1
 
 
 def apart(one, other):
-    """Return how far the forces of two runs are apart, over the largest."""
+    """Return the difference of the forces of two runs, over the largest."""
     require(len(one["force"]) == len(other["force"]), "Steps differ.")
     return max(abs(a - b) for a, b in zip(one["force"], other["force"], strict=True)) / max(one["force"])
 
 
 def main(implam, folder):
-    """Run all ways."""
+    """Run all variants."""
     runs = {}
     for name, clamps in WAYS.items():
         path = Path(folder) / name / "deck.nml"
@@ -52,10 +52,10 @@ def main(implam, folder):
                "largest hold over the force": -held / (4 * FORCE), "energy error": lost}
     for name, value in figures.items():
         print(f"{name}: {value:.3e}")
-    require(figures["hard from rigid"] < SAME, "Clamps that press hard do not hold as rigid ones.")
-    require(figures["light from none"] < SAME, "Clamps that hardly press hold the plate.")
-    require(min(figures["rigid from none"], figures["some from none"]) > 0.01, "Clamps make no difference.")
-    require(abs(figures["largest hold over the force"] - 1) < SAME, "Clamps hold by more or less than they press.")
+    require(figures["hard from rigid"] < SAME, "Clamps with a large force differ from rigid ones.")
+    require(figures["light from none"] < SAME, "Clamps with a small force hold the plate.")
+    require(min(figures["rigid from none"], figures["some from none"]) > 0.01, "Clamps have no effect.")
+    require(abs(figures["largest hold over the force"] - 1) < SAME, "The reaction of the clamps is not their force.")
     require(lost < CONSERVED, "Energy is not conserved.")
 
 

@@ -1,12 +1,13 @@
 """An impact and the compression of the damaged panel.
 Usage: compression.py TRIAL IMPLAM FOLDER [LAUNCHER...]     (LAUNCHER takes the number of ranks as its last word)
 
-chain    the damage of the impact is inherited, the panel comes to rest and fails in compression; the ledger closes
+chain    the damage of the impact is taken over, the panel comes to rest and fails in compression; the ledger closes
 again    from a checkpoint within the run, without that of the impact: bitwise
-ranks    begun on three ranks, continued on two and, from a checkpoint in the midst, on three: bitwise
-mapped   on finer cells, of the half and of the full plate: areas, energies and damage stay; from a checkpoint, bitwise
+ranks    begun on three ranks, continued on two and, from a checkpoint within the run, on three: bitwise
+mapped   on finer cells, of the half and of the full plate: the same areas, energies and damage; from a checkpoint,
+         bitwise
 mapped_ranks   the same on two ranks: bitwise
-whole    the full plate from the half that was struck: to round-off until it fails
+whole    the full plate from the half in the impact: to round-off until it fails
 buckling the elastic panel in the frame against eigenvalue and postbuckling of CalculiX
 bent     the same panel with a stress-free imperfection instead of the pressure
 closing  with cracks that close, also from a checkpoint: energies balance
@@ -39,17 +40,17 @@ IMPACT, COMPRESSION = "cai_impact", "cai_compression"
 CHECKPOINT = f"{IMPACT}_restart.h5"
 AREA = 40e-3 * 2.4e-3
 REST_TIME, LENGTH = 270e-6, 60e-3
-# Of all energy. Measured: 2e-10 before plies and interfaces break again, 2e-9 with cracks that close, 3.6e-3 in the
-# collapse on these coarse cells.
+# Relative to the total energy. Measured: 2e-10 before plies and interfaces fail further, 2e-9 with cracks that close,
+# 3.6e-3 in the collapse on these coarse cells.
 CLOSED, CLOSED_IN_COLLAPSE = 5e-8, 1e-2
 CLOSED_BY_CLOSING = 1e-7
-# Of the largest value up to half of the run. Measured: 4e-15.
+# Relative to the largest value up to half of the run. Measured: 4e-15.
 ROUNDED = 1e-11
-# Finer cells of the compression; areas and energies then, relative, are kept to rounding.
+# Finer cells of the compression; areas and energies are then kept to round-off, relative.
 FINER = ["mesh%elements=14, 22"]
 MAPPED = 1e-12
 # Measured, after impacts whose steps differ by 1.5 %: matrix .4 and 2.6, ply energy .5 and 12 %, first step +2.5 and
-# 2.0 % of fracture, 1.1e-2 and 2e-3 of the energy.
+# 2.0 % of fracture energy, 1.1e-2 and 2e-3 of the total energy.
 EXTENDED = {"matrix_damage_area": 0.05, "energy_ply_damage": 0.15}
 GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 2e-2, 1e-6
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
@@ -74,15 +75,15 @@ def strike(implam, folder):
 
 
 def press(implam, folder, settings=(), launcher=()):
-    """Run the compression of a struck plate; return the path of its history."""
+    """Run the compression of a plate after impact; return the path of its history."""
     run([*launcher, implam, deck_of(folder, COMPRESSION, settings)], folder=folder)
     return folder / f"{COMPRESSION}_history.csv"
 
 
 def check_start_of_ledger(log, impact):
-    """The log says what the impact has dissipated and what the plate, which starts at rest, still stores."""
+    """The log reports the energy dissipated by the impact and the strain energy of the plate, which starts at rest."""
     found = re.search(r"ledger starts with (\S+): dissipated by that run (\S+), strain (\S+), kinetic (\S+)\.", log)
-    require(found, "The log does not say with what the ledger starts.")
+    require(found, "The log does not report the energies at the start of the ledger.")
     total, dissipated, strain, kinetic = map(float, found.groups())
     before = sum(impact[f"energy_{name}"][-1] for name in ("delamination", "ply_damage", "friction"))
     require(abs(dissipated - before) < 1e-3 * before, f"The impact has dissipated {before}, not {dissipated}.")
@@ -97,7 +98,7 @@ def go_on(implam, folder, launcher=()):
 
 
 def check_chain(implam, folder, _):
-    """From the impact to the failure."""
+    """From the impact to failure in compression."""
     impact = strike(implam, folder)
     rows = read_history(press(implam, folder))
     for name in ("energy_delamination", "energy_ply_damage", "energy_friction"):
@@ -114,35 +115,36 @@ def check_chain(implam, folder, _):
           f"{rows['energy_kinetic'][start]:.2e} of {impact['energy_kinetic'][-1]:.2e}, damped "
           f"{rows['energy_damping'][-1]:.2e}")
     require(before < CLOSED and after < CLOSED_IN_COLLAPSE, "The ledger does not close.")
-    require(rows["energy_damping"][-1] == rows["energy_damping"][start + 1] > 0, "Damping goes on under the load.")
+    require(rows["energy_damping"][-1] == rows["energy_damping"][start + 1] > 0, "Damping continues under the load.")
     for i in (start, strongest):
         stress = -rows["line_force_1"][i] / AREA
         require(abs(rows["far_field_stress"][i] - stress) < 1e-6 * abs(stress), "The stress is not load over area.")
-        require(abs(rows["shortening"][i] + 2 * rows["line_displacement_1"][i]) < 1e-15, "Ends do not come closer.")
+        require(abs(rows["shortening"][i] + 2 * rows["line_displacement_1"][i]) < 1e-15, "The shortening differs.")
     summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
     require(summary["has_failed"] and summary["residual_strength"] >= rows["far_field_stress"][strongest] > 100e6,
-            "It does not fail, or not at its largest stress.")
+            "The panel does not fail, or not at its largest stress.")
     require(all(place["area"] > 0 and place["onset"] is place["first_growth"] is None
                 for place in summary["interfaces"]), "Delaminations of the impact are events of the compression.")
     require("onset before this run" in (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8"),
-            "The log does not say that they are older.")
+            "The log does not report them as older.")
     collapse = summary["collapse"]
     print(f"failure {summary['failure_code']}")
-    # Whether fibres fail across beside the delaminations differs by rounding.
+    # Whether fibres fail across the width beside the delaminations depends on round-off.
     torn = any(entry["failed_across_width"] for entry in collapse["fibres"])
-    require(summary["failure_code"] == ("M(DL)DM" if torn else "DDV"), "The code is not that of what went across.")
+    require(summary["failure_code"] == ("M(DL)DM" if torn else "DDV"), "The code is not that of the failure.")
     for entry, place in zip(collapse["interfaces"], summary["interfaces"], strict=True):
         require(entry["failed_across_width"] and entry["width_before"] < 1 and 0 < entry["area_before"] < entry["area"]
-                and place["ply_above"] == entry["ply_above"], "Interfaces do not grow across.")
+                and place["ply_above"] == entry["ply_above"], "Delaminations do not grow across the width.")
     require(sum(entry["area"] for entry in collapse["fibres"]) > 0
             and not any(entry["area_before"] for entry in collapse["fibres"]), "Fibres do not fail in the collapse.")
-    # Half of the plies run along x: with E1, E2 and nu21 small, (E1 + E2)/2 within a few per cent undamaged and flat.
+    # Half of the plies have fibres along x: for small E2 and nu21 the modulus is within a few per cent of (E1 + E2)/2,
+    # if undamaged and flat.
     print(f"strength {summary['residual_strength']:.4g}, modulus {summary['effective_modulus']:.4g}")
     require(0.85 < summary["effective_modulus"] / ((130e9 + 7.7e9) / 2) < 1, "The modulus is not that of the plies.")
 
 
 def check_again(implam, folder, _):
-    """From a checkpoint while layers buckle and break, after the impact's has been removed."""
+    """From a checkpoint while layers buckle and fail, after the checkpoint of the impact has been removed."""
     strike(implam, folder)
     path = press(implam, folder, ["output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."])
     reference = folder / "reference.csv"
@@ -152,7 +154,7 @@ def check_again(implam, folder, _):
 
 
 def check_restart(implam, folder, reference, launcher=()):
-    """Restart from the checkpoint in the midst: rows beyond it are computed anew and are those of the reference."""
+    """Restart from the checkpoint within the run: rows after it are computed again and equal those of the reference."""
     path = folder / f"{COMPRESSION}_history.csv"
     rows = path.read_text(encoding="utf-8").splitlines(keepends=True)
     path.write_text("".join([*rows[:-20], *rows[-1:]*20]), encoding="utf-8")
@@ -161,7 +163,7 @@ def check_restart(implam, folder, reference, launcher=()):
 
 
 def check_ranks(implam, folder, launcher):
-    """Three ranks from the impact's checkpoint, that of one; two go on, and three from the midst of the collapse."""
+    """Three ranks from the impact's checkpoint of one rank; continued on two, and on three from within the collapse."""
     strike(implam, folder)
     settings = ["output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."]
     reference = folder / "reference.csv"
@@ -174,7 +176,7 @@ def check_ranks(implam, folder, launcher):
 
 
 def check_mapped(implam, folder, launcher):
-    """On other cells than the impact's, of which some lie across the old ones."""
+    """On other cells than those of the impact, which are not aligned with them."""
     strike(implam, folder)
     path = press(implam, folder, [*FINER, "output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."])
     rows, reference = read_history(path), folder / "reference.csv"
@@ -183,7 +185,7 @@ def check_mapped(implam, folder, launcher):
     impact = json.loads((folder / f"{IMPACT}_summary.json").read_text(encoding="utf-8"))
     for entry, place in zip(kept["interfaces"], impact["interfaces"], strict=True):
         require(entry["area_before"] == place["area"] > 0 and entry["energy_before"] == place["energy"],
-                "The mapping begins from another area or energy than the impact's.")
+                "The area or energy before mapping is not that of the impact.")
     pairs = [(f"{name} below ply {entry['ply_above']}", entry[f"{name}_before"], entry[f"{name}_after"])
              for entry in kept["interfaces"] for name in ("area", "energy")]
     pairs += [(name, kept[f"{name}_before"], kept[f"{name}_after"])
@@ -192,16 +194,16 @@ def check_mapped(implam, folder, launcher):
         # Strains of the new cells vary about the mean of the old ones, and extend matrix cracks.
         bound = EXTENDED.get(name, MAPPED)
         require(-MAPPED * before <= after - before <= bound * before, f"{name}: {before} before, {after} after.")
-    # Jumps between the old nodes may damage an interface once the first step meets them.
+    # Jumps interpolated between the old nodes may damage an interface in the first step.
     grown = rows["energy_delamination"][0] / impact["energy_delamination"] - 1
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
     lost = rows["energy_algorithmic"][0] / total
     error = max(abs(value) for value, time in zip(rows["energy_error"], rows["time"], strict=True)
                 if time < 0.5 * rows["time"][-1]) / total
-    print(f"delamination grows by {grown:.1e} in the first step, which takes {lost:.1e} of the energy; "
+    print(f"delamination grows by {grown:.1e} in the first step, which dissipates {lost:.1e} of the energy; "
           f"error {error:.1e}")
     require(0 <= grown < GROWN_BY_MAPPING and abs(lost) < LOST_BY_MAPPING and error < CLOSED_AFTER_MAPPING,
-            "The first step from a mapped state grows, takes or loses more.")
+            "In the first step from a mapped state damage or the energy error is larger.")
     if launcher:
         other = press(implam, folder, FINER, [*launcher, "2"])
     else:
@@ -215,7 +217,7 @@ def check_mapped(implam, folder, launcher):
 
 
 def check_unfolded(implam, folder, half):
-    """From the half that was struck to finer cells of the full plate."""
+    """From the half in the impact to finer cells of the full plate."""
     text = (folder / f"{COMPRESSION}.nml").read_text(encoding="utf-8")
     line = re.search(r"&line .*/", text).group()
     other = line.replace("at=30e-3", "at=-30e-3").replace("-0.4e-3", "0.4e-3")
@@ -226,11 +228,11 @@ def check_unfolded(implam, folder, half):
     whole = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["mapping"]
     for here, there in zip(whole["interfaces"], half["interfaces"], strict=True):
         for name in ("area_after", "energy_after"):
-            require(abs(here[name] / there[name] - 1) < MAPPED, "The full plate has another damage than its half.")
+            require(abs(here[name] / there[name] - 1) < MAPPED, "The damage of the full plate differs.")
 
 
 def check_whole(implam, folder, _):
-    """The full plate, pressed from both ends, begins from the half."""
+    """The full plate, compressed from both ends, starts from the half."""
     strike(implam, folder)
     half = read_history(press(implam, folder))
     text = (folder / f"{COMPRESSION}.nml").read_text(encoding="utf-8")
@@ -250,7 +252,7 @@ def check_whole(implam, folder, _):
 
 
 def check_refused(implam, folder, _):
-    """Nothing is written then."""
+    """No results are written then."""
     strike(implam, folder)
     strange = folder / "strange.h5"
     strange.write_bytes(b"no checkpoint")
@@ -281,7 +283,7 @@ def check_refused(implam, folder, _):
     ]
     (folder / "link.h5").symlink_to(CHECKPOINT)
     for path in (CHECKPOINT, f"./{CHECKPOINT}", f".//{CHECKPOINT}", folder.resolve() / CHECKPOINT, "link.h5"):
-        cases.append(([f"case%name='{IMPACT}'", f"initial_state%from='{path}'"], ["writes its own end"], EXIT_DECK))
+        cases.append(([f"case%name='{IMPACT}'", f"initial_state%from='{path}'"], ["writes at its own end"], EXIT_DECK))
     before = (folder / CHECKPOINT).read_bytes()
     for settings, words, code in cases:
         said = run([implam, deck_of(folder, COMPRESSION, settings)], code, folder)
@@ -290,10 +292,10 @@ def check_refused(implam, folder, _):
         require(not list(folder.glob(f"{COMPRESSION}_*")) and (folder / CHECKPOINT).read_bytes() == before,
                 f"{settings}: something was written.")
     check = [implam, "check", deck_of(folder, COMPRESSION)]
-    require("was stopped at" not in run(check, folder=folder), "A complete impact is called stopped.")
+    require("was stopped at" not in run(check, folder=folder), "A complete impact is reported as stopped.")
     run([implam, f"{IMPACT}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     stopped = re.search(r"is of a run that was stopped at \S+ of \S+: ", run(check, folder=folder))
-    require(stopped, "An incomplete impact is not warned of.")
+    require(stopped, "There is no warning of an incomplete impact.")
     run([implam, f"{COMPRESSION}.nml", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
     (folder / f"{COMPRESSION}_summary.json").unlink()
     run([implam, "restart", f"{COMPRESSION}_restart.h5", "--wall-limit", "1e-3"], EXIT_STOPPED, folder)
@@ -309,7 +311,7 @@ def check_refused(implam, folder, _):
 
 def southwell(rows):
     """Return the buckling stress by Southwell's plot."""
-    # With a lateral load in proportion to the compression, load factor over deflection falls to zero in a line.
+    # With a lateral load in proportion to the compression, load factor over deflection decreases linearly to zero.
     first, last = (next(i for i, load in enumerate(rows["load_factor"]) if load > part) for part in (0.59, 0.79))
     loads = [rows["load_factor"][i] for i in (first, last)]
     ratios = [rows["load_factor"][i] / rows["deflection"][i] for i in (first, last)]
@@ -318,44 +320,44 @@ def southwell(rows):
 
 
 def check_buckling(implam, folder, _):
-    """Southwell's plot, the path beyond, and gauges back to back."""
+    """Southwell's plot, the postbuckling path, and strain gauges on both faces."""
     rows = read_history(run_deck(implam, write_deck(folder, "framed_panel.nml")))
     stress = southwell(rows)
     end = rows["far_field_stress"][-1]
     print(f"buckles at {stress / 1e6:.1f} MPa, {100 * (stress / EIGENVALUE - 1):+.2f} %; {end / 1e6:.1f} MPa at "
           f"1.4 mm, {100 * (end / BEYOND - 1):+.2f} %")
-    require(abs(stress / EIGENVALUE - 1) < 0.02, "It buckles at another stress.")
-    require(abs(end / BEYOND - 1) < 0.02, "It carries another stress beyond.")
+    require(abs(stress / EIGENVALUE - 1) < 0.02, "The buckling stress differs.")
+    require(abs(end / BEYOND - 1) < 0.02, "The postbuckling stress differs.")
     summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
     front, back = (rows[f"gauge_strain_{number}"][-1] for number in (1, 2))
     bending = 100 * (front - back) / (front + back)
     print(f"percent bending {summary['percent_bending']:.2f}")
     require(not summary["has_failed"] and abs(summary["percent_bending"] / bending - 1) < 1e-9 and bending > 30,
-            "It does not bend, or it fails.")
-    # Before it bends both gauges have the strain of the ends, shorter by the strips that the frame holds no tighter.
+            "The panel does not bend, or it fails.")
+    # Before bending both gauges have the nominal strain, except for the strips that the frame does not clamp.
     front, back, nominal = (rows[name][4] for name in ("gauge_strain_1", "gauge_strain_2", "nominal_strain"))
     print(f"gauges {front:.4e} and {back:.4e} under {nominal:.4e}")
     require(abs((front + back) / 2 + nominal) < 0.005 * nominal, "Gauges have another strain than the plate.")
 
 
 def check_bent(implam, folder, _):
-    """An initial deflection grows as the load nears buckling, by 1/(critical/load - 1) at first."""
+    """An initial deflection is amplified by 1/(critical/load - 1) at first."""
     settings = ["plate%imperfection=0.02e-3", "pressure%value=0"]
     rows = read_history(run_deck(implam, write_deck(folder, "framed_panel.nml", settings)))
     stress = southwell(rows)
     print(f"buckles at {stress / 1e6:.1f} MPa, {100 * (stress / EIGENVALUE - 1):+.2f} %; carries "
           f"{rows['far_field_stress'][-1] / 1e6:.1f} MPa at 1.4 mm")
-    require(abs(stress / EIGENVALUE - 1) < 0.02, "It buckles at another stress.")
-    require(abs(rows["far_field_stress"][-1] / BEYOND - 1) < 0.02, "It carries another stress beyond.")
+    require(abs(stress / EIGENVALUE - 1) < 0.02, "The buckling stress differs.")
+    require(abs(rows["far_field_stress"][-1] / BEYOND - 1) < 0.02, "The postbuckling stress differs.")
     summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
-    # The front turns round where the panel bends most, once bending outweighs the compression.
-    print(f"gauges turn round at {summary['buckling_strain']}")
+    # The strain of the front gauge reverses where bending exceeds the compression.
+    print(f"strains of the gauges reverse at {summary['buckling_strain']}")
     strongest = max(rows["nominal_strain"])
-    require(0.5 * strongest < summary["buckling_strain"] < strongest, "Gauges turn round at another strain.")
+    require(0.5 * strongest < summary["buckling_strain"] < strongest, "Gauge strains reverse at another strain.")
 
 
 def check_closing(implam, folder, _):
-    """Fibres torn by the impact carry compression."""
+    """Fibres with closed tensile cracks of the impact carry compression."""
     closing = ["ply_damage%crack_closure=.true."]
     strike(implam, folder)
     press(implam, folder)
@@ -376,12 +378,12 @@ def check_closing(implam, folder, _):
 
 
 def check_coupon(implam, folder, _):
-    """The strength of the fibres."""
+    """A specimen of 0 degree plies fails at the strength of the fibres."""
     run_deck(implam, write_deck(folder, "coupon.nml"))
     summary = json.loads(next(folder.glob("*_summary.json")).read_text(encoding="utf-8"))
     print(f"strength {summary['residual_strength'] / 1e6:.2f} MPa, modulus {summary['effective_modulus'] / 1e9:.3f}")
-    require(summary["has_failed"] and abs(summary["residual_strength"] / 1250e6 - 1) < 0.01, "It does not fail at XC.")
-    require(abs(summary["effective_modulus"] / 130e9 - 1) < 0.005, "Its modulus is not E1.")
+    require(summary["has_failed"] and abs(summary["residual_strength"] / 1250e6 - 1) < 0.01, "Strength is not XC.")
+    require(abs(summary["effective_modulus"] / 130e9 - 1) < 0.005, "The modulus is not E1.")
 
 
 def main(trial, implam, folder, launcher):

@@ -1,4 +1,4 @@
-"""Manual: runs that create energy or move too fast warn of it, and others do not.
+"""Manual: runs that create energy or load the plate too fast warn of it, and others do not.
 Usage: energy_warning.py IMPLAM FOLDER"""
 
 import re
@@ -33,16 +33,16 @@ SLOW = """&case name='slow' strict=.true. /
 &indentation law='hertz' /
 &time integrator='central_difference' end=1e-3 mass_scaling=10 /
 """
-# Laid on the plate: the energy of the first steps is far below that under the weight.
+# Gravity from rest: the energy of the first steps is far below that under the full weight.
 LAID = SLOW.replace("travel=1e-4", "mass=0.2 velocity=0 gravity=9.81").replace("end=1e-3", "end=0.1e-3")
-# The first step of a sudden load loses a quarter of its work, which is a millionth of that at the end.
+# The first step of a sudden load dissipates a quarter of its work, which is a millionth of that at the end.
 SUDDEN = re.sub(r"&impactor.*\n&indentation.*\n", "&pressure value=1e5 /\n", SLOW).replace(" patch=4e-3", "")
-# A line that sets in within a tenth of the run and holds the plate then, far faster than a period.
+# A line with a rise of a tenth of the run, far shorter than a period, that is then constant.
 SET_IN = TURNED.replace("rise=2e-4", "history='fixed' rise=1e-5").replace("end=1e-3", "end=1e-4")
 
 
 def warnings_of(implam, folder, history, time):
-    """Return how often a run under pressure warns of created energy."""
+    """Return the number of warnings of created energy of a run under pressure."""
     folder.mkdir(parents=True, exist_ok=True)
     deck = folder / "pressed.nml"
     deck.write_text(f"{BEGINNING}&pressure value=2e6 history='{history}' /\n&time end=1e-3 {time} /\n", "utf-8")
@@ -51,34 +51,34 @@ def warnings_of(implam, folder, history, time):
 
 
 def main(implam, folder):
-    """Loads that set in, gradually or at once, and steps that are too long."""
+    """Loads applied gradually or at once, and steps that are too long."""
     folder = Path(folder)
     # Up to 10 % of the energy in the first step, which is a millionth of that at the end.
     for step in ("2e-6", "10e-6", "50e-6"):
         printed = warnings_of(implam, folder / f"ramp_{step}", "ramp", f"step={step}")
-        require(printed == 0, f"A ramp with steps of {step} s warns although it creates no energy.")
-    # The first step creates 4 %, the second takes out more.
-    require(warnings_of(implam, folder / "step", "step", "step=10e-6") == 0, "A load at once warns in its first step.")
-    # Half a period a step and no damping.
+        require(printed == 0, f"A ramp with steps of {step} s warns without energy created.")
+    # The first step creates 4 %, the second dissipates more.
+    require(warnings_of(implam, folder / "step", "step", "step=10e-6") == 0, "A sudden load warns in its first step.")
+    # Steps of half a period without damping.
     require(warnings_of(implam, folder / "long", "step", "step=50e-6 rho_inf=1") == 1, "Long steps do not warn once.")
-    # A rotation that sets in smoothly: the first steps lose more than 1 % of an energy far below that at the end.
+    # A rotation with a smooth start: the first steps dissipate more than 1 % of an energy far below that at the end.
     turned = folder / "turned"
     turned.mkdir(parents=True, exist_ok=True)
     (turned / "turned.nml").write_text(TURNED, encoding="utf-8")
     printed = run([implam, turned / "turned.nml", "--output", turned])
-    require("of the energy" not in printed, "A line that moves smoothly warns of the energy of its first steps.")
+    require("of the energy" not in printed, "A line with a smooth start warns of the energy of its first steps.")
     slow = folder / "slow"
     slow.mkdir(parents=True, exist_ok=True)
     (slow / "slow.nml").write_text(SLOW, encoding="utf-8")
     printed = run([implam, slow / "slow.nml", "--output", slow])
-    require("of the energy" not in printed, "A travel that begins smoothly warns of the energy of its first steps.")
+    require("of the energy" not in printed, "A travel with a smooth start warns of the energy of its first steps.")
     (slow / "slow.nml").write_text(LAID, encoding="utf-8")
     run([implam, slow / "slow.nml", "--output", slow])
     (slow / "slow.nml").write_text(SUDDEN, encoding="utf-8")
     run([implam, slow / "slow.nml", "--output", slow])
     (turned / "turned.nml").write_text(SET_IN, encoding="utf-8")
     printed = run([implam, turned / "turned.nml", "--output", turned])
-    require("the motion is too fast for a quasi-static test" in printed, "Nobody warns of a line that sets in fast.")
+    require("the motion is too fast for a quasi-static test" in printed, "There is no warning of a fast line.")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """Deflections by other programs: exported panels, intact, with failed plies and delaminated; and the example of the
-manual. Starters of decks as the program takes them. Usage: exchange.py calculix|mystran|manual|starters IMPLAM FOLDER
+manual; starters of decks against the program. Usage: exchange.py calculix|mystran|manual|starters IMPLAM FOLDER
 
 Ends with 77 where ccx, mystran or pyNastran is not installed."""
 
@@ -31,14 +31,15 @@ APART = ["delamination%below_ply=4", "delamination%G_c=1e9", "delamination%zone=
          "delamination%starter=0.06", "delamination%contact='none'"]
 HINGED = ["plate%edges='simple'", "plate%in_plane='free'", "pressure%value=1.2e5"]
 CROSS_PLY = ["laminate%angles=0, 90, 0, 90, 90, 0", "plate%symmetry='quarter'", "mesh%elements=6, 6"]
-# An initial deflection stiffens the plate, here threefold; under a small load that is linear, too.
+# An initial deflection stiffens the plate, here threefold; under a small load this is linear, too.
 SHALLOW = ["case%kinematics='von_karman'", "plate%imperfection=2e-3", "pressure%value=100"]
-# Settings, and how far deflections may be apart, over the largest one of the face: on the struck face and on the back.
-# Measured with CalculiX: 0.13, 0.11, 0.47 and 1.4, 0.08 and 0.36, 0.32 and 1.05 %; with MYSTRAN 0.29, 0.28, 0.53 and
-# 0.67, 0.19 and 0.43, 0.35 and 0.44 %. The ends of a delamination are where the models part: doc/manual/exchange.md.
+# Settings, and the allowed differences of deflections relative to the largest one of the face: on the struck face and
+# on the back. Measured with CalculiX: 0.13, 0.11, 0.47 and 1.4, 0.08 and 0.36, 0.32 and 1.05 %; with MYSTRAN 0.29,
+# 0.28, 0.53 and 0.67, 0.19 and 0.43, 0.35 and 0.44 %. The models differ at the ends of a delamination:
+# doc/manual/exchange.md.
 PANELS = {"whole": ([], 0.004, 0.004), "failed": (FAILED, 0.004, 0.004), "apart": (APART, 0.007, 0.018),
           "both": (FAILED + APART + HINGED, 0.004, 0.007), "quarter": (FAILED + APART + CROSS_PLY, 0.006, 0.014)}
-# Compared with CalculiX alone. Measured: 0.26 %.
+# Compared only with CalculiX. Measured: 0.26 %.
 CURVED = {"shallow": (SHALLOW, 0.004, 0.004)}
 
 # Decks with an interface, and keys of it: by default a front with a starter, or cohesive without.
@@ -61,12 +62,12 @@ STARTERS = [
 
 
 def fields_of(history):
-    """Return the fields beside a history."""
+    """Return the path of the fields of a history."""
     return Path(str(history).removesuffix("_history.csv") + ".h5")
 
 
 def own_deflections(history):
-    """Return the deflection on the struck face and on the back by place."""
+    """Return the deflection on the struck face and on the back by position."""
     with h5py.File(fields_of(history)) as file:
         last = file["times"][max(file["times"])]
         mesh = file[f"meshes/{int(last['mesh'][()]):08d}"]
@@ -78,12 +79,12 @@ def own_deflections(history):
 
 
 def place_of(coordinates):
-    """Return a place that can be looked up; that of the mirrored quarter is the quarter's."""
+    """Return a position as a key; positions of the mirrored quarter map to the quarter."""
     return tuple(np.round(coordinates, 9) + 0.0)
 
 
 def other_deflections(panel, numbered, with_middles):
-    """Return the same from deflections by grid."""
+    """Return the same from deflections by grid point."""
     mesh = shell_mesh(panel, with_middles)
     faces = [], []
     for element in mesh.elements:
@@ -94,7 +95,7 @@ def other_deflections(panel, numbered, with_middles):
 
 
 def calculix(results, folder):
-    """Return the deflections by grid that CalculiX finds."""
+    """Return the deflections by grid point computed by CalculiX."""
     require(to_abaqus([str(results), "-o", str(folder / "panel.inp")]) == 0, "implam-to-abaqus failed.")
     with contextlib.chdir(folder):
         run(["ccx", "panel"])
@@ -103,7 +104,7 @@ def calculix(results, folder):
 
 
 def mystran(results, folder):
-    """Return the deflections by grid that MYSTRAN finds."""
+    """Return the deflections by grid point computed by MYSTRAN."""
     require(to_nastran([str(results), "--z0", "-o", str(folder / "panel.bdf")]) == 0, "implam-to-nastran failed.")
     with contextlib.chdir(folder):
         run(["mystran", "panel.bdf"])
@@ -119,11 +120,11 @@ def mystran(results, folder):
 
 
 def differences(own, other):
-    """Return the largest difference on each face over the largest deflection of it."""
+    """Return the largest difference on each face over the largest deflection of the face."""
     found = []
     for mine, theirs in zip(own, other, strict=True):
         shared = [place for place in theirs if place in mine]
-        require(len(shared) > len(theirs) / 5, "The grids are not in the same places.")
+        require(len(shared) > len(theirs) / 5, "The grid points have other positions.")
         largest = max(abs(w) for w in mine.values())
         found.append(max(abs(mine[place] - theirs[place]) for place in shared) / largest)
     return found
@@ -146,11 +147,11 @@ def check(program, implam, folder):
               f"{softest[name]:.4g}, {max(other[0].values()):.4g} by {program}; differences "
               f"{100 * found[0]:.2f} % on the struck face, {100 * found[1]:.2f} % on the back")
         require(found[0] <= struck and found[1] <= back, f"{name}: the deflections differ.")
-    require(softest["failed"] > 1.05 * softest["whole"], "The failed plies do not show in the deflection.")
+    require(softest["failed"] > 1.05 * softest["whole"], "The failed plies do not increase the deflection.")
 
 
 def check_starters(implam, folder):
-    """Compare the cells delaminated before the run by a deck with those of the program, on the cells of the run."""
+    """Compare the initially delaminated cells of a deck with those of the program, on the cells of the run."""
     numbers = []
     for (deck, settings), keys in STARTERS:
         path = write_deck(folder, deck, settings + keys)
@@ -169,7 +170,7 @@ def check_starters(implam, folder):
 
 
 def check_manual(implam, folder):
-    """Do what the example of the manual does; it prints what the page shows, and the panel comes back damaged."""
+    """Run the example of the manual; its output is that on the page, and the panel is read back with its damage."""
     page = (ROOT / "doc" / "manual" / "exchange.md").read_text(encoding="utf-8").split("\n## Example\n")[1]
     lines = "".join(re.findall(r"```sh\n(.*?)```", page, re.DOTALL)).splitlines()
     commands = {line.split()[0]: line.split()[1:] for line in lines if line.startswith("implam")}
@@ -179,10 +180,10 @@ def check_manual(implam, folder):
     with contextlib.chdir(folder):
         bulk, *options = commands["implam-from-nastran"]
         code, printed = quietly(from_nastran.main, [str(ROOT / bulk), *options])
-        require(code == 0 and printed == shown, f"The page does not show what is printed:\n{printed}")
+        require(code == 0 and printed == shown, f"The page does not show the output:\n{printed}")
         missing = [line for line in Path("panel.nml").read_text().splitlines()
                    if not line.startswith(("!", "&mesh", "    ")) and line not in deck]
-        require(not missing, f"The page's deck has not got {missing}.")
+        require(not missing, f"The page's deck lacks {missing}.")
         Path("panel.nml").write_text(deck, encoding="utf-8")
         run([implam, "check", "panel.nml"])
         run([implam, *commands["implam"]])
@@ -201,7 +202,7 @@ def quietly(main, arguments):
 
 
 def check_damage(apart, failed):
-    """Fail unless the example's panel is damaged as the bulk data that pyNastran reads."""
+    """Fail unless pyNastran reads the damage of the example's panel from the bulk data."""
     from pyNastran.bdf.bdf import read_bdf
     require(apart > 20 and failed > 20, f"{apart} delaminated cells and {failed} have failed plies.")
     model = read_bdf("results/panel_panel.bdf", debug=None)

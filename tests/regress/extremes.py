@@ -1,12 +1,12 @@
 """Extreme cases of extremes.toml against independent figures and bounds: each ends with its
 result, or in one sentence with the exit code that the row gives.
 
-usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names hold one of the words; with none of them
-all)
+usage: extremes.py IMPLAM FOLDER [--explicit] [NAME ...]    (rows whose names contain one of the words; without
+words all)
 
-With --explicit the rows in time that have no front run by central differences, those of more than 1e6 steps excepted:
-for these the check has to give the number. Whatever a row asks for, a run that ends well has finite numbers only and a
-ledger that closes.
+With --explicit the transient rows without a front run by central differences, except those of more than 1e6 steps: for
+these the check must give the number. Whatever a row expects, a completed run has finite numbers only and a ledger that
+closes.
 """
 
 import json
@@ -27,7 +27,7 @@ sys.path.insert(0, str(HERE.parent / "bench"))
 from modal_impact import Model, response, condensed, patch_weight, section
 from solver_runs import ENERGIES, TrialError, change_deck, exit_code_of, read_history, require
 
-LONGEST_ROW = 60  # seconds of the processor: a run that hangs ends
+LONGEST_ROW = 60  # processor seconds, after which a run is ended
 LEDGER = 1e-4  # of the largest energy
 RECORDED = 1e-6  # relative error of an energy that is a toughness times an area
 SAME = 1e-6  # relative difference of a run in other units
@@ -35,7 +35,7 @@ MAX_STEPS = 1e6  # of a run by central differences
 LEDGER_EXPLICIT = 1e-2  # of the largest energy, by central differences
 
 
-# Powers of mass, length and time of the units that keys have, and of columns that are compared.
+# Powers of mass, length and time in the units of keys, and of the columns that are compared.
 DIMENSIONS = {"length": (0, 1, 0), "time": (0, 0, 1), "mass": (1, 0, 0), "mass/volume": (1, -3, 0),
               "length/time": (0, 1, -1), "length/time^2": (0, 1, -2), "pressure": (1, -1, -2),
               "pressure/length": (1, -2, -2), "energy": (1, 2, -2), "energy/area": (1, 0, -2),
@@ -46,12 +46,12 @@ SYSTEMS = {"mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1.0, 1e3, 1e3), "mm-mN-kg-s"
 
 
 def factor(dimension, system):
-    """What a value in SI is multiplied by to be one of a system of units."""
+    """The factor that converts a value in SI to a system of units."""
     return math.prod(unit**power for unit, power in zip(SYSTEMS[system], dimension, strict=True))
 
 
 def converted(implam, deck, system):
-    """A deck in SI in another system of units, by the units that the program says its keys have."""
+    """A deck in SI converted to another system of units, by the units of its keys that the program prints."""
     def multiplied(found):
         words = [f"{float(word) * factor(DIMENSIONS[unit], system):.12g}" for word in found[2].split(",")]
         return found[1] + ", ".join(words)
@@ -71,7 +71,7 @@ def converted(implam, deck, system):
 
 
 class Row:
-    """One run: its exit code, what it said, its keys in effect, its history and summary."""
+    """One run: its exit code, output, keys in effect, history and summary."""
 
     def __init__(self, implam, folder, deck, seconds=LONGEST_ROW):
         shutil.rmtree(folder, ignore_errors=True)
@@ -103,7 +103,7 @@ class Row:
         return numbers if len(numbers) > 1 else numbers[0]
 
     def numbers(self, group, name):
-        """The values of a key that may have several."""
+        """The values of a key that may have several values."""
         value = self.key(group, name)
         return value if isinstance(value, list) else [value]
 
@@ -124,7 +124,7 @@ class Row:
 
 
 def pressed_plate(model, pressure, shape):
-    """Deflection of the middle of a simply supported plate under a pressure, by Navier's series of a Mindlin plate."""
+    """Deflection at the centre of a simply supported plate under a pressure, by Navier's series of a Mindlin plate."""
     number = 1 if shape == "sine" else 201
     m, n = np.meshgrid(np.arange(1, number + 1, 2.0), np.arange(1, number + 1, 2.0), indexing="ij")
     load = pressure if shape == "sine" else 16 * pressure / (math.pi**2 * m * n)
@@ -132,14 +132,14 @@ def pressed_plate(model, pressure, shape):
 
 
 def stiffness_of_middle(model, patch):
-    """Force per deflection of a simply supported plate that is loaded over a patch in its middle."""
+    """Force over deflection of a simply supported plate loaded over a patch at its centre."""
     sizes = [int(6 * length / patch) + 40 for length in model.length]
     m, n = np.meshgrid(np.arange(1, sizes[0], 2.0), np.arange(1, sizes[1], 2.0), indexing="ij")
     return 1 / float(np.sum(patch_weight(model, patch, m, n) / condensed(model, m, n)))
 
 
 def spring_peak(row, stiffness):
-    """Largest force of a ball that presses on a spring slowly, through its contact: all of its energy is stored."""
+    """Largest force of a ball slowly in contact with a spring: all of its energy is stored."""
     k, energy = row.key("indentation", "k"), row.summary["energy_impact"]
     low, high = 0.0, k**0.4 * (2.5 * energy)**0.6
     for _ in range(200):
@@ -150,7 +150,7 @@ def spring_peak(row, stiffness):
 
 
 def compare(what, found, expected, tolerance):
-    """Report a relative difference; fail if it is too large."""
+    """Print a relative difference; fail if it is too large."""
     error = found / expected - 1
     require(abs(error) <= tolerance, f"{what} is {found:.6g} and should be {expected:.6g} ({100 * error:+.3g} %)")
     return f"{what} {100 * error:+.2g} %"
@@ -170,13 +170,13 @@ def check_modes(row, tolerances):
 
 
 def check_pressed(row, tolerance):
-    """Deflection of a pressed, simply supported plate."""
+    """Deflection of a simply supported plate under pressure."""
     expected = pressed_plate(row.model(), row.key("pressure", "value"), row.key("pressure", "distribution"))
     return compare("deflection", row.history["deflection"][-1], expected, tolerance)
 
 
 def check_weakened(row, bounds):
-    """Deflection of a pressed, simply supported plate of failed plies over what it was before."""
+    """Deflection of a simply supported plate of failed plies under pressure, over that of the undamaged one."""
     expected = pressed_plate(row.model(), row.key("pressure", "value"), row.key("pressure", "distribution"))
     found = row.history["deflection"][-1] / expected
     require(bounds[0] <= found <= bounds[1], f"the deflection is {found:.6g} times that without damage")
@@ -184,14 +184,15 @@ def check_weakened(row, bounds):
 
 
 def check_clamped(row, tolerance):
-    """Deflection of a pressed, clamped, isotropic, thin plate: 1.26532e-3 q a**4/D (Taylor and Govindjee 2004)."""
+    """Deflection of a clamped, isotropic, thin plate under pressure: 1.26532e-3 q a**4/D (Taylor and Govindjee
+    2004)."""
     model = row.model()
     expected = 1.26532e-3 * row.key("pressure", "value") * model.length[0]**4 / section(model)[0][0]
     return compare("deflection", row.history["deflection"][-1], expected, tolerance)
 
 
 def check_strip(row, tolerance):
-    """Deflection of a strip on two simple supports whose sides are free: a beam under its load, with its shear."""
+    """Deflection of a strip on two simple supports with free sides: a beam under its load, with shear."""
     model = row.model()
     (d11, d12, d22, _), (shear, _), *_ = section(model)
     load, length = row.key("pressure", "value"), model.length[0]
@@ -200,13 +201,13 @@ def check_strip(row, tolerance):
 
 
 def check_spring(row, tolerance):
-    """Peak force of a heavy ball: the plate is a spring."""
+    """Peak force of a heavy ball: the plate acts as a spring."""
     peak = spring_peak(row, stiffness_of_middle(row.model(), row.key("mesh", "patch")))
     return compare("peak", max(row.history["force"]), peak, tolerance)
 
 
 def check_hertz(row, tolerance):
-    """Peak force on a plate that does not give: k**0.4 (1.25 m v**2)**0.6."""
+    """Peak force on a rigid plate: k**0.4 (1.25 m v**2)**0.6."""
     peak = row.key("indentation", "k")**0.4 * (2.5 * row.summary["energy_impact"])**0.6
     return compare("peak", max(row.history["force"]), peak, tolerance)
 
@@ -219,13 +220,13 @@ def check_first(row, tolerance):
 
 
 def check_fracture(row, starter):
-    """Energy of fracture: toughness times what has delaminated beyond the starter."""
+    """Fracture energy: toughness times the delaminated area beyond the starter."""
     expected = row.key("delamination", "G_c") * (row.history["delaminated_area"][-1] - starter)
     return compare("energy of fracture", row.history["energy_delamination"][-1], expected, RECORDED)
 
 
 def check_within(row, bounds):
-    """Columns' largest values between bounds."""
+    """Largest values of columns within bounds."""
     printed = []
     for name, (low, high) in bounds.items():
         found = max(row.history[name])
@@ -235,7 +236,7 @@ def check_within(row, bounds):
 
 
 def check_warns(row, sentence):
-    """A warning that must be there."""
+    """A warning that must be printed."""
     require(re.search(f"warning.*{sentence}", row.said), f"nothing warns of '{sentence}'")
     return f"warns: {sentence}"
 
@@ -246,14 +247,14 @@ CHECKS = {"modes": check_modes, "pressed": check_pressed, "weakened": check_weak
 
 
 def check_ledger(row, tolerance=LEDGER):
-    """The energies add up."""
+    """The energies balance."""
     largest = max(max(map(abs, row.history[name])) for name in ENERGIES)
     missing = max(map(abs, row.history["energy_error"]))
-    require(missing <= tolerance * largest, f"the ledger misses {missing:.3g} of {largest:.3g}")
+    require(missing <= tolerance * largest, f"the energy error is {missing:.3g} of {largest:.3g}")
 
 
 def check_row(entry, row):
-    """Hold a run against what its row says; return what was found."""
+    """Compare a run with the expectations of its row; return the figures."""
     if "exit" in entry:
         require(row.code == entry["exit"], f"exit code {row.code}, not {entry['exit']}: {row.said[-300:]}")
         printed = [line for line in row.said.splitlines() if re.search(entry["says"], line)]
@@ -267,7 +268,7 @@ def check_row(entry, row):
 
 
 def explicit(deck):
-    """A deck in time by central differences, without what only implicit steps read; nothing if of another kind."""
+    """A transient deck changed to central differences, without keys of implicit steps; None for other decks."""
     if ("&time" not in deck and "&impactor" not in deck) or "&static" in deck or "starter" in deck:
         return None
     deck = re.sub(r"\b(step|rho_inf|integrator)=('\w+'|\S+)", "", deck)
@@ -278,7 +279,7 @@ def explicit(deck):
 
 
 def run_explicit(implam, folder, entry, deck):
-    """Run a row by central differences and hold it against what does not depend on the integrator."""
+    """Run a row by central differences and check what does not depend on the integrator."""
     check = subprocess.run([implam, "check", "/dev/stdin"], input=deck, text=True, capture_output=True, check=False)
     said = check.stdout + check.stderr
     steps = re.search(r"About ([\d.e+]+) steps?", said)
@@ -312,13 +313,13 @@ def check_units(implam, folder, deck, system, row):
 
 
 def processor_seconds():
-    """Time of the processor that this process and the runs it has ended took."""
+    """Processor time of this process and the runs it has ended."""
     return sum(usage.ru_utime + usage.ru_stime
                for usage in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
 
 
 def main(implam, folder, *words):
-    """Run the rows and print a line each."""
+    """Run the rows and print a line for each."""
     table = tomllib.loads((HERE / "extremes.toml").read_text("utf-8"))
     failures, begun, rows = [], processor_seconds(), 0
     by_explicit = "--explicit" in words
@@ -345,8 +346,8 @@ def main(implam, folder, *words):
             failures.append(entry["name"])
             found = f"FAILS: {failure}"
         print(f"{entry['name']:44s} {processor_seconds() - since:5.1f} s  {found}", flush=True)
-    print(f"{rows - len(failures)} of {rows} rows hold, {processor_seconds() - begun:.0f} s of the processor")
-    require(not failures, f"What fails: {', '.join(failures)}.")
+    print(f"{rows - len(failures)} of {rows} rows hold, {processor_seconds() - begun:.0f} s of processor time")
+    require(not failures, f"Failed rows: {', '.join(failures)}.")
 
 
 if __name__ == "__main__":

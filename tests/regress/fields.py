@@ -17,13 +17,13 @@ TIMES = 1e-6 * np.arange(10, 61, 10)
 
 
 def check_fields(history_path):
-    """Fail unless both readers find the mesh and the deflection that the history reports."""
+    """Fail unless both readers find the mesh and the deflection of the history."""
     base = str(history_path).removesuffix("_history.csv")
     history = read_history(history_path)
     with h5py.File(base + ".h5") as file:
         stored = [file["times"][name]["time"][()] for name in sorted(file["times"])]
         require(np.allclose(stored, TIMES, rtol=1e-12), f"{base}.h5 has the times {stored}.")
-        require(file["provenance/deck"][()].decode().startswith("!"), f"{base}.h5 has not got the deck.")
+        require(file["provenance/deck"][()].decode().startswith("!"), f"{base}.h5 does not contain the deck.")
     with meshio.xdmf.TimeSeriesReader(base + ".xdmf") as reader:
         points, cells = reader.read_points_cells()
         require(points.shape == ((2 * SIDE + 1)**2, 3), f"{base}.xdmf has {len(points)} points.")
@@ -40,7 +40,7 @@ def check_fields(history_path):
 
 
 def check_ended(implam, folder):
-    """The fields of the end, without others, are there once, also after a restart of the ended run."""
+    """The fields at the end, requested alone, are written once, also after a restart of the completed run."""
     deck = write_deck(folder, "sun_chen_tan_sun.nml", [*SETTINGS[:2], "output%fields_every=0"])
     base = str(run_deck(implam, deck)).removesuffix("_history.csv")
     run([implam, "restart", checkpoint_of(folder)])
@@ -50,7 +50,7 @@ def check_ended(implam, folder):
 
 
 def check_moved(implam, folder):
-    """An ended run that is continued in another folder has its last fields there, in both files."""
+    """A completed run that is restarted in another folder has its last fields there, in both files."""
     deck = write_deck(folder, "sun_chen_tan_sun.nml", SETTINGS[:3])
     name = run_deck(implam, deck).name.removesuffix("_history.csv")
     away = folder / "away"

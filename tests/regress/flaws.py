@@ -1,4 +1,4 @@
-"""Cracks of plies as flaws of the interface beside them.
+"""Ply cracks as flaws of the adjacent interface.
 Usage: flaws.py whole|ranks|restart IMPLAM FOLDER [LAUNCHER...]
 (LAUNCHER takes the number of ranks as its last word)
 
@@ -24,8 +24,8 @@ from solver_runs import (
 DECK = "../small/cohesive.nml"
 CRACKS = ["ply_damage%d=100", "material%XT=1517e6", "material%XC=1590e6", "material%YC=253e6", "material%Sf=500e6",
           "material%Sm23=105e6", "material%YT=46e6", "material%S12=105e6"]
-# Settings with cracks, the key by which they are flaws, and time of a checkpoint. Steps are short enough
-# that none is rejected: whether a longer one finds equilibrium is within rounding while cracks open.
+# Settings with cracks, the key by which they are flaws, and time of a checkpoint. Steps are short enough that none is
+# rejected: whether a longer one converges while cracks open depends on round-off.
 WAYS = {"cracks_as_flaws": ([*CRACKS, "delamination%strength_opening=27e6", "delamination%strength_shear=60e6",
                              "time%end=200e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 160e-6),
         "shear_cracks": ([*CRACKS, "time%end=280e-6", "time%step=2.5e-6", "solver%tolerance=1e-8"], 240e-6)}
@@ -33,7 +33,7 @@ PARTS = {"quarter": "6, 6", "half_x": "6, 12", "point": "6, 12", "none": "12, 12
 
 
 def check_whole(implam, folder, key, _):
-    """With flaws and without; on parts of the plate and on all of it."""
+    """With flaws and without; on parts of the plate and on the full plate."""
     found = {}
     cracks = WAYS[key][0]
     settings = [*cracks, f"delamination%{key}=.true."]
@@ -43,7 +43,7 @@ def check_whole(implam, folder, key, _):
     without = read_history(run_deck(implam, write_deck(folder / "without", DECK, cracks)))
     areas = [history["delaminated_area"][-1] for history in (without, found["quarter"])]
     print(f"delaminated {1e6*areas[0]:.3f} mm2 without flaws, {1e6*areas[1]:.3f} mm2 with them")
-    require(areas[0] < 1e-6 and areas[1] > 20e-6, "Flaws make no difference.")
+    require(areas[0] < 1e-6 and areas[1] > 20e-6, "Flaws have no effect.")
     for symmetry, history in found.items():
         for name in ("force", "delaminated_area", "energy_delamination", "energy_ply_damage"):
             expected = found["none"][name]
@@ -54,13 +54,13 @@ def check_whole(implam, folder, key, _):
 def check_ranks(implam, folder, key, launcher):
     """One rank and two."""
     cracks, end = WAYS[key]
-    # Cracks of one rank have the other's points beside them only in the middle of a full plate.
+    # Cracks of one rank have points of the other rank beside them only at the centre of a full plate.
     settings = [*cracks, f"delamination%{key}=.true.", "plate%symmetry='none'", "mesh%elements=12, 12",
                 f"time%end={end}"]
     one, two = (read_history(run_deck(implam, write_deck(folder / name, DECK, settings), launch))
                 for name, launch in (("one", ()), ("two", (*launcher, "2"))))
     left_out = [name for name in one if "iterations" in name or name in ("factorizations", "solves")]
-    require(one["delaminated_area"][-1] > 1e-6, "Nothing grows.")
+    require(one["delaminated_area"][-1] > 1e-6, "The delamination does not grow.")
     difference, name = largest_difference(two, one, left_out)
     require(difference <= 1e-6, f"{name} differs by {difference:.2g} of its largest value.")
 
@@ -70,11 +70,11 @@ def check_restart(implam, folder, key, _):
     cracks, time = WAYS[key]
     settings = [*cracks, f"delamination%{key}=.true.", f"output%checkpoint_every={time}"]
     area = check_goes_on(implam, folder, DECK, settings)["delaminated_area"]
-    require(area[-1] > area[-16] > 0, "Nothing grows after the checkpoint.")
+    require(area[-1] > area[-16] > 0, "The delamination does not grow after the checkpoint.")
 
 
 def trial(kind, implam, folder, *launcher):
-    """One of them."""
+    """Run one trial."""
     checks = {"whole": check_whole, "ranks": check_ranks, "restart": check_restart}
     for key in WAYS:
         checks[kind](implam, Path(folder) / key, key, launcher)

@@ -1,8 +1,8 @@
 """Stiffness by closed form, finer meshes and a test: the T700/M21 panel on a window of 125 x 75 mm, 1 to 2 %.
 Usage: frame.py IMPLAM FOLDER
 
-A heavy impactor at a low speed: the plate follows it without motion of its own, so force over deflection is the
-stiffness. Thin: without transverse shear, which Kirchhoff's closed form leaves out."""
+A heavy impactor at a low speed: the plate is quasi-static, so force over deflection is the stiffness. Thin: without
+transverse shear, which Kirchhoff's closed form neglects."""
 
 import sys
 from pathlib import Path
@@ -22,9 +22,9 @@ DECK = """&case name='frame' kinematics='linear' /
 """
 WINDOW = "window=0.125,0.075"
 PANEL, WINDOW_ALONE = ("0.150,0.100", "12,16"), ("0.125,0.075", "10,14")
-# Support, plate, thin, stiffness in N/mm and its tolerance: Kirchhoff's closed form; two as found on twice the cells,
-# between the simple and the clamped window; the panel as tested, 2380 after its indentation is taken off; the same with
-# four clamps, as found on twice the cells.
+# Support, plate, thin, stiffness in N/mm and its tolerance: Kirchhoff's closed form; two values found with twice the
+# elements, between the simple and the clamped window; the panel as tested, 2380 less its indentation; the same with
+# four clamps, as found with twice the elements.
 TRIALS = {
     "kirchhoff": (WINDOW, WINDOW_ALONE, True, 2550.0, 0.01),
     "edge": (WINDOW, PANEL, False, 2611.0, 0.01),
@@ -50,7 +50,8 @@ SAME = 1e-6  # relative
 
 
 def stiffness_of(implam, folder, support, plate, thin):
-    """Return force over deflection at the largest force, and the largest part of the force that the frame lacks."""
+    """Return force over deflection at the largest force, and the largest difference of force and reaction over the
+    force."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "deck.nml"
     stiff = 1e3 if thin else 1
@@ -64,7 +65,7 @@ def stiffness_of(implam, folder, support, plate, thin):
 
 
 def check_clamps_between_nodes(implam, folder):
-    """A plate, its clamp halfway between nodes, and their mirror image have the same reactions."""
+    """A plate with a clamp halfway between nodes and its mirror image have the same reactions."""
     reactions = []
     for sign, other in ("+-", "-+"):
         path = folder / f"clamp{sign}" / "deck.nml"
@@ -84,7 +85,7 @@ def try_frames(implam, folder):
     for name, (support, plate, thin, expected, tolerance) in TRIALS.items():
         stiffness, missing = stiffness_of(implam, Path(folder) / name, support, plate, thin)
         within = abs(stiffness / expected - 1) <= tolerance and missing <= CLOSEST
-        print(f"{name}: {stiffness:.1f} N/mm, expected {expected:g}; the reaction misses {missing:.1e} of the force, "
+        print(f"{name}: {stiffness:.1f} N/mm, expected {expected:g}; reaction off by {missing:.1e} of the force, "
               f"{'pass' if within else 'FAIL'}", flush=True)
         passed &= within
     require(passed, "A frame is too stiff or too soft.")

@@ -1,8 +1,8 @@
 """The plate without interface: the frame supports the lowest layer, a weak interface stays closed, 3 % of the force.
 Usage: frame_layers.py IMPLAM FOLDER
 
-The interface below the first ply has a strength in opening that its share of the reaction exceeds if the frame holds
-the first layer, so that the plies below it hang on that interface. Held at the lower face it is compressed: it does not
+If the frame supported the first layer, its reaction would exceed the opening strength of the interface below the first
+ply, which would carry the plies below it. With the support at the lower face the interface is compressed: it does not
 delaminate, and the force is that without interface."""
 
 import sys
@@ -27,7 +27,7 @@ INTERFACE = """&delamination below_ply=1 law='cohesive' zone=0.12,0.12 G_Ic=100 
 FRAMES = {"edge": "window=0.1,0.1", "unilateral": "window=0.1,0.1 unilateral=.true.",
           "circle": "shape='circle' radius=50e-3"}
 STEPS = ("'central_difference'", "'generalized_alpha' step=5e-6")
-# m2; relative. Measured: 2e-6, .019, .058; with the first layer held .001 to .014, .06 to 240, and up to 35.
+# m2; relative. Measured: 2e-6, .019, .058; with the first layer supported .001 to .014, .06 to 240, and up to 35.
 AREA, FORCE, IMPULSE = 1e-5, 0.03, 0.1
 
 
@@ -40,7 +40,7 @@ def run(implam, folder, **choices):
 
 
 def main(implam, folder):
-    """Run all frames by both ways, with and without the interface."""
+    """Run all frames with both integrators, with and without the interface."""
     for name, frame in FRAMES.items():
         for steps in STEPS:
             trial = Path(folder) / f"{name}_{steps[1:3]}"
@@ -50,7 +50,7 @@ def main(implam, folder):
             force = max(layered["force"]) / max(whole["force"]) - 1
             reaction = sum(layered["reaction_1"]) / sum(whole["reaction_1"]) - 1
             print(f"{name}, {steps}: area {area:.2e} m2, force {force:+.2e}, reaction {reaction:+.2e}", flush=True)
-            require(area <= AREA, "The frame pulls a layer off.")
+            require(area <= AREA, "The frame delaminates a layer.")
             require(abs(force) <= FORCE, "The interface changes the force.")
             require(abs(reaction) <= IMPULSE, "The interface changes the reaction.")
 

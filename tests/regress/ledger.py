@@ -1,9 +1,9 @@
 """Energy balance of load steps: every kind of load on every kind of plate.
 Usage: ledger.py IMPLAM FOLDER
 
-Every load, with each of what stores or takes energy: plies that fail at once or soften, interfaces, a rig with a frame
-that the plate may lift off and clamps, residual stresses, and all of them together. The ledger's sum is within 1e-6 of
-the largest work in every step. Where nothing breaks, nothing is dissipated, however large the steps."""
+Every load, with each mechanism that stores or dissipates energy: plies that fail suddenly or soften, interfaces, a rig
+with a unilateral frame and clamps, residual stresses, and all of them together. The ledger closes to
+1e-6 of the largest work in every step. Without failure nothing is dissipated, however large the steps."""
 
 import shutil
 import sys
@@ -11,7 +11,7 @@ from pathlib import Path
 
 from solver_runs import TrialError, exit_code_of, read_history, require, run_deck
 
-CLOSES = 1e-6  # of the work; 3.4e-8 is left here by a residual of 1e-8
+CLOSES = 1e-6  # of the work; 3.4e-8 remains here with a residual of 1e-8
 CURVED = "&case name='ledger' kinematics='von_karman' /\n"
 MESH = "&mesh elements=8,4 patch=10e-3 /\n"
 PLY = ("&material name='m' density=1580 E1=139e9 E2=9.4e9 G12=4.5e9 G13=4.5e9 G23=2.98e9 nu12=0.309 XT=2000e6 "
@@ -47,10 +47,10 @@ TOGETHER = [("plies",), ("softening",), ("interface",), ("rig",), ("springs",), 
 
 
 def deck_of(load, parts, steps=5):
-    """Return a deck with a load and what stores or takes energy."""
+    """Return a deck with a load and mechanisms that store or dissipate energy."""
     plate = ON_RIG if {"rig", "springs"} & set(parts) else STRIP
     ply = PLY
-    if "rig" in parts:  # a line runs on over the frame: it can only lift the plate
+    if "rig" in parts:  # a line crosses the frame: it can only lift the plate
         load = load.replace(" displacement=", " displacement=-")
     if "softening" in parts:
         ply += " G_ft=100e3 G_fc=100e3 G_mt=1e3 G_mc=4e3"
@@ -60,12 +60,12 @@ def deck_of(load, parts, steps=5):
     return "\n".join(groups) + "\n"
 
 
-# What has to break in at least one case with it, so that what that sets free is recorded.
+# Failures that must occur in at least one case with the mechanism, so that their energy is recorded.
 BREAKS = {"plies": "energy_ply_damage", "softening": "energy_ply_damage", "interface": "energy_delamination"}
 
 
 def check(implam, folder, load, parts, steps=5):
-    """Return how far the ledger is from closing, over the largest work, and the history."""
+    """Return the energy error over the largest work, and the history."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     deck = folder / "deck.nml"
@@ -77,7 +77,7 @@ def check(implam, folder, load, parts, steps=5):
 
 
 def trial(implam, folder):
-    """All of them."""
+    """Run all cases."""
     faults, worst, failed = [], 0.0, set()
     for name, text in LOADS.items():
         for history in ("ramp", "fixed") if "{}" in text else ("",):
@@ -87,17 +87,17 @@ def trial(implam, folder):
                     error, rows = check(implam, Path(folder) / case.replace(" ", "_"), text.format(history), parts)
                     worst = max(worst, error)
                     failed |= {part for part in parts if part in BREAKS and rows[BREAKS[part]][-1] > 0}
-                    require(error < CLOSES, f"{error:.2g} of the work is not accounted for")
+                    require(error < CLOSES, f"{error:.2g} of the work is the energy error")
                 except TrialError as fault:
                     faults.append(f"{case}: {fault}")
-    require(failed == set(BREAKS), f"Only {sorted(failed)} break.")
+    require(failed == set(BREAKS), f"Only {sorted(failed)} fail.")
     faults += elastic_faults(implam, folder)
     print(f"{worst:.2g} of the work at most")
     require(not faults, "\n".join(faults))
 
 
 def elastic_faults(implam, folder):
-    """Return what an elastic plate loses in two load steps and how much work differs from that in five."""
+    """Return the dissipation of an elastic plate in two load steps and the difference of its work from that in five."""
     faults = []
     for name in ("pressure", "force", "displacement", "rotation", "travel"):
         work = []

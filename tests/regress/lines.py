@@ -3,13 +3,13 @@ Usage: lines.py quarter|plane|turned|time|edges|opened|ranks|restart IMPLAM FOLD
 (LAUNCHER takes the number of ranks as its last word)
 
 quarter  a strip against its quarter or half: deflection and forces to 1e-9
-plane    a force along a strip stretches it with linear strains as with von Karman's: F L/(E A) to 1e-6
+plane    a force along a strip stretches it, with linear strains and with von Karman's: F L/(E A) to 1e-6
 turned   a strip on two lines under two forces, and half of it with point symmetry: to 1e-9
 time     prescribed lines are held exactly, with the force of equilibrium: fixed as in load steps, ramps and smooth
-         starts the same with half the steps, the ledger closed; also beside a pressure, with two integrators
-edges    a line that runs to edges which hold the plate: its work is half its force times its way, in load steps, in
-         time and by central differences; held nodes are none of its own
-opened   lines that have opened an interface before the run: its fracture energy is work, and dissipated
+         starts the same with half the step length, the ledger closed; also with a pressure, with two integrators
+edges    a line that ends at supported edges: its work is half its force times its displacement, in load steps, in
+         time and by central differences; supported nodes do not belong to it
+opened   lines that open an interface in the initial equilibrium: its fracture energy is work, and dissipated
 ranks    a notched strip in steps of dissipation, on 1 and 2 ranks: to 1e-6; a line to clamped edges on 2 ranks
 restart  the same from a checkpoint while damage grows: bitwise"""
 
@@ -32,7 +32,7 @@ NOTCHED = ["mesh%elements=56,2", "static%steps=12", "static%dissipation=0.12", "
 
 
 def check_quarter(implam, folder, _):
-    """A line for two, and one in the middle; of a half across the lines, all of them."""
+    """One line for two symmetric ones, and one at the centre; for a half across the lines, all of them."""
     whole = read_history(run_deck(implam, write_deck(folder / "whole", "three_point.nml")))
     for part, elements in (("quarter", "10,2"), ("half_x", "10,4"), ("half_y", "20,2")):
         deck = write_deck(folder / part, "three_point.nml", [f"plate%symmetry='{part}'", f"mesh%elements={elements}"])
@@ -50,7 +50,7 @@ def check_quarter(implam, folder, _):
                     f"{name}: {value!r} with {part}, not {expected!r}.")
 
 
-# A cantilever in which nothing damps.
+# An undamped cantilever.
 CANTILEVER = """&case name='cantilever' kinematics='linear' /
 &plate length=0.1, 0.02 edges='clamped','free','free','free' in_plane='fixed' /
 &mesh elements=20, 4 /
@@ -58,8 +58,8 @@ CANTILEVER = """&case name='cantilever' kinematics='linear' /
 &laminate materials='al' angles=0 thicknesses=2e-3 /
 """
 HELD, END = 1e-4, 1e-3
-# Difference of the forces with half the steps, of their root mean square: 1.4, 3.8 and 4.9 % at most. What is left are
-# waves that the steps do not follow.
+# Difference of the forces with half the step length, of their root mean square: 1.4, 3.8 and 4.9 % at most. The rest
+# are waves that the steps do not resolve.
 SAME_FORCE = {"smooth": 0.02, "pressed": 0.05, "set": 0.06}
 MOVED = f"&line at=0.05 displacement={HELD} history='{{}}' {{}} /\n"
 TURNED = "&line at=0 component='theta_x' rotation=0.01 history='fixed' /\n"
@@ -67,17 +67,17 @@ PRESSED = "&pressure value=1000 /\n"
 
 
 def line_history(implam, folder, groups):
-    """Return the history of the cantilever with some groups, its ledger closed to rounding."""
+    """Return the history of the cantilever with some groups, its ledger closed to round-off."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "deck.nml").write_text(CANTILEVER + groups, encoding="utf-8")
     history = read_history(run_deck(implam, folder / "deck.nml"))
     error, work = max(map(abs, history["energy_error"])), max(map(abs, history["work_external"]))
-    require(error <= 1e-8*work, f"{error/work:.2g} of the work is not accounted for in {folder.name}.")
+    require(error <= 1e-8*work, f"{error/work:.2g} of the work is the energy error in {folder.name}.")
     return history
 
 
 def check_time(implam, folder, _):
-    """Fixed lines from the start, ramps, and lines that hold while a pressure moves the plate."""
+    """Lines fixed from the start, ramps, and fixed lines while a pressure deflects the plate."""
     static = line_history(implam, folder / "static", MOVED.format("fixed", "") + TURNED + "&static steps=1 /\n")
     for name, integrator in (("alpha", ""), ("newmark", "integrator='newmark' beta=0.25 gamma=0.5")):
         end = f"&time end={END} {integrator} step="
@@ -96,12 +96,12 @@ def check_time(implam, folder, _):
                             for step in ("5e-6", "2.5e-6"))
             forces = coarse["line_force_1"][1:], fine["line_force_1"][3::2]
             difference = rms(a - b for a, b in zip(*forces, strict=True))/rms(forces[1])
-            print(f"{name} {kind}: the force differs by {difference:.2g} with half the steps")
-            require(difference < SAME_FORCE[kind], f"{name}: the force is not the same with half the steps.")
+            print(f"{name} {kind}: the force differs by {difference:.2g} with half the step")
+            require(difference < SAME_FORCE[kind], f"{name}: the force depends on the step.")
 
 
 def check_plane(implam, folder, _):
-    """A plate has in-plane motion though strains are linear and nothing couples it with bending."""
+    """A plate has in-plane motion also where strains are linear and the laminate does not couple it with bending."""
     force, expected = 1e3, 1e3*0.1/(70e9*0.02*2e-3)
     for kinematics in ("linear", "von_karman"):
         case = folder / kinematics
@@ -113,7 +113,7 @@ def check_plane(implam, folder, _):
 
 
 def check_turned(implam, folder, _):
-    """A plate turned by 180 degrees about z cannot tilt, so that one line and its image hold it."""
+    """A plate symmetric under rotation by 180 degrees about z cannot tilt, so one line and its image support it."""
     found = {}
     for symmetry, elements, sides in (("none", "8,4", (1, -1)), ("point", "4,4", (1,))):
         case = folder / symmetry
@@ -128,13 +128,13 @@ def check_turned(implam, folder, _):
         require(abs(value - expected) <= 1e-9*abs(expected), f"{name}: {value!r} of the half, not {expected!r}.")
 
 
-# Nodes at the ends of the line are held by the edges.
+# Nodes at the ends of the line are supported by the edges.
 CLAMPED = "'clamped'"
 BETWEEN_EDGES = CANTILEVER.replace("'clamped','free','free','free'", "{}").replace("0.1, 0.02", "0.1, 0.06")
 
 
 def check_edges(implam, folder, _):
-    """Clamped, simple and one edge free; deflection, and a displacement along the line."""
+    """Clamped, simple and one free edge; deflection, and a displacement along the line."""
     for edges, line in (("'clamped'", ""), ("'simple'", "direction='x'"), ("'clamped','free','free','clamped'", ""),
                         ("'clamped'", "component='u'")):
         found = {}
@@ -153,7 +153,7 @@ def check_edges(implam, folder, _):
         require(max(found.values())/min(found.values()) < 1.001, f"{edges} {line}: the forces are {found}.")
 
 
-# A double cantilever whose crack has grown before the run. The mass is at rest, so nothing else happens.
+# A double cantilever whose crack grows in the initial equilibrium. The mass is at rest, so there is no other motion.
 OPENED = """&case name='opened' kinematics='linear' /
 &plate length=0.066, 0.025 edges='free','clamped','free','free' /
 &mesh elements=44, 2 /
@@ -169,7 +169,7 @@ SAME_ENERGY = 1e-6
 
 
 def check_opened(implam, folder, _):
-    """Fracture energy of the initial equilibrium, by implicit steps and by central differences."""
+    """Fracture energy of the initial equilibrium, with implicit steps and by central differences."""
     for name, steps in (("implicit", "step=1e-6 integrator='generalized_alpha'"),
                         ("explicit", "integrator='central_difference' mass_scaling=1")):
         deck = folder / name / "opened.nml"
@@ -186,7 +186,7 @@ def check_opened(implam, folder, _):
 
 
 def rms(values):
-    """Return the root of the mean of the squares."""
+    """Return the root mean square."""
     squares = [value*value for value in values]
     return (sum(squares)/len(squares))**0.5
 
@@ -195,7 +195,7 @@ def check_ranks(implam, folder, launcher):
     """One rank and two."""
     one = read_history(run_deck(implam, write_deck(folder / "one", "enf.nml", NOTCHED)))
     two = read_history(run_deck(implam, write_deck(folder / "two", "enf.nml", NOTCHED), (*launcher, "2")))
-    require(one["delaminated_area"][-1] > 1.03*one["delaminated_area"][0], "Nothing grows.")
+    require(one["delaminated_area"][-1] > 1.03*one["delaminated_area"][0], "The crack does not grow.")
     left_out = [name for name in one if "iterations" in name or name in ("factorizations", "solves")]
     difference, name = largest_difference(two, one, left_out)
     require(difference <= 1e-6, f"{name} differs by {difference:.2g} of its largest value.")
@@ -212,11 +212,11 @@ def check_ranks(implam, folder, launcher):
 def check_restart(implam, folder, _):
     """From the last checkpoint, while damage grows."""
     rows = check_goes_on(implam, folder, "enf.nml", [*NOTCHED, "output%checkpoint_every=0.7"])
-    require(rows["load_factor"][-1] < max(rows["load_factor"]), "The load does not fall.")
+    require(rows["load_factor"][-1] < max(rows["load_factor"]), "The load does not decrease.")
 
 
 def trial(kind, implam, folder, *launcher):
-    """One of them."""
+    """Run one trial."""
     checks = {"quarter": check_quarter, "plane": check_plane, "turned": check_turned, "time": check_time,
               "edges": check_edges, "opened": check_opened, "ranks": check_ranks, "restart": check_restart}
     require((DECKS / "enf.nml").exists(), "The decks are missing.")

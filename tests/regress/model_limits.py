@@ -8,13 +8,13 @@ from pathlib import Path
 
 from solver_runs import EXIT_CONVERGENCE, EXIT_DONE, exit_code_of, read_history, require, run
 
-# A plate that bends like a membrane, and a contact so soft that the ball would go through.
+# A plate with membrane action, and a contact so soft that the ball would pass through.
 BEGINNING = """&plate length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
 &mesh elements=6, 6  grading=1  patch=5e-3 /
 &material name='ply' density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G23=2.98e9  nu12=0.309 /
 &laminate materials='ply'  angles=0, 90, 0  thicknesses=0.25e-3 /
 """
-# Plies that break: strengths of the ply above, lower across the board where a plate is to be torn or perforated.
+# Plies that fail: the ply above with lower strengths, for plates that are to fail or to be perforated.
 WEAK = """&plate length=0.1, 0.1  edges='clamped'  symmetry='quarter' /
 &mesh elements=6, 6  grading=1  patch=5e-3 /
 &material name='ply' density=1580  E1=139e9  E2=9.4e9  G12=4.5e9  G13=4.5e9  G23=2.98e9  nu12=0.309  XT=20e6  XC=20e6
@@ -26,12 +26,12 @@ ZONE = "&delamination below_ply=2  G_c=1  zone=40e-3, 40e-3  starter=15e-3 /\n"
 OPEN = """&delamination below_ply=1  G_c=1000  law='cohesive'  zone=96e-3, 96e-3  starter=70e-3
   strength_opening=20e6  strength_shear=40e6 /
 """
-# What is passed, and the rest of the deck.
+# The limit passed, and the rest of the deck.
 MODELS = {
     "slope of the plate has exceeded": "&impactor mass=2  velocity=14  radius=10e-3 /\n&time end=1e-3  step=10e-6 /\n",
     "indentation has exceeded the thickness": "&impactor mass=0.05  velocity=10 /\n&indentation law='hertz'  k=2e6 /\n"
                              "&time end=1e-3  step=10e-6 /\n",
-    # .69 mm at most, less than the thickness.
+    # Indentation of at most .69 mm, less than the thickness.
     "or the radius of the impactor": "&impactor mass=0.005  velocity=2  radius=1e-4 /\n"
                                      "&indentation law='hertz'  k=2e6 /\n&time end=0.5e-3  step=5e-6 /\n",
     "integrators have dissipated more than 1 %": "&impactor mass=0.005  velocity=10  radius=10e-3 /\n"
@@ -48,7 +48,8 @@ MODELS = {
                                        "&time integrator='central_difference' end=1e-4 /\n",
     "kinetic energy of motions with scaled inertia has exceeded": "&impactor mass=0.05 velocity=10 radius=10e-3 /\n"
         "&time integrator='central_difference' end=2e-4 mass_scaling=1000 /\n",
-    # A ball of 1 g strikes a plate of two parts: 3.9 % on these cells, 2.7 and 1.8 % on those of a half and a quarter.
+    # A ball of 1 g strikes a plate of two sublaminates: 3.9 % on these cells, 2.7 and 1.8 % on cells of a half and a
+    # quarter.
     "Contact of surfaces or with the frame has dissipated more than 2 %": OPEN + "&impactor mass=1e-3 velocity=10 "
         "radius=10e-3 /\n&time integrator='central_difference' end=0.3e-3 /\n&output history_every=1e-5 /\n",
     "error of steps has exceeded the tolerance": ZONE + "&impactor mass=2  velocity=5  radius=10e-3 /\n"
@@ -65,7 +66,7 @@ def time_of(warning):
 
 
 def main(implam, folder):
-    """Each limit in turn."""
+    """Test each limit in turn."""
     for number, (sentence, rest) in enumerate(MODELS.items()):
         here = Path(folder) / str(number)
         here.mkdir(parents=True, exist_ok=True)

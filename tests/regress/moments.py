@@ -6,8 +6,8 @@ kills    SIGKILL COUNT times on one rank and COUNT times on two, every other one
          histories and damage are those of the uninterrupted run, bitwise on one rank and to 1e-9 on two; no file
          is left
 signals  TERM, INT and USR1 to the program, to one rank, to both and to mpirun, COUNT times each, once and twice in
-         turn: a checkpoint, or nothing written yet, and the code of the manual; what goes on from there ends likewise
-early    before main has begun, and while METIS has replaced the handler of TERM: the same"""
+         turn: a checkpoint, or nothing written yet, and the code of the manual; a run continued from it ends likewise
+early    before main is entered, and while METIS has replaced the handler of TERM: the same"""
 
 import os
 import random
@@ -29,23 +29,23 @@ os.environ |= {"OMPI_MCA_mpi_yield_when_idle": "1", "OMPI_MCA_rmaps_base_oversub
                "OMPI_MCA_hwloc_base_binding_policy": "none",
                "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
                "PRTE_MCA_hwloc_default_binding_policy": "none"}
-# Fronts that grow while plies fail, a cohesive interface, and plies that soften; in each step a checkpoint.
+# Fronts that grow while plies fail, a cohesive interface, and plies that soften; a checkpoint in each step.
 MODELS = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "output%checkpoint_every=10e-6",
                                              "output%fields_every=50e-6"]),
           "cohesive": ("../small/cohesive.nml", ["output%checkpoint_every=10e-6", "output%fields_every=50e-6"]),
           "softening": ("../small/crack_bands.nml", [*SOFTENING, "output%checkpoint_every=5e-6",
                                                      "output%fields_every=30e-6"])}
-# What a signal may hit: the fronts grow until 170e-6, and a run outlasts the latest signal by a dozen steps.
+# Range of the signals: the fronts grow until 170e-6, and a run outlasts the latest signal by a dozen steps.
 SIGNALLED = "time%end=240e-6"
-PATIENCE = 1800  # seconds, on a machine that others keep busy
-MPIRUN_STOPPED = 1  # what Open MPI's launcher ends with after TERM and INT
+PATIENCE = 1800  # seconds, on a busy machine
+MPIRUN_STOPPED = 1  # exit code of Open MPI's launcher after TERM and INT
 
 
 class Model:
-    """A deck, its run that was left alone, and others that are not."""
+    """A deck, its uninterrupted run, and interrupted ones."""
 
     def __init__(self, implam, folder, name, launcher=(), settings=()):
-        """Run it once, with settings beside the model's own."""
+        """Run it once, with settings in addition to the model's own."""
         self.implam, self.folder, self.name, self.launcher = implam, folder / name, name, launcher
         source, own = MODELS[name]
         self.settings = source, [*own, *settings, "solver%tolerance=1e-9"]
@@ -53,12 +53,12 @@ class Model:
         self.damage = damage_of(self.reference)
 
     def fresh(self):
-        """Return the path of the deck in a folder with nothing else in it."""
+        """Return the path of the deck in a folder without other files."""
         return write_deck(self.folder / "disturbed", *self.settings)
 
     def start(self, deck, errors=subprocess.DEVNULL, **variables):
-        """Start the run, or go on if there is a checkpoint; return the launcher's process, or the program's. `errors`
-        takes what is said on standard error."""
+        """Start the run, or continue it if there is a checkpoint; return the launcher's process, or the program's.
+        `errors` takes the standard error."""
         words = ["restart", deck.parent] if list(deck.parent.glob("*_restart.h5")) else [deck, "--output", deck.parent]
         return subprocess.Popen([str(word) for word in (*self.launcher, self.implam, *words)], start_new_session=True,
                                 stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors,
@@ -69,7 +69,7 @@ class Model:
         return ranks_of(process, self.implam) if self.launcher else [process.pid]
 
     def check_end(self, deck, what):
-        """The disturbed run has ended as the other one, and has left the same files."""
+        """An interrupted run has ended as the uninterrupted one, with the same files."""
         history = history_of(deck.parent)
         if self.launcher:
             require_close(history, self.reference, what)
@@ -97,8 +97,8 @@ def session_of(process):
 
 
 def stop_all(numbers):
-    """Stop processes, so that what is seen is what is left; return those that stand still. One that has begun to exit
-    takes no signal any more and ends as it would have."""
+    """Suspend processes, so that their files do not change; return those that are suspended. A process that has begun
+    to exit takes no signal any more and ends normally."""
     send(numbers, signal.SIGSTOP)
     while any(state_of(number)[0] not in "TXZ" for number in numbers):
         time.sleep(0.0005)
@@ -119,13 +119,13 @@ def end_of(process):
     code = process.wait(PATIENCE)
     latest = time.monotonic() + PATIENCE
     while session_of(process):
-        require(time.monotonic() < latest, "Ranks go on without their launcher.")
+        require(time.monotonic() < latest, "Ranks continue without their launcher.")
         time.sleep(0.02)
     return code
 
 
 def wait_for_writing(deck, process, times):
-    """Wait until a checkpoint is being written, so many times; the end of the run ends it too."""
+    """Wait until a checkpoint is being written for the given number of times, or until the run ends."""
     aside = [deck.parent / name for name in ("damage", "cohesive", "crack_bands")]
     aside = [path.with_name(path.name + "_restart.h5.tmp") for path in aside]
     for _ in range(times):
@@ -135,15 +135,16 @@ def wait_for_writing(deck, process, times):
 
 
 def wait_for_rows(deck, process, more):
-    """Wait until the run has written so many rows more, however slow the machine; the end of the run ends it too."""
+    """Wait until the run has written the given number of further rows, however slow the machine, or until the run
+    ends."""
     wanted = rows_written(deck.parent) + more
     while rows_written(deck.parent) < wanted and process.poll() is None:
         time.sleep(0.002)
 
 
 def kill_once(model, deck, moments, writing):
-    """Kill a run at a random moment; return whether it ran still, whether a checkpoint was being written, and whether
-    the run has ended all the same."""
+    """Kill a run at a random moment; return whether it was still running, whether a checkpoint was being written, and
+    whether the run has nevertheless ended."""
     process = model.start(deck)
     if writing:
         wait_for_writing(deck, process, moments.randrange(1, 6))
@@ -160,7 +161,7 @@ def kill_once(model, deck, moments, writing):
     send(victims, signal.SIGKILL)
     send(running, signal.SIGCONT)
     code = end_of(process)
-    require(code != EXIT_DONE or not hit, "A run that was killed ends with 0.")
+    require(code != EXIT_DONE or not hit, "A killed run ends with 0.")
     return hit, written, code == EXIT_DONE
 
 
@@ -173,11 +174,11 @@ def check_kills(implam, folder, count, launcher):
         while kills < count:
             model = models[chains % len(models)]
             deck, ended, mine = model.fresh(), False, 0
-            # The last kill of all is followed by an undisturbed end.
+            # After the last kill the run is not interrupted.
             while not ended:
                 if kills >= count or mine >= 12:
                     ended = end_of(model.start(deck)) == EXIT_DONE
-                    require(ended, "The run does not end when it is left alone.")
+                    require(ended, "The run does not end without interruption.")
                     break
                 hit, written, ended = kill_once(model, deck, moments, kills % 2 == 1)
                 kills, writing, mine = kills + hit, writing + (hit and written), mine + hit
@@ -190,7 +191,7 @@ def check_kills(implam, folder, count, launcher):
 
 
 def printed(model, deck, target, stop, times, rows):
-    """Stop a run; return the exit code and what it said on standard error."""
+    """Stop a run; return the exit code and its standard error."""
     errors = deck.with_name("errors")
     with errors.open("w", encoding="utf-8") as file:
         process = model.start(deck, file)
@@ -207,7 +208,7 @@ def printed(model, deck, target, stop, times, rows):
 
 
 def check_signals(implam, folder, count, launcher):
-    """Every signal to every target; the run then goes on undisturbed."""
+    """Every signal to every target; the run is then continued without interruption."""
     moments = random.Random(3)
     alone = Model(implam, folder / "1", "fronts", settings=[SIGNALLED])
     both = Model(implam, folder / "2", "fronts", (*launcher, "2"), [SIGNALLED])
@@ -216,7 +217,7 @@ def check_signals(implam, folder, count, launcher):
     for (place, (model, target)), (turn, stop) in product(enumerate(targets), enumerate(stops)):
         checkpoints = 0
         for trial in range(count):
-            # Each target and each signal has both, also where there is one trial of a pair.
+            # Each target and each signal occurs once and twice, also with one trial of a pair.
             times = 1 + (place + turn + trial) % 2
             what = f"{stop.name} {'twice' if times == 2 else 'once'} to {target}"
             saved = check_signalled(model, target, stop, times, moments.randrange(12), what)
@@ -225,7 +226,7 @@ def check_signals(implam, folder, count, launcher):
 
 
 def check_signalled(model, target, stop, times, rows, what):
-    """Stop a run after some rows and let it go on; return whether it has left a checkpoint."""
+    """Stop a run after some rows and continue it; return whether it has left a checkpoint."""
     deck = model.fresh()
     code, said = printed(model, deck, target, stop, times, rows)
     saved = bool(list(deck.parent.glob("*_restart.h5")))
@@ -233,14 +234,14 @@ def check_signalled(model, target, stop, times, rows, what):
         require(code == MPIRUN_STOPPED, f"{what}: code {code}, not {MPIRUN_STOPPED}.")
     else:
         require(code == EXIT_STOPPED and saved, f"{what}: code {code}, checkpoint: {saved}.")
-        require(said.count("signal received") == 1, f"{what}: not one line announces the end but\n{said}")
-    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it does not go on.")
+        require(said.count("signal received") == 1, f"{what}: instead of one line that announces the end\n{said}")
+    require(end_of(model.start(deck)) == EXIT_DONE, f"{what}: it is not continued.")
     model.check_end(deck, what)
     return saved
 
 
 def check_early(implam, folder, _, launcher):
-    """At moments that no clock would meet; a first step is taken and saved."""
+    """At moments that a timer would not meet; a first step is taken and saved."""
     library = folder / "early.so"
     folder.mkdir(parents=True)
     run(["cc", "-shared", "-fPIC", "-o", library, HERE.parent / "support/early_signals.c", "-ldl"])
@@ -250,7 +251,7 @@ def check_early(implam, folder, _, launcher):
     for moment, stop, ranks in (*cases, ("metis", signal.SIGTERM, 2)):
         model, mark = models[ranks], folder / "mark"
         deck = model.fresh()
-        # The launcher and its shells must not be signalled too.
+        # The launcher and its shells must not receive the signal.
         words = {"EARLY_MOMENT": moment, "EARLY_SIGNAL": str(int(stop)), "EARLY_MARK": str(mark)}
         wrapper = folder / Path(implam).name
         wrapper.write_text(f'#!/bin/sh\nLD_PRELOAD={library} exec {implam} "$@"\n', encoding="utf-8")
@@ -262,7 +263,7 @@ def check_early(implam, folder, _, launcher):
         mark.unlink()
         saved = bool(list(deck.parent.glob("*_restart.h5")))
         require(code == EXIT_STOPPED and saved, f"{stop.name} ({moment}): code {code}, checkpoint: {saved}.")
-        require(end_of(model.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it does not go on.")
+        require(end_of(model.start(deck)) == EXIT_DONE, f"{stop.name} ({moment}): it is not continued.")
         model.check_end(deck, f"{stop.name} ({moment})")
         print(f"{stop.name} ({moment}): code {code}, with a checkpoint")
 

@@ -25,7 +25,7 @@ def history_with(implam, folder, groups):
 def try_groups(implam, folder):
     """Compare the histories."""
     each = history_with(implam, Path(folder) / "each", ("2", "3", "5"))
-    require(each["delaminated_area"][-1] > 0, "Nothing grew: the trial proves nothing.")
+    require(each["delaminated_area"][-1] > 0, "No delamination grew: the trial is void.")
     for place, words in enumerate(WORDS):
         history = history_with(implam, Path(folder) / f"one_{place}", (words,))
         require(history == each, f"below_ply={words} gives another history than a group for each interface.")

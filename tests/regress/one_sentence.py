@@ -13,7 +13,7 @@ DECK = "../small/ply_damage.nml"
 
 
 def say(command, expected):
-    """Run a command that is to fail and hold its exit code and its sentence against what is expected."""
+    """Run a command that is to fail and compare its exit code and its sentence with the expected ones."""
     ended = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                            stderr=subprocess.PIPE, text=True, timeout=60, check=False)
     lines = ended.stderr.splitlines()
@@ -24,12 +24,12 @@ def say(command, expected):
 
 
 def contents(folder):
-    """Return the files of a folder with what is in them."""
+    """Return the files of a folder with their contents."""
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 def check_one_writer(implam, folder):
-    """A second run of the same case is refused before it touches a file; a killed one leaves nothing that blocks."""
+    """A second run of the same case is refused before it changes a file; a killed run leaves no lock behind."""
     deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
     run_deck(implam, deck)
     checkpoint = folder / "ply_damage_restart.h5"
@@ -46,14 +46,14 @@ def check_one_writer(implam, folder):
             held = contents(folder)
             say([implam, deck, "--output", folder], EXIT_FILES)
             say([implam, "restart", checkpoint], EXIT_FILES)
-            require(contents(folder) == held, "A run that was refused has touched the files of the other one.")
+            require(contents(folder) == held, "A refused run has changed the files of the other one.")
         finally:
             first.kill()
     run_deck(implam, deck)
 
 
 def check_invalid_files(implam, folder):
-    """A field file or checkpoint that can be neither written nor closed: exit code and sentence, no crash."""
+    """A field file or checkpoint that can be neither written nor closed: exit code and one sentence, no crash."""
     for name, named in (("ply_damage.h5", "ply_damage.h5"), ("ply_damage_restart.h5.tmp", "ply_damage_restart.h5")):
         deck = write_deck(folder, DECK, ["output%checkpoint_every=10e-6"])
         (folder / name).symlink_to("/dev/full")
@@ -70,7 +70,7 @@ def check_invalid_files(implam, folder):
 
 
 def check_removed_history(implam, folder):
-    """A history that is removed during a run ends it at the next checkpoint, not without a word."""
+    """A history that is removed during a run ends the run at the next checkpoint with a message."""
     deck = write_deck(folder, DECK, ["time%end=1", "time%step=1e-6", "output%history_every=1e-5",
                                      "output%checkpoint_every=1e-5"])
     history = folder / "ply_damage_history.csv"
@@ -89,7 +89,8 @@ def check_removed_history(implam, folder):
 
 
 def check_limit_load(implam, folder):
-    """A force beyond that at which an interface separates: the sentence names the key that follows its growth."""
+    """A force beyond that at which an interface separates: the sentence names the key by which its growth can be
+    computed."""
     deck = write_deck(folder, "enf.nml", ["mesh%elements=28,2", "static%steps=5"])
     text = deck.read_text(encoding="utf-8").replace("displacement=4e-3", "force=2e3").replace("dissipation=0.2", "")
     deck.write_text(text, encoding="utf-8")
@@ -98,7 +99,7 @@ def check_limit_load(implam, folder):
 
 
 def main(implam, folder):
-    """Run all failures."""
+    """Test all failures."""
     folder = Path(folder)
     deck = write_deck(folder, DECK)
     say([implam], 1)

@@ -1,11 +1,11 @@
-"""The cells that a run took apart and the plies that failed, from its fields. Needs h5py."""
+"""The cells that a run has delaminated and the plies that have failed, from its fields. Needs h5py."""
 
 import h5py
 import numpy as np
 
 CORNERS = 4  # the first nodes of an element in the file
 PLACE = 1e-9  # lengths that are distinguished
-DIGITS = 5  # of a cohesive cell's part that is gone
+DIGITS = 5  # of the delaminated fraction of a cohesive cell
 
 
 def fields_of(history_path):
@@ -14,7 +14,7 @@ def fields_of(history_path):
 
 
 def fields_of_times(history_path, words):
-    """Return for each time written a dictionary by the names that end in one of the words and by places."""
+    """Return for each written time a dictionary by names with one of the endings, and by positions."""
     found = []
     with h5py.File(fields_of(history_path)) as file:
         for key in sorted(file["times"]):
@@ -33,12 +33,12 @@ def fields_of_times(history_path, words):
 
 
 def released_cells(history_path):
-    """Return for each time written the set of cells apart, as (first ply below, x, y)."""
+    """Return for each written time the set of delaminated cells, as (first ply below, x, y)."""
     return [{key[1:] for key in values} for values in fields_of_times(history_path, ("delaminated_above",))]
 
 
 def damage_of(history_path):
-    """Return cells apart and failed plies at the last time written, by name, layer and place."""
+    """Return delaminated cells and failed plies at the last written time, by name, layer and position."""
     return fields_of_times(history_path, ("delaminated_above", "_failure"))[-1]
 
 
@@ -48,7 +48,7 @@ def mirrored(damage):
 
 
 def folded(damage, part="quarter"):
-    """Return the damage of a full plate as that of a part of it; nothing if the parts differ."""
+    """Return the damage of a full plate as that of a part of it; None if the parts differ."""
     parts = {}
     for (name, layer, x, y), value in damage.items():
         left, below = x < 0 and part != "half_y", y < 0 and part in ("quarter", "half_y")
@@ -61,7 +61,8 @@ def folded(damage, part="quarter"):
 
 
 def min_releases(before, after):
-    """Return how many releases after each other it took at least: each takes apart neighbours of what is apart."""
+    """Return a lower bound of the number of successive releases: each one delaminates neighbours of delaminated
+    cells."""
     columns = {x: i for i, x in enumerate(sorted({cell[1] for cell in after}))}
     rows = {y: j for j, y in enumerate(sorted({cell[2] for cell in after}))}
     apart = {(layer, columns[x], rows[y]) for layer, x, y in before}
@@ -71,7 +72,7 @@ def min_releases(before, after):
         reached = {(layer, i, j) for layer, i, j in missing
                    if apart & {(layer, i + 1, j), (layer, i - 1, j), (layer, i, j + 1), (layer, i, j - 1)}}
         if not reached:
-            return 0  # apart from nowhere: no count
+            return 0  # delaminated without a delaminated neighbour: no count
         apart |= reached
         missing -= reached
         releases += 1

@@ -6,8 +6,8 @@ contact      delaminated surfaces in contact by both laws: bitwise
 ranks        on 2 ranks, and from 1 rank to 2 and back: to 1e-9
 rejected     from checkpoints on either side of rejected steps: bitwise
 signal       SIGTERM ends a run with a checkpoint and its own exit code: bitwise
-ranks_signal two ranks that get TERM twice, as from a queue, and mpirun that gets USR1, end the same way: to 1e-9
-limit        the wall-clock limit ends runs in time with a checkpoint and that exit code: bitwise
+ranks_signal two ranks that receive TERM twice, as from a queue, and mpirun that receives USR1, end likewise: to 1e-9
+limit        the wall-clock limit ends runs in time with a checkpoint and the same exit code: bitwise
 kill         SIGKILL at any time leaves a usable checkpoint: bitwise"""
 
 import filecmp
@@ -38,20 +38,20 @@ from solver_runs import (
 TOLERANCE = 1e-9
 IMPACT = "sun_chen_tan_sun.nml"
 DAMAGE = "../small/damage.nml"
-# Seconds that a run may take on a busy machine, within the time limit of the test.
+# Seconds allowed for a run on a busy machine, within the time limit of the test.
 PATIENCE = 240
-# A strong blow on a coarse mesh: von Karman strains of several thicknesses where asked for.
+# A strong impact on a coarse mesh: von Karman strains with deflections of several thicknesses where requested.
 SHORT = ["mesh%elements=6,6", "impactor%velocity=30", "time%step=2e-6", "time%end=120e-6"]
-# Steps so long that equilibrium is not found in some within few iterations.
+# Steps so long that some do not converge within few iterations.
 PERIOD = 60e-6
 LONG_STEPS = ["mesh%elements=6,6", "impactor%velocity=300", "case%kinematics='von_karman'", f"time%step={PERIOD!r}",
               "impactor%integrator='conserving'", "solver%tolerance=1e-10", "adapt%on=.false.", "adapt%iterations=1"]
-# None is left out: where the first steps are rejected depends on the solver, and with a few fewer none gets through.
+# All are needed: which of the first steps are rejected depends on the solver, and with fewer iterations none succeeds.
 FEW_ITERATIONS = range(15, 2, -1)
 
 
 def copy_run(source, target):
-    """Copy the folder of a run, so that the original stays to compare with."""
+    """Copy the folder of a run, so that the original remains for comparison."""
     shutil.rmtree(target, ignore_errors=True)
     shutil.copytree(source, target)
     return target
@@ -64,7 +64,7 @@ def go_on(implam, folder, launcher=()):
 
 
 def run_split(implam, folder, deck, settings, launchers=((), ())):
-    """Run a deck that leaves a checkpoint and go on from that in a copy; return the paths of both histories."""
+    """Run a deck that leaves a checkpoint and continue from it in a copy; return the paths of both histories."""
     deck = write_deck(folder, deck, settings)
     reference = run_deck(implam, deck, launchers[0])
     return reference, go_on(implam, copy_run(deck.parent, folder.with_name(f"{folder.name}_again")), launchers[1])
@@ -79,7 +79,7 @@ def require_same(path, reference, what):
 
 
 def check_goes_on(implam, folder, deck, settings):
-    """Fail unless a run goes on to the last bit from its last checkpoint; return its history."""
+    """Fail unless a run continues bitwise from its last checkpoint; return its history."""
     reference, again = run_split(implam, folder / "whole", deck, settings)
     require_same(again, reference, deck)
     return read_history(reference)
@@ -102,7 +102,7 @@ def split_at(fraction, settings):
 
 
 def check_integrators(implam, folder, _):
-    """Every pair of integrators, kinematics, and an adaptive step."""
+    """Every pair of integrators, kinematics, and adaptive steps."""
     cases = {}
     for impactor in ("gear4", "trapezoidal", "central", "conserving"):
         for plate in ("newmark", "generalized_alpha"):
@@ -119,14 +119,14 @@ def check_integrators(implam, folder, _):
 
 
 def check_contact(implam, folder, _):
-    """Delaminated faces in contact, by both laws: the pressures and their decay go on as they were."""
+    """Delaminated faces in contact, by both laws: the pressures and their decay are restored."""
     laws = {"augmented_lagrangian": [], "continuous_penalty": ["delamination%contact_exponent=1.5"]}
     for contact, exponent in laws.items():
         law = [f"delamination%contact='{contact}'", *exponent]
         settings = split_at(0.53, ["time%end=0.3e-3", *law])
         reference, again = run_split(implam, folder / contact, "../small/delamination.nml", settings)
         pressed = max(read_history(reference)["contact_iterations"])
-        require(pressed > 0, f"{contact}: no faces ever touched, the trial proves nothing.")
+        require(pressed > 0, f"{contact}: no faces were in contact, the trial is void.")
         require_same(again, reference, contact)
         print(f"{contact}: the same to the last bit")
 
@@ -149,7 +149,7 @@ def rejections(path, period):
 
 
 def split_next_to_rejections(implam, folder, deck, settings, period, periods):
-    """Split runs next to the first periods with a rejected step; return the histories, and how many were split just
+    """Split runs next to the first periods with a rejected step; return the histories, and the numbers of splits just
     before and just after such a step."""
     scout = write_deck(folder / "scout", deck, [*settings, f"time%end={periods * period!r}"])
     try:
@@ -157,7 +157,7 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
     except TrialError as failure:
         raise TrialError(f"No number of iterations rejects steps and yet reaches the end: {failure}") from None
     before, after, histories = 0, 0, []
-    # Half a period after a checkpoint would not show a forgotten step: the halved one and the full one both fit in.
+    # Half a period after a checkpoint would not reveal a lost step: the halved and the full step both fit in.
     ends = {number + share for number in sorted(found)[:2] for share in (0.9999, 1.9999) if number + share > 1}
     for end in sorted(ends):
         reference, again = run_split(implam, folder / f"end_{end}", deck, [*settings, f"time%end={end * period!r}"])
@@ -170,7 +170,7 @@ def split_next_to_rejections(implam, folder, deck, settings, period, periods):
 
 
 def check_next_to_rejections(implam, folder, deck, settings, period, periods):
-    """The last checkpoint just before and just after rejected steps, of runs that may take fewer and fewer iterations
+    """Runs whose last checkpoint is just before and just after rejected steps, with fewer and fewer iterations allowed
     until there have been both; return all histories."""
     settings = [*settings, f"output%checkpoint_every={period!r}"]
     before, after, histories = 0, 0, []
@@ -183,7 +183,7 @@ def check_next_to_rejections(implam, folder, deck, settings, period, periods):
             print(f"Down to {limit} iterations at most, checkpoints just before a rejected step: {before}, just after: "
                   f"{after}; the same to the last bit")
             return histories
-    raise TrialError("No checkpoint was next to a rejected step: the trial proves nothing.")
+    raise TrialError("No checkpoint was next to a rejected step: the trial is void.")
 
 
 def check_rejected(implam, folder, _):
@@ -198,15 +198,15 @@ def start(implam, *words):
 
 
 def wait_until(condition, process):
-    """Wait until the condition holds; the process must still run then."""
+    """Wait until the condition holds; the process must still be running then."""
     latest = time.monotonic() + PATIENCE
     while not condition() and process.poll() is None and time.monotonic() < latest:
         time.sleep(0.01)
-    require(process.poll() is None, f"The run was over too early, with {process.returncode}.")
+    require(process.poll() is None, f"The run ended too early, with {process.returncode}.")
 
 
 def exit_code(process):
-    """Wait for a process to end and return its exit code; one that goes on for too long is killed."""
+    """Wait for a process to end and return its exit code; one that runs too long is killed."""
     try:
         return process.wait(PATIENCE)
     except subprocess.TimeoutExpired:
@@ -215,12 +215,12 @@ def exit_code(process):
 
 
 def model_lines(folder):
-    """Return how many runs in a folder have set up their model, by the log that they share."""
+    """Return the number of runs in a folder that have set up their model, by the log that they share."""
     return sum(log.read_text(encoding="utf-8").count("Model:") for log in folder.glob("*.log"))
 
 
 def stamp(folder):
-    """Return the moment the checkpoint in a folder was written; 0 if there is none."""
+    """Return the time at which the checkpoint in a folder was written; 0 if there is none."""
     return max((path.stat().st_mtime_ns for path in folder.glob("*_restart.h5")), default=0)
 
 
@@ -228,7 +228,7 @@ LONG = ["mesh%elements=16,16", "case%kinematics='von_karman'", "impactor%velocit
 
 
 def check_signal(implam, folder, _):
-    """Stopped by the queue, once and again."""
+    """Stopped by signals, repeatedly."""
     reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, LONG))
     deck = write_deck(folder / "stopped", IMPACT, LONG)
     process = start(implam, deck, "--output", deck.parent)
@@ -282,7 +282,7 @@ def check_ranks_signal(implam, folder, launcher):
              "USR1 to mpirun": lambda process: process.send_signal(signal.SIGUSR1)}
     for runs, (name, stop) in enumerate(stops.items(), start=1):
         process = start(*launcher, "2", implam, *words)
-        # Rows are written at intervals, but the first one comes after METIS has been at work.
+        # Rows are written at intervals, but the first one is written after METIS has been called.
         wait_until(lambda runs=runs: model_lines(deck.parent) >= runs, process)
         time.sleep(0.5)
         stop(process)
@@ -295,7 +295,7 @@ def check_ranks_signal(implam, folder, launcher):
 
 
 def stop_by_limit(implam, folder, command, seconds):
-    """Run a command that the wall-clock limit must end; return the rows written."""
+    """Run a command that the wall-clock limit must end; return the number of rows written."""
     begun = time.monotonic()
     said = run([implam, *command], EXIT_STOPPED)
     took = time.monotonic() - begun
@@ -308,7 +308,7 @@ def stop_by_limit(implam, folder, command, seconds):
 
 def check_limit(implam, folder, _):
     """Stopped by the wall-clock limit: by the deck's, by the command line's, and after every single step."""
-    # Two seconds of each limit are kept for the start and the end of the program, so the whole must take longer.
+    # Two seconds of each limit are reserved for the start and the end of the program, so the limits must be longer.
     took, step = 0, 1e-6
     while took < 4:
         step /= 2
@@ -331,14 +331,14 @@ def check_limit(implam, folder, _):
     command = [deck, "--output", deck.parent]
     for step in range(1, 5):
         rows = stop_by_limit(implam, deck.parent, [*command, *SINGLE_STEP], 0)
-        require(rows == step, f"{rows} steps were taken where each was to be the last of its run.")
+        require(rows == step, f"{rows} rows were written instead of one per run.")
         command = ["restart", checkpoint_of(deck.parent)]
     run([implam, *command, *SINGLE_STEP])
     require_same(history_of(deck.parent), reference, "a run for each step")
 
 
 def check_kill(implam, folder, _):
-    """Killed at random moments, on and on, until the end is reached."""
+    """Killed at random moments until the end is reached."""
     settings = [*LONG, "output%checkpoint_every=5e-6"]
     reference = run_deck(implam, write_deck(folder / "uninterrupted", IMPACT, settings))
     deck = write_deck(folder / "killed", IMPACT, settings)

@@ -47,19 +47,19 @@ DECK = "../small/damage.nml"
 STEP = 10e-6
 GROWING = ["mesh%elements=10,10", "impactor%velocity=3", "delamination%G_c=200", "delamination%zone=28.3e-3,20.6e-3",
            "delamination%starter=8.9e-3"]
-# Up to the first cracks, cooled from the cure.
+# Up to the first cracks, with residual stress from curing.
 SOFTENING = ["time%end=120e-6", "thermal%delta_T=-150", "material%alpha1=-0.3e-6", "material%alpha2=28e-6"]
 NOSE = ["impactor%contact_area='sphere'", "time%step=16e-6", "time%end=240e-6",
         "material%shear_failure_strain=.05", "ply_damage%in_situ=.true."]
-# By central differences, with a row every fifty steps or so.
+# By central differences, with a row about every fifty steps.
 EXPLICIT = ["time%integrator='central_difference'", "time%end=150e-6", "output%force_filter=2e4",
             "output%history_every=4e-6"]
-# Steps of a second, with several releases each.
+# Steps that take a second, with several releases each.
 RUNNING = ["mesh%elements=20,20", "impactor%velocity=3", "delamination%G_c=100", f"time%end={11 * STEP!r}",
            f"output%checkpoint_every={STEP!r}", f"output%fields_every={STEP!r}"]
 
 
-# The operator follows what delaminates and touches over many steps before it is factored anew.
+# The operator is updated for delamination and contact over many steps before it is factored again.
 FOLLOWING = ["mesh%elements=8,8", "plate%edges='simple'", "plate%symmetry='none'", "impactor%velocity=6",
              "delamination%G_c=50", "time%end=100e-6", "time%step=5e-6", "time%integrator='newmark'",
              "time%beta=0.28", "time%gamma=0.55"]
@@ -82,45 +82,45 @@ def check_every(implam, folder, _):
 
 
 def check_cohesive(implam, folder, _):
-    """From every checkpoint of a run whose interface is cohesive."""
+    """From every checkpoint of a run with a cohesive interface."""
     check_all_checkpoints(implam, folder, "../small/cohesive.nml", [])
 
 
 def check_layers(implam, folder, _):
-    """From every checkpoint of a run in which layers appear."""
+    """From every checkpoint of a run in which layers are added."""
     check_all_checkpoints(implam, folder, "../small/layers.nml", [])
     layered = read_history(history_of(folder / "uninterrupted"))["layered_below_2"]
-    require(len(set(layered)) > 2, "Layers grew less than twice: the trial proves nothing.")
+    require(len(set(layered)) > 2, "Layers grew less than twice: the trial is void.")
 
 
 def check_softening(implam, folder, _):
-    """From every checkpoint of a run whose plies soften, with residual stress."""
+    """From every checkpoint of a run with softening plies and residual stress."""
     check_all_checkpoints(implam, folder, "../small/crack_bands.nml", SOFTENING, "energy_ply_damage")
 
 
 def check_nose(implam, folder, _):
-    """From every checkpoint of a run in which the area of contact follows the nose and shear is not linear."""
+    """From every checkpoint of a run with a spherical contact area and nonlinear shear."""
     check_all_checkpoints(implam, folder, "../small/crack_bands.nml", NOSE, "energy_ply_damage")
     areas = read_history(history_of(folder / "uninterrupted"))["contact_area"]
-    require(len(set(areas)) > 2, "The area of contact changed less than twice: the trial proves nothing.")
+    require(len(set(areas)) > 2, "The area of contact changed less than twice: the trial is void.")
 
 
 def check_explicit(implam, folder, _):
-    """From each look of a run by central differences at its limits, whose plies soften."""
+    """From each check of the limits in a run by central differences with softening plies."""
     reference = run_deck(implam, write_deck(folder / "uninterrupted", "../small/crack_bands.nml", EXPLICIT))
     history = read_history(reference)
-    require(history["energy_ply_damage"][-1] > 0 and history["force_filtered"][-1] > 0, "The trial proves nothing.")
+    require(history["energy_ply_damage"][-1] > 0 and history["force_filtered"][-1] > 0, "The trial is void.")
     deck = write_deck(folder / "look_by_look", "../small/crack_bands.nml", EXPLICIT)
     words, checks = [deck, "--output", deck.parent], 0
     while run_to_check(implam, words) == EXIT_STOPPED:
         words, checks = ["restart", checkpoint_of(deck.parent)], checks + 1
-    require(checks >= len(history["time"]), f"The run stopped {checks} times only: the trial proves nothing.")
-    require_same(history_of(deck.parent), reference, "a run for each look")
-    print(f"Stopped {checks} times and gone on with: the same to the last bit")
+    require(checks >= len(history["time"]), f"The run stopped {checks} times only: the trial is void.")
+    require_same(history_of(deck.parent), reference, "a run for each check")
+    print(f"Stopped {checks} times and continued: the same to the last bit")
 
 
 def run_to_check(implam, words):
-    """Go on until the time by the wall clock is looked at; return the exit code."""
+    """Continue until the wall-clock time is checked; return the exit code."""
     return exit_code(start(implam, *words, *SINGLE_STEP))
 
 
@@ -130,7 +130,7 @@ def check_all_checkpoints(implam, folder, source, settings, grows="delaminated_a
     history = read_history(reference)
     steps = len(history["time"])
     require(max(growth(history, grows)) > 0 and any(old == new for old, new in pairwise(history["refactorisations"])),
-            "Nothing grew, or the operator followed nothing: the trial proves nothing.")
+            "Nothing grew, or the operator was not updated: the trial is void.")
     deck = write_deck(folder / "step_by_step", source, settings)
     words = [deck, "--output", deck.parent]
     for step in range(1, steps):
@@ -164,12 +164,12 @@ def split_around_growth(implam, folder, name, choices):
         require(damage_of(again) == damage_of(reference), f"{name}: other cells delaminated.")
         history = read_history(reference)
         later = history["delaminated_area"][-1] - history["delaminated_area"][step - 1]
-        require(later > 0, f"{name}: nothing grew after the split, the trial proves nothing.")
+        require(later > 0, f"{name}: nothing grew after the split, the trial is void.")
         print(f"{name} split after step {step}: {1e6 * later:.0f} mm^2 grow after it, the same to the last bit")
 
 
 def rows_written(folder):
-    """Return how many rows the history in a folder has by now; 0 if there is none yet."""
+    """Return the current number of rows of the history in a folder; 0 if there is none yet."""
     return sum(max(0, path.read_text(encoding="utf-8", errors="replace").count("\n") - lines_before_rows(path))
                for path in folder.glob("*_history.csv"))
 
@@ -181,12 +181,12 @@ def lines_before_rows(path):
 
 
 def stop_during(implam, deck, step, stop, delay):
-    """Send a signal some seconds after a step has begun; return whether it was still being computed by what the run
-    leaves."""
+    """Send a signal some seconds after a step has begun; return whether the files of the run show that it was still
+    being computed."""
     process = start(implam, deck, "--output", deck.parent)
     wait_until(lambda: rows_written(deck.parent) >= step - 1, process)
     time.sleep(delay)
-    # Frozen, so that it is certain that the step is not over yet when the signal comes.
+    # Suspended, so that the step is certainly not completed when the signal arrives.
     process.send_signal(signal.SIGSTOP)
     inside = rows_written(deck.parent) == step - 1
     process.send_signal(stop)
@@ -199,22 +199,22 @@ def stop_during(implam, deck, step, stop, delay):
 
 
 def check_moments(implam, folder, _):
-    """Stopped and killed in the step with the most releases."""
+    """Stopped and killed within the step with the most releases."""
     reference = run_deck(implam, write_deck(folder / "uninterrupted", DECK, RUNNING))
     cells = released_cells(reference)
     require(len(cells) == len(read_history(reference)["time"]), "The fields are not those of every step.")
     releases = [0, *(min_releases(before, after) for before, after in pairwise(cells))]
     step = 1 + max(range(len(releases)), key=releases.__getitem__)
     print(f"Step {step} has {releases[step - 1]} releases at least, {len(cells[step - 1] - cells[step - 2])} cells")
-    require(releases[step - 1] > 1, "No step has several releases: the trial proves nothing.")
+    require(releases[step - 1] > 1, "No step has several releases: the trial is void.")
     for stop in (signal.SIGTERM, signal.SIGKILL):
-        # The quicker the machine, the sooner the step is over.
+        # The faster the machine, the sooner the step is completed.
         for trial in range(6):
             deck = write_deck(folder / stop.name, DECK, RUNNING)
             if stop_during(implam, deck, step, stop, 0.1 / 2**trial):
                 break
         else:
-            raise TrialError(f"{stop.name} never came within the step.")
+            raise TrialError(f"{stop.name} never arrived within the step.")
         go_on(implam, deck.parent)
         require_same(history_of(deck.parent), reference, stop.name)
         require(released_cells(history_of(deck.parent)) == cells, f"{stop.name}: other cells delaminated.")
@@ -230,14 +230,14 @@ def check_ranks(implam, folder, launcher):
         require_close(again, reference, f"from {first} to {second} ranks")
         require(damage_of(again) == damage_of(reference), "Other cells delaminated.")
         require(read_history(reference)["delaminated_area"][-1] > read_history(reference)["delaminated_area"][10],
-                "Nothing grew after the split, the trial proves nothing.")
+                "Nothing grew after the split, the trial is void.")
 
 
 def check_rejected(implam, folder, _):
-    """Steps that are tried again shorter while delaminations grow."""
+    """Steps that are repeated with half the length while delaminations grow."""
     tight = [*GROWING, "delamination%G_c=100", f"time%step={STEP!r}", "solver%tolerance=1e-9"]
     histories = check_next_to_rejections(implam, folder, DECK, tight, STEP, 16)
-    require(max(max(growth(read_history(path))) for path in histories) > 0, "Nothing grew: the trial proves nothing.")
+    require(max(max(growth(read_history(path))) for path in histories) > 0, "Nothing grew: the trial is void.")
 
 
 TRIALS = {"every": check_every, "splits": check_splits, "moments": check_moments, "ranks": check_ranks,

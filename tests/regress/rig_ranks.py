@@ -1,10 +1,10 @@
-"""Rigs, noses and settling on 1 to 4 ranks: the histories are equal to the last bit. Usage: rig_ranks.py IMPLAM FOLDER
-LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
+"""Rigs, spherical contact areas and damping to rest on 1 to 4 ranks: the histories are equal to the last bit.
+Usage: rig_ranks.py IMPLAM FOLDER LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
 
-rig      struck aside by a sphere on a circular frame that the plate may lift off, held by clamps of a given force, with
+rig      an eccentric impact with a spherical contact area on a unilateral circular frame with clamps of a given force,
          an initial deflection and two interfaces; damped to rest after the contact
-elastic  the same impactor on elastic edges that differ, plies that fail
-line     damped to rest under pressure in a circular frame, then pressed by lines"""
+elastic  the same impactor on elastic edges of different kinds, with ply failure
+line     damped to rest under pressure on a circular frame, then loaded by lines"""
 
 import sys
 from pathlib import Path
@@ -43,7 +43,7 @@ DECKS = {
 
 
 def check(implam, folder, launcher):
-    """Every deck on every number of ranks."""
+    """Run every deck on every number of ranks."""
     for name, text in DECKS.items():
         histories = []
         for ranks in range(1, 5):

@@ -10,10 +10,11 @@ half_x   a half along x against the full plate
 half_y   a half along y against the full plate
 point    the half of point symmetry against the full plate
 mirror   against the plate with x and y exchanged
-tolerances  residuals of 1e-9 against .8e-9 and 2e-9, with other numbers of iterations and other renewals of operators
+tolerances  residuals of 1e-9 against .8e-9 and 2e-9, with other numbers of iterations and updates of operators
 
 LAUNCHER takes the number of ranks as its last word. The full plate has twice the elements along the directions halved.
-Where an interface delaminates or plies fail, it must grow, and the same cells and plies be the ones at the end.
+Where an interface delaminates or plies fail, damage must grow, and the same cells and plies must have failed at the
+end.
 """
 
 import re
@@ -36,7 +37,8 @@ from solver_runs import (
     write_deck,
 )
 
-# How the solution was found and how closely, not what it is; the stress is a measure for the step only.
+# Columns of how the solution was found and its accuracy, not of the solution; the stress is a measure for the step
+# only.
 COUNTS = ("iterations", "force_iterations", "contact_iterations", "total_iterations", "total_force_iterations",
           "total_contact_iterations", "refactorisations", "solves", "complementarity")
 PARTS = ("quarter", "half_x", "half_y", "point")
@@ -51,7 +53,7 @@ def within(deck, settings):
 
 
 def histories_of_ranks(implam, deck, folder, launcher, settings):
-    """Yield name and history of the runs on 1 to 3 ranks, and of those that change to 4, 1 and 2."""
+    """Yield name and history of the runs on 1 to 3 ranks, and of those continued on 4, 1 and 2."""
     settings = within(deck, settings)
     for ranks in (1, 2, 3):
         path = write_deck(folder / f"ranks_{ranks}", deck, settings)
@@ -92,7 +94,7 @@ def exchange_axes(text):
 
 
 def histories_of_mirror(implam, deck, folder, _, settings):
-    """Yield name, history and damage of the plate and of its mirror image, whose damage is mirrored back."""
+    """Yield name, history and damage of the plate and of its mirror image, whose damage is mirrored again."""
     plate = write_deck(folder / "plate", deck, settings)
     history = run_deck(implam, plate)
     yield "plate", read_history(history), damage_of(history)
@@ -127,13 +129,13 @@ def compare(kind, implam, deck, folder, tolerance, *words):
     passed = True
     _, reference, reference_damage = next(runs)
     area = reference["delaminated_area"]
-    require(area[0] == 0 or area[-1] > area[0], "Nothing grew: the trial proves nothing.")
-    require(bool(reference_damage) >= (area[-1] > 0), "The fields do not show what delaminated.")
+    require(area[0] == 0 or area[-1] > area[0], "Nothing grew: the trial is void.")
+    require(bool(reference_damage) >= (area[-1] > 0), "The fields do not show the delamination.")
     for name, history, damage in runs:
         difference, column = largest_difference(history, reference, left_out)
         within = difference <= float(tolerance) and damage == reference_damage
         print(f"{name}: {len(history['time'])} rows, largest difference {difference:.2e} ({column}), "
-              f"{len(damage)} cells apart or failed, {len(damage.items() ^ reference_damage.items())} other, "
+              f"{len(damage)} delaminated or failed cells, {len(damage.items() ^ reference_damage.items())} other, "
               f"{'pass' if within else 'FAIL'}", flush=True)
         passed &= within
     require(passed, "The histories differ.")

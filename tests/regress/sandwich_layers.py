@@ -1,7 +1,7 @@
 """Equal stiffness: a sandwich with and without interfaces at or in its core, .1 %.
 Usage: sandwich_layers.py IMPLAM FOLDER
 
-Shear stresses of the core are nearly uniform while its skins hold: 5/6 of its stiffness makes the panel 10 % softer.
+Shear stresses of the core between its skins are nearly uniform: 5/6 of its stiffness makes the panel 10 % softer.
 Halves with a free face each make it 11 % stiffer."""
 
 import sys

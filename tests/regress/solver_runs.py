@@ -1,4 +1,4 @@
-"""Runs of the solver for the tests: decks changed key by key, processes, histories. Standard library only."""
+"""Runs of the solver for the tests: decks with changed keys, processes, histories. Standard library only."""
 
 import csv
 import math
@@ -15,7 +15,7 @@ ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indent
 
 
 class TrialError(Exception):
-    """What was found wrong, in one sentence."""
+    """A failure of a trial, in one sentence."""
 
 
 def require(condition, sentence):
@@ -25,7 +25,7 @@ def require(condition, sentence):
 
 
 def exit_code_of(trial, *arguments):
-    """Run a trial; return 0, or 1 after saying what was found wrong."""
+    """Run a trial; return 0, or 1 after printing its failure."""
     try:
         trial(*arguments)
     except (TrialError, subprocess.TimeoutExpired) as failure:
@@ -35,7 +35,7 @@ def exit_code_of(trial, *arguments):
 
 
 def change_deck(text, settings):
-    """Return a deck with keys set anew; each setting reads group%key=value."""
+    """Return a deck with changed keys; each setting reads group%key=value."""
     for setting in settings:
         target, value = setting.split("=", 1)
         group, key = target.split("%")
@@ -53,11 +53,11 @@ def change_deck(text, settings):
 
 
 def write_deck(folder, deck, settings=()):
-    """Make the folder anew and put the changed deck into it; return its path."""
+    """Create an empty folder with the changed deck; return the path of the deck."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     path = folder / "deck.nml"
-    # Trials go on from a checkpoint within the run, which that of its end would replace.
+    # Trials continue from a checkpoint within the run, which the one at its end would replace.
     if any(setting.startswith("output%checkpoint_every") for setting in settings):
         settings = [*settings, "output%checkpoint_at_end=.false."]
     path.write_text(change_deck((DECKS / deck).read_text(encoding="utf-8"), settings), encoding="utf-8")
@@ -74,7 +74,7 @@ def run(command, expected=EXIT_DONE, folder=None):
 
 
 def run_deck(implam, deck, launcher=()):
-    """Run a deck; its results go beside it. Return the path of the history."""
+    """Run a deck; its results are written beside it. Return the path of the history."""
     run([*launcher, implam, deck, "--output", deck.parent])
     return history_of(deck.parent)
 
@@ -82,7 +82,7 @@ def run_deck(implam, deck, launcher=()):
 def history_of(folder):
     """Return the path of the only history in a folder."""
     histories = sorted(folder.glob("*_history.csv"))
-    require(len(histories) == 1, f"{folder} holds {len(histories)} histories.")
+    require(len(histories) == 1, f"{folder} contains {len(histories)} histories.")
     return histories[0]
 
 
@@ -106,8 +106,8 @@ def read_history(path):
 def largest_difference(history, reference, leave_out=()):
     """Return the largest difference of two histories and its column.
 
-    Each column is relative to its largest value; what the ledger found missing and what integrators and contact took
-    is relative to the largest sum of the energies, what the faces overlap to the largest deflection.
+    Each column is relative to its largest value; energy error and dissipation by integrators and contact are relative
+    to the largest sum of the energies, penetration of faces to the largest deflection.
     """
     require(list(history) == list(reference), "The columns of the histories differ.")
     require(len(history["time"]) == len(reference["time"]),

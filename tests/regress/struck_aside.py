@@ -1,8 +1,8 @@
-"""Navier's series: deflection of a plate struck beside its centre, .5 %, its mirror image 1e-8.
+"""Navier's series: deflection of a plate under an eccentric impact, .5 %, its mirror image 1e-8.
 Usage: struck_aside.py IMPLAM FOLDER
 
-Navier's series for a simply supported plate under a force on a square anywhere, quasi-static as in frame.py; and the
-plate struck at the mirrored place, which must respond alike."""
+Navier's series for a simply supported plate under a force on a square at any position, quasi-static as in frame.py; and
+the plate with the mirrored struck point, whose response must be the same."""
 
 import math
 import sys
@@ -26,7 +26,7 @@ DECK = """&case name='aside' kinematics='linear' /
 
 
 def navier_stiffness():
-    """Force over the mean deflection of the patch, Kirchhoff's plate."""
+    """Force over the mean deflection of the patch, for Kirchhoff's plate."""
     bending = MODULUS * THICKNESS**3 / 12 / (1 - POISSON**2)
 
     def mean(number, axis):
@@ -40,7 +40,7 @@ def navier_stiffness():
 
 
 def history_at(implam, folder, at, mesh):
-    """Run the plate struck at a place."""
+    """Run the plate with an impact at a given point."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "deck.nml"
     path.write_text(DECK.format(at=f"{at[0]}, {at[1]}", mesh=mesh), encoding="utf-8")
@@ -61,7 +61,7 @@ def try_places(implam, folder):
         largest = max(abs(one - other) for one, other in zip(history["force"], image["force"], strict=True))
         print(f"{name}: its image differs by {largest / max(history['force']):.1e} of the force", flush=True)
         passed &= largest <= MIRROR_TOLERANCE * max(history["force"])
-    require(passed, "The plate struck aside is too stiff or too soft, or its image differs.")
+    require(passed, "The stiffness under an eccentric impact is wrong, or the image differs.")
 
 
 if __name__ == "__main__":

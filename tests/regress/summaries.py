@@ -5,9 +5,9 @@ figures  NAME_summary.json against history and log, with several interfaces and 
 contact  duration of contact and rebound of a sphere on a rigid base against Hertz
 restart  a resumed run has the summary of the uninterrupted one: bitwise, with warnings and onsets
 ranks    on 1 and 2 ranks: to 1e-9
-endings  runs that were stopped or failed report it, with the values reached
+endings  the summaries of stopped and failed runs report this, with the values reached
 errors   large deflection with an accuracy: a coarser run estimates the errors, a finer one confirms them
-static   the release rate under a static load grows with its square and is that of the compliance"""
+static   the energy release rate under a static load is proportional to its square and is that of the compliance"""
 
 import json
 import math
@@ -30,7 +30,7 @@ from solver_runs import (
 )
 
 DAMAGE, COHESIVE = "../small/damage.nml", "../small/cohesive.nml"
-# Two interfaces whose zones damage fills, so that onset, growth and warnings come one after the other.
+# Two interfaces whose zones are filled by damage, so that onset, growth and warnings follow each other.
 TWO = ["laminate%angles=0,90,90,0", "laminate%thicknesses=0.5e-3"]
 SECOND = ("&delamination below_ply=1 G_Ic=280 G_IIc=900 law='cohesive' zone=33e-3,19e-3 strength_opening=27e6 "
           "strength_shear=40e6 /\n")
@@ -44,7 +44,7 @@ def summary_of(folder):
 
 
 def flat(value, name=""):
-    """Return the members of a summary by their paths, what belongs to a process left out."""
+    """Return the members of a summary by their paths, without those of a process."""
     if isinstance(value, dict):
         items = value.items()
     elif isinstance(value, list):
@@ -70,12 +70,12 @@ def require_equal(summary, reference, what, tolerance=0.0):
 
 
 def close(value, expected, tolerance, what):
-    """Fail unless a figure is as expected, to a tolerance relative to it."""
+    """Fail unless a figure has the expected value, to a relative tolerance."""
     require(math.isclose(value, expected, rel_tol=tolerance, abs_tol=1e-300), f"{what} is {value}, not {expected}.")
 
 
 def check_interface(entry, history, has_force):
-    """Hold what is said of an interface against its columns."""
+    """Compare the figures of an interface with its columns."""
     ply = entry["ply_above"]
     column = {name: history[f"{name}_below_{ply}"] for name in ("stage", "area", "energy", "extent_x", "extent_y")}
     for name, stage in (("onset", 1), ("first_growth", 2)):
@@ -92,12 +92,12 @@ def check_interface(entry, history, has_force):
 
 
 def check_against_history(folder):
-    """Hold a summary of an impact against its history, and the log against the summary."""
+    """Compare a summary of an impact with its history, and the log with the summary."""
     summary, history = summary_of(folder), read_history(history_of(folder))
     peak = max(history["force"])
     require(summary["peak_force"] == peak, f"The peak force is {summary['peak_force']}, not {peak}.")
     require(summary["peak_force_at"] == history["time"][history["force"].index(peak)], "The peak is at another time.")
-    require(summary["largest_deflection"] == max(history["deflection"]), "Another largest deflection.")
+    require(summary["largest_deflection"] == max(history["deflection"]), "The largest deflection differs.")
     for name in (*(name for name in history if name.startswith("energy_") and name in summary), "work_external",
                  "impactor_velocity", "projected_area", "delaminated_area"):
         close(summary[name], history[name][-1], 1e-13, name)
@@ -113,8 +113,8 @@ def check_against_history(folder):
     log = next(folder.glob("*.log")).read_text(encoding="utf-8")
     rounded = float(f"{peak:.3e}")
     printed = [line.split() for line in log.splitlines() if line.startswith("  peak force ")]
-    require(len(printed) == 1 and float(printed[0][2]) == rounded, f"The log says {printed}, not {rounded}.")
-    require(float(printed[0][5]) == float(f"{summary['peak_force_at']:.3e}"), f"The log says {printed}.")
+    require(len(printed) == 1 and float(printed[0][2]) == rounded, f"The log has {printed}, not {rounded}.")
+    require(float(printed[0][5]) == float(f"{summary['peak_force_at']:.3e}"), f"The log has {printed}.")
     for warning in summary["warnings"]:
         require(log.count(warning["text"]) >= 1, f"The log's end lacks: {warning['text']}")
     print(f"{folder.name}: {summary['peak_force']:.4g}, {[entry['first_growth'] for entry in summary['interfaces']]}")
@@ -145,7 +145,7 @@ def check_figures(implam, folder, _):
     check_times(deck.parent)
     summary = check_against_history(deck.parent)
     history = read_history(history_of(deck.parent))
-    # Threshold of the cross-ply by hand; its reduced stiffnesses are those of the deck.
+    # Closed-form threshold force of the cross-ply; its reduced stiffnesses are those of the deck.
     e1, e2, g, nu = 139e9, 9.4e9, 4.5e9, 0.309
     q11, q22 = e1 / (1 - nu**2 * e2 / e1), e2 / (1 - nu**2 * e2 / e1)
     ply = 0.6666667e-3
@@ -171,7 +171,7 @@ def check_figures(implam, folder, _):
     close(ratio, math.sqrt(900 / 400), 1e-12, "The ratio of the threshold forces")
     require(0 < two["projected_area"] <= two["delaminated_area"], "The projected area is out of range.")
     for single in (summary, one):
-        require(single["in_contact"] and single["delaminated_area"] > 0, "The deck is another one.")
+        require(single["in_contact"] and single["delaminated_area"] > 0, "The deck is not the expected one.")
         close(single["projected_area"], single["delaminated_area"], 1e-12, "The area projected of one interface")
 
 
@@ -186,14 +186,14 @@ def check_contact(implam, folder, _):
     close(summary["rebound_velocity"], 1, 1e-6, "The rebound")
     close(summary["peak_force"], 1728.713, 2e-5, "The peak force")
     print(summary["contact_duration"])
-    # A ball that is released at the plate brings no energy; residual stress is none of its own.
+    # A ball released at the plate has no energy; residual stress does not count as impact energy.
     deck = write_deck(folder / "released", "sun_chen_elastic.nml", [
         "impactor%velocity=0", "impactor%gravity=9.81", "time%end=50e-6", "material%alpha1=0", "material%alpha2=28e-6",
         "thermal%delta_T=-50"])
     run_deck(implam, deck)
-    require(summary_of(deck.parent)["energy_impact"] == 0, "It brings energy.")
+    require(summary_of(deck.parent)["energy_impact"] == 0, "The impact energy is not zero.")
     log, = deck.parent.glob("*.log")
-    require("nfinity" not in log.read_text(encoding="utf-8"), "A share of no energy is printed.")
+    require("nfinity" not in log.read_text(encoding="utf-8"), "A ratio to zero energy is printed.")
 
 
 def check_restart(implam, folder, _):
@@ -236,8 +236,8 @@ OVERLOAD = """&case name='overload' kinematics='von_karman' /
 
 
 def check_overload(implam, folder):
-    """Failed plies cannot carry the load: the run ends at .3 of it with a sentence. Of the energy there 2 % is
-    algorithmic, little beside that of the full load, which it does not reach; so it warns at the end."""
+    """Failed plies cannot carry the load: the run ends at .3 of it with a sentence. There 2 % of the energy are
+    algorithmic, little beside the energy at the full load, which is not reached; the warning is given at the end."""
     folder.mkdir(parents=True, exist_ok=True)
     deck = folder / "overload.nml"
     deck.write_text(OVERLOAD, encoding="utf-8")
@@ -252,7 +252,7 @@ def check_overload(implam, folder):
 
 
 def check_endings(implam, folder, _):
-    """Stopped before its first step is over; no equilibrium."""
+    """A run stopped before the end of its first step; a run without equilibrium."""
     deck = write_deck(folder / "stopped", DAMAGE)
     run([implam, deck, "--output", deck.parent, "--wall-limit", "1e-3"], EXIT_STOPPED)
     summary = summary_of(deck.parent)
@@ -276,11 +276,11 @@ def check_endings(implam, folder, _):
     wait_until(lambda: not list(killed.parent.glob("*_summary.json")), process)
     process.kill()
     process.wait()
-    require(not list(killed.parent.glob("*_summary.json")), "A killed run leaves the summary of the one before.")
+    require(not list(killed.parent.glob("*_summary.json")), "A killed run leaves the summary of an earlier run.")
 
 
 def check_errors(implam, folder, _):
-    """Sun and Chen's plate struck by 100 g at 10 m/s: errors by the elastic impact, by a coarse run, or none."""
+    """Sun and Chen's plate struck by 100 g at 10 m/s: errors from the elastic impact, from a coarse run, or none."""
     fast = ["case%kinematics='von_karman'", "impactor%velocity=10", "impactor%mass=0.1", "mesh%elements=8,8",
             "time%step=8e-6", "time%end=1500e-6", "case%accuracy='draft'"]
     found = {}
@@ -296,13 +296,13 @@ def check_errors(implam, folder, _):
     for figure in ("peak_force", "peak_force_at", "contact_duration", "largest_deflection", "impactor_velocity"):
         off = abs(found["fast"][figure] - found["finer"][figure])
         estimate = found["fast"]["estimated_errors"][figure]
-        print(f"{figure}: {off:.3g} off, estimate {estimate:.3g} of {found['finer'][figure]:.4g}")
-        require(off <= 2 * estimate, f"{figure} is {off} off, the estimate was {estimate}.")
+        print(f"{figure}: error {off:.3g}, estimate {estimate:.3g} of {found['finer'][figure]:.4g}")
+        require(off <= 2 * estimate, f"The error of {figure} is {off}, the estimate {estimate}.")
     check_coarse_run(implam, folder)
     check_coarse_core(implam, folder)
 
 
-# A plate with a core of equal cells, whose full mesh has an odd half of its elements.
+# A plate with a core of equal cells, whose full mesh has an odd number of elements per half.
 CORED = """&case name='cored' error_estimate=.true. kinematics='linear' /
 &plate length=0.1,0.1 edges='clamped' symmetry='{}' /
 &mesh elements={} core=24e-3,24e-3 cell=4e-3 patch=4e-3 /
@@ -315,7 +315,7 @@ CORED = """&case name='cored' error_estimate=.true. kinematics='linear' /
 
 
 def check_coarse_core(implam, folder):
-    """The coarse run of a full plate has the errors of that of its quarter, which has the same mesh."""
+    """The coarse run of a full plate gives the errors of that of its quarter, which has the same mesh."""
     estimates = []
     for part, elements in (("none", "10,10"), ("quarter", "5,5")):
         deck = folder / f"cored_{part}" / "cored.nml"
@@ -330,7 +330,7 @@ def check_coarse_core(implam, folder):
 
 
 def check_coarse_run(implam, folder):
-    """The coarse run is that of the coarser deck, with an area of contact that follows the nose, too."""
+    """The coarse run is that of the coarser deck, also with a spherical contact area."""
     blunt = ["plate%length=0.1,0.1", "mesh%patch=4e-3", "impactor%radius=2", "impactor%contact_area='sphere'",
              "impactor%mass=0.1", "time%end=100e-6"]
     fine = ["mesh%elements=16,16", "time%step=2e-6", "case%error_estimate=.true."]
@@ -347,7 +347,7 @@ def check_coarse_run(implam, folder):
 
 
 def static_run(implam, folder, starter):
-    """Return the history and the summary of four load steps on a plate whose lower faces part freely."""
+    """Return the history and the summary of four load steps on a plate whose lower faces separate freely."""
     deck = write_deck(folder, "../small/static_damage.nml", [
         "mesh%elements=12,12", "delamination%below_ply=1", "delamination%G_c=400", "delamination%contact='none'",
         "delamination%zone=60e-3,60e-3", f"delamination%starter={starter}", "static%steps=4"])
@@ -359,7 +359,7 @@ def static_run(implam, folder, starter):
 
 
 def check_static(implam, folder, _):
-    """The largest rate on the front of a square lies above the mean, which the change of compliance gives."""
+    """The largest rate on the front of a square is above the mean rate, which follows from the change of compliance."""
     history, summary = static_run(implam, folder / "small", 30e-3)
     ratio = history["release_ratio"]
     require(ratio[-1] > 0, "The release rate is 0.")
@@ -368,17 +368,17 @@ def check_static(implam, folder, _):
     wider, _ = static_run(implam, folder / "large", 38e-3)
     growth = wider["delaminated_area"][-1] - history["delaminated_area"][-1]
     require(growth > 0, "The larger starter is not larger.")
-    # Under a given load twice the release is what the load's work gains.
+    # Under a given load twice the energy release is the increase of the work of the load.
     mean = (wider["energy_strain"][-1] - history["energy_strain"][-1]) / growth / 400
     print(f"largest {ratio[-1]:.4g}, mean {mean:.4g}")
     require(0.2 * ratio[-1] < mean < ratio[-1], f"The mean ratio is {mean}, the largest {ratio[-1]}.")
-    require(summary["interfaces"][0]["first_growth"] is None and "peak_force" not in summary, "It reports growth.")
+    require(summary["interfaces"][0]["first_growth"] is None and "peak_force" not in summary, "Growth is reported.")
     deck = write_deck(folder / "pressed", "framed_panel.nml", ["mesh%elements=6, 6", "static%steps=1",
                                                                "case%kinematics='linear'"])
     run_deck(implam, deck)
     log, = (path.read_text(encoding="utf-8") for path in deck.parent.glob("*.log"))
     strength, = re.findall("^  residual strength .*", log, re.MULTILINE)
-    require(", load factor 1," in strength and "1 step (" in log and ", 1 rank," in log, f"The log says {strength}")
+    require(", load factor 1," in strength and "1 step (" in log and ", 1 rank," in log, f"The log has {strength}")
 
 
 TRIALS = {"figures": check_figures, "contact": check_contact, "restart": check_restart, "ranks": check_ranks,

@@ -1,5 +1,5 @@
-"""The option --verify: the finer run is that of a deck refined by hand, changes are those of the summaries, and
-existing results are reused. Usage: verification.py IMPLAM FOLDER"""
+"""The option --verify: the finer run is that of a deck refined by hand, changes are those of the summaries,
+and existing results are reused. Usage: verification.py IMPLAM FOLDER"""
 
 import json
 import sys
@@ -11,12 +11,12 @@ from solver_runs import EXIT_DONE, EXIT_STOPPED, exit_code_of, read_history, req
 DECK = "../small/delamination.nml"
 SHORT = ["case%name='plate'", "time%end=120e-6"]
 BY_HAND = [*SHORT, "mesh%elements=12,12", "time%step=5e-6"]
-# A limit by the wall clock that is up after the first step, on every machine.
+# A wall-clock limit that ends the run after the first step on every machine.
 AT_ONCE = ["--wall-limit", "1e-9"]
 
 
 def rows(folder, name):
-    """Return a history as it was written, without what is said of the run."""
+    """Return a history as written, without its comment lines."""
     lines = (folder / f"{name}_history.csv").read_text("utf-8").splitlines()
     return [line for line in lines if not line.startswith("#")]
 
@@ -45,13 +45,13 @@ def main(implam, folder):
     command = [implam, stopped, "--verify", "--output", stopped.parent]
     for name in ("plate", "plate_finer1"):
         said = run([*command, *AT_ONCE], EXIT_STOPPED)
-        require("with the same command" in said, f"Nothing says how to go on: {said}")
+        require("with the same command" in said, f"The command to continue is not printed: {said}")
         require(len(rows(stopped.parent, name)) == 2, f"{name} was not stopped after its first step.")
         if name == "plate":
-            # The first run to its end, the second not yet.
+            # The first run is completed, the second not yet.
             run([implam, "restart", stopped.parent / "plate_restart.h5"])
     said = run(command)
-    require(said.count("has been run before") == 1, f"The first run was done again: {said}")
+    require(said.count("has been run before") == 1, f"The first run was repeated: {said}")
     for name in ("plate", "plate_finer1"):
         require(rows(stopped.parent, name) == rows(deck.parent, name), f"{name} is not that without a stop.")
     # Another deck of the same name is run.

@@ -2,8 +2,8 @@
 """The cohesive interface against closed forms and an independent calculation: one row of a table for each run.
 Usage: cohesive_study.py IMPLAM STUDY...
 
-thresholds  a clamped isotropic plate on cells of 2, 1 and .5 mm, with and without a starter, strengths of 60 MPa: force
-            while the delamination grows over the closed form, its scatter, and the radius along x and a diagonal
+thresholds  a clamped isotropic plate with cells of 2, 1 and .5 mm, with and without a starter, strengths of 60 MPa:
+            force during growth over the closed form, its scatter, and the radius along x and a diagonal
 steps       the same with starter, steps of 20, 10 and 5 us
 crossply    the force when the area of reference/crossply_cohesive_2mm.nml passes a value, cells of 2 and 1 mm
 impact      input/crossply_threshold.nml, no starter: cells of 2.5 and 1.25 mm, steps of 20 and 10 us, other strengths
@@ -27,12 +27,12 @@ from solver_runs import change_deck
 THRESHOLD = ROOT/'input/verify/cohesive_threshold.nml'
 CROSSPLY = ROOT/'input/reference/crossply_cohesive_2mm.nml'
 CLOSED_FORM = math.sqrt(8*math.pi**2*50e9*2e-3**3*800/(9*(1 - 0.3**2)))
-# Force (N) when the dissipated area (mm^2) passes a value, of an independent calculation.
+# Force (N) at given dissipated areas (mm^2), from an independent calculation.
 FORCES = {4: 1157, 20: 1279, 50: 1237, 100: 1217, 200: 1211, 300: 1198, 400: 1186, 600: 1165, 800: 1159}
 
 
 def run(program, text, folder, *options):
-    """Run a deck; rows of its history, and seconds of the processor."""
+    """Run a deck; rows of its history, and processor seconds."""
     deck = pathlib.Path(folder, 'deck.nml')
     deck.write_text(text, encoding='utf-8')
     process = subprocess.Popen([program, 'run', deck, '--output', folder, *options], stdout=subprocess.DEVNULL,
@@ -77,7 +77,7 @@ def thresholds(program):
                 rows, seconds = run(program, text, folder)
                 along, across = radii(folder)
             peak = max(row['force'] for row in rows)
-            # Once the force has fallen for the first time, while the front is two cells off the zone's border.
+            # After the first decrease of the force, while the front is two cells from the border of the zone.
             fall = next(i for i in range(1, len(rows)) if rows[i]['force'] < rows[i - 1]['force']
                         and rows[i]['delaminated_area'] > 1e-6)
             growing = [row['force'] for row, before in zip(rows[fall:], rows[fall - 1:], strict=False)
@@ -106,7 +106,7 @@ def steps(program):
 
 
 def force_at(area, rows):
-    """Force when the area passes a value, straight between rows."""
+    """Force at a given area, by linear interpolation between rows."""
     for row, before in zip(rows[1:], rows, strict=False):
         if row['delaminated_area'] >= area > before['delaminated_area']:
             part = (area - before['delaminated_area'])/(row['delaminated_area'] - before['delaminated_area'])
@@ -139,7 +139,7 @@ def crossply(program):
 
 
 def impact(program):
-    """A drop weight: peak force, force while the area grows, area."""
+    """A drop weight: peak force, force during growth, area."""
     text = (ROOT/'input/crossply_threshold.nml').read_text(encoding='utf-8')
     print('| set | peak force, N | mean while growing, N | area, mm^2 | integrators over the impact | processor, s |\n'
           + '|---'*6 + '|')
@@ -157,7 +157,7 @@ def impact(program):
 
 
 def strips(program):
-    """Two modes, two kinds of cells."""
+    """Two modes, two sizes of cells."""
     print('| moments, strength, cells | mean over exact | largest |\n|---|---|---|')
     bending = 139e9*0.667e-3**3/12
     for kind, exact, cases in (('shear', 20e-3*math.sqrt(16/3*800*bending)/2, ((80e6, 60), (30e6, 30))),
@@ -177,7 +177,7 @@ STUDIES = {study.__name__: study for study in (thresholds, steps, crossply, impa
 
 
 def main(program, *studies):
-    """Run the studies asked for."""
+    """Run the requested studies."""
     unknown = [study for study in studies if study not in STUDIES]
     if unknown or not studies:
         raise SystemExit(f'Studies: {", ".join(STUDIES)}.')

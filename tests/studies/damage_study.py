@@ -19,7 +19,7 @@ sys.path.insert(0, str(ROOT/'tests/regress'))
 from solver_runs import change_deck
 
 SIDES = (40, 16)  # mm, core and zone of the deck
-# Elements of the deck outside its core, along x and y; a finer mesh has as many.
+# Elements of the deck outside its core, along x and y; a finer mesh has the same number.
 OUTSIDE = (6, 7)
 MATERIAL = ('E1', 'E2', 'G12', 'G13', 'G23', 'YT', 'S12', 'G_Ic', 'G_IIc')
 
@@ -48,7 +48,7 @@ def damping(text):
 
 
 def numbers(text):
-    """Numerical keys changed by half."""
+    """Numerical keys changed by half of their values."""
     yield 'as it is', []
     del text
     yield 'zone 59.2, 24 mm', ['mesh%core=59.2e-3, 24e-3', 'delamination%zone=59.2e-3, 24e-3', 'mesh%elements=43, 22']
@@ -60,7 +60,7 @@ def numbers(text):
 
 
 def materials(text):
-    """Each figure of the material 10 % larger."""
+    """Each constant of the material 10 % larger."""
     yield 'as it is', []
     for key in MATERIAL:
         group = 'delamination' if key.startswith('G_') else 'material'
@@ -106,7 +106,7 @@ def run(program, text, name):
 
 
 def main():
-    """Run the studies asked for."""
+    """Run the requested studies."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('program', help='path of implam')
     parser.add_argument('study', nargs='+', choices=sorted(STUDIES))

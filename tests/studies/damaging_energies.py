@@ -18,7 +18,7 @@ WAYS = (("as it is", 1, ""), ("half the step", 2, ""), ("rho_inf=.99", 1, "rho_i
 
 
 def line(implam, seed, parts, damping):
-    """Run a model; what is printed of it."""
+    """Run a model; return its printed figures."""
     s = model(seed)
     s["steps"] *= parts
     with tempfile.TemporaryDirectory() as name:

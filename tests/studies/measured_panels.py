@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Drops on measured panels of T700/M21, compared with the measurement (doc/studies/measured_panels.md).
+"""Impacts on measured panels of T700/M21, compared with the measurement (doc/studies/measured_panels.md).
 Usage: measured_panels.py IMPLAM 6.5J|25J FOLDER [GROUP%KEY=VALUE ...] [-GROUP ...] [+'GROUP' ...]
        measured_panels.py FOLDER 6.5J|25J
 
-Runs the deck of input/experiments in FOLDER with the keys given, without the groups given by a dash and their
+Runs the deck of input/experiments in FOLDER with the given keys, without the groups given by a dash and their
 beginning (those of one line, such as -ply_damage or '-support clamps') and with the groups given after a plus, such as
 +'&delamination below_ply=14 ... /'. Prints peak force, largest displacement of the impactor, end of contact, projected
 area, absorbed energy, the forces at some displacements up to the largest, for 25 J the relative L2 error of the force
@@ -25,18 +25,18 @@ DECKS = Path(__file__).resolve().parents[2] / "input" / "experiments"
 TIMES = (0.4, 0.6, 0.8, 1.0, 1.1, 1.2, 1.6, 2.0, 2.5, 3.0)
 DISPLACEMENTS = (1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
 INTACT = 0.9e-3  # s; fibres of the 25 J panel fail later
-FIBRES_FAIL = 1.0  # J in fibre tension; they fail within .1 ms
+FIBRES_FAIL = 1.0  # J in fibre tension; fibres fail within .1 ms
 
 
 def rows_of(path):
-    """Rows of a table of numbers under names; comments left out."""
+    """Rows of a table of numbers under names, without comments."""
     with path.open(encoding="utf-8") as file:
         lines = [line for line in file if not line.startswith("#")]
     return [{name.strip(): float(value) for name, value in row.items()} for row in csv.DictReader(lines)]
 
 
 def value_at(time, times, values):
-    """Value of a curve, straight between its points and zero beyond them."""
+    """Value of a curve, linear between its points and zero outside."""
     for i in range(1, len(times)):
         if times[i - 1] <= time <= times[i]:
             part = (time - times[i - 1]) / (times[i] - times[i - 1])
@@ -57,7 +57,7 @@ def forces_at(rows):
 
 
 def forces_over(rows, name):
-    """Computed and measured force, kN, at some displacements in mm that the impactor has gone in."""
+    """Computed and measured force, kN, at some increasing displacements of the impactor in mm."""
     turned = max(range(len(rows)), key=lambda i: rows[i]["impactor_displacement"])
     computed = [[row[key] for row in rows[:turned + 1]] for key in ("impactor_displacement", "force")]
     measured = [list(row.values()) for row in rows_of(DECKS / f"t700_m21_{name}_force_displacement.csv")]
@@ -73,7 +73,7 @@ def mean_force(rows):
 
 
 def failure_displacement(rows):
-    """Displacement, m, at which fibres fail in tension; NaN where they do not."""
+    """Displacement, m, at which fibres fail in tension; NaN without failure."""
     return next((row["impactor_displacement"] for row in rows if row["energy_fibre_tension"] > FIBRES_FAIL), np.nan)
 
 
@@ -88,13 +88,13 @@ def history_error(rows):
 
 
 def softened_area(folder, plate_size):
-    """Projected area, m2, in which an interface has lost half its stiffness at the end; process zones are in it."""
+    """Projected area, m2, in which an interface has lost half its stiffness at the end, including process zones."""
     with h5py.File(next(path for path in folder.glob("*.h5") if not path.stem.endswith("_restart"))) as file:
         last = file["times"][max(file["times"])]
         mesh = file["meshes"][f"{last['mesh'][()]:08d}"]
         points, corners = mesh["coordinates"][:, :2], mesh["connectivity"][:]
         damage = last["points/damage_above"][:]
-    # Layers lie above each other: each place counts once, with the worst of its interfaces.
+    # Layers are above each other: each position counts once, with the largest damage of its interfaces.
     _, place = np.unique(np.round(1e7 * points).astype(int), axis=0, return_inverse=True)
     place = place.ravel()
     worst = np.zeros(place.max() + 1)
@@ -108,7 +108,7 @@ def softened_area(folder, plate_size):
 
 
 def run(implam, name, folder, settings):
-    """Run a deck; its seconds of the processor."""
+    """Run a deck; its processor seconds."""
     sys.path.insert(0, str(Path(__file__).parents[1] / "regress"))
     from solver_runs import change_deck  # pylint: disable=import-outside-toplevel,import-error
     folder.mkdir(parents=True, exist_ok=True)

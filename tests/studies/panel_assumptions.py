@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which assumptions the 25 J panel depends on: differences of the variants of a sweep from its first one, run by run
+"""Effect of assumptions on the 25 J panel: differences of the variants of a sweep from its first one, run by run
 (doc/studies/measured_panels.md). Usage: panel_assumptions.py FOLDER [FOLDER ...]
 
 FOLDER holds the results of scatter/assumptions_25J.toml, further ones those of sweeps without variants such as
@@ -17,10 +17,10 @@ from measured_panels import FIBRES_FAIL
 from scipy.special import stdtrit
 
 DISSIPATED = ("indentation", "delamination", "ply_damage", "contact", "friction", "algorithmic")
-# Least squares over 13 runs to the end of contact (nine on cells of 3 mm, four on 1.5 mm); prediction errors, each run
-# left out in turn, are .15 J and .034 ms. They had tractions at the end of the step; with weighted jumps both estimates
-# are too small, by up to 2.4 J and .3 ms, more where the struck face delaminates.
-# D: energy dissipated by 2 ms, J; V: velocity of the impactor then, m/s.
+# Least squares over 13 runs to the end of contact (nine with cells of 3 mm, four of 1.5 mm); prediction errors, each
+# run left out in turn, are .15 J and .034 ms. Their tractions are those at the end of the step; with weighted jumps
+# both estimates are too small, by up to 2.4 J and .3 ms, more where the struck face delaminates.
+# D: energy dissipated until 2 ms, J; V: velocity of the impactor at that time, m/s.
 ESTIMATES = {"absorbed energy, J": lambda d, v: -1.115 + 1.064 * d,
              "end of contact, ms": lambda d, v: 2.977 + 0.0818 * d + 0.3485 * v}
 MOMENT = 2e-3
@@ -102,7 +102,11 @@ def printed(table):
 
 def main():
     """Print the table."""
-    print("\n".join(printed(compared(runs_of([Path(folder) for folder in sys.argv[1:]])))))
+    folders = [Path(folder) for folder in sys.argv[1:]]
+    variants = runs_of(folders)
+    if not variants:
+        raise SystemExit(f"No run is complete in {', '.join(map(str, folders))}.")
+    print("\n".join(printed(compared(variants))))
 
 
 if __name__ == "__main__":

@@ -14,16 +14,16 @@ from pathlib import Path
 
 from measured_panels import DECKS, rows_of
 
-# Those that decide most come first.
+# The most influential inputs first.
 INPUTS = {"delamination": ("G_IIc", "G_Ic", "eta", "friction"),
           "material": ("S12", "YT", "E1", "E2", "G12", "G13", "G23", "XC", "G_fc", "XT", "G_ft", "G_mt", "G_mc", "YC",
                        "nu12", "density"),
           "indentation": ("k", "alpha_cr")}
-TRIFLES = -1e-6, 1e-6, 2e-6  # parts of the density, which decide nothing
+TRIFLES = -1e-6, 1e-6, 2e-6  # relative changes of the density, of the size of round-off
 
 
 def changes(text):
-    """The name of a row, a folder and a setting: what trifles do, then each input 10 % larger."""
+    """Name of a row, folder and setting: the trifling changes, then each input 10 % larger."""
     for group, key, more in ([("material", "density", part) for part in TRIFLES]
                              + [(group, key, None) for group, keys in INPUTS.items() for key in keys]):
         value = float(re.search(rf"\b{key}=([\d.e+-]+)", text)[1])
@@ -33,7 +33,7 @@ def changes(text):
 
 
 def figures(folder):
-    """Peak force, largest displacement and projected area of a run that has ended, or nothing."""
+    """Peak force, largest displacement and projected area of a completed run, or None."""
     histories = list(folder.glob("*_history.csv"))
     if not (folder / "ended").exists() or not histories:
         return None
@@ -53,12 +53,12 @@ def run(arguments, folder, settings):
 
 
 def main(arguments):
-    """Run them all."""
+    """Run all decks."""
     text = (DECKS / f"t700_m21_{arguments[1]}.nml").read_text(encoding="utf-8")
     given, folder = arguments[3:], Path(arguments[2])
     base = run(arguments, folder / "as_it_is", given)
     if base is None:
-        sys.exit(f"The deck as it is did not end: see {folder / 'as_it_is'}.")
+        sys.exit(f"The unchanged deck did not end: see {folder / 'as_it_is'}.")
     print("| 10 % more of | peak force | largest displacement | projected area |\n" + "|---"*4 + "|")
     print(f"| none | {base[0]/1e3:.2f} kN | {1e3*base[1]:.2f} mm | {1e6*base[2]:.0f} mm2 |", flush=True)
     for row, name, change in changes(text):

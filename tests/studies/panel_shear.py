@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Part of the force that transverse shear carries on the 25 J panel (doc/studies/measured_panels.md).
+"""Part of the force that transverse shear carries in the 25 J panel (doc/studies/measured_panels.md).
 Usage: panel_shear.py FOLDER
 
 Reads the results that measured_panels.py wrote there for 25J with output%fields='stress','ply_damage' and
@@ -29,7 +29,7 @@ THICKNESS = float(re.search(r"thicknesses=([-+\d.e]+)", DECK)[1])
 
 
 def ply_forces(stresses, angle, away):
-    """Shear force and membrane force of a ply along in-plane directions, per length."""
+    """Shear force and membrane force of a ply in given in-plane directions, per length."""
     along = away[:, 0] * np.cos(np.radians(angle)) + away[:, 1] * np.sin(np.radians(angle))
     across = away[:, 1] * np.cos(np.radians(angle)) - away[:, 0] * np.sin(np.radians(angle))
     shear = along * stresses["tau13"] + across * stresses["tau23"]

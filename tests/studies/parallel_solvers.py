@@ -9,7 +9,7 @@ tangent of a load step. Prints a row for each method and number of ranks:
 unknowns, method, ranks; processor time of a factorization and of a solve to 1e-6, s; iterations of a solve; operations
 of both on the busiest rank, 1e9; messages and MB that the busiest rank sends in both, and sums over all ranks, counted
 by Open MPI's monitoring and PETSc's log; memory of all ranks, MB; residual over load. Times hold for at most one rank a
-core; with more they include waiting. The factorization is the second one of a run, whose symbolic phase is done.
+core; with more they include waiting. The factorization is the second one of a run, without the symbolic phase.
 Operations of methods with Schur complements are wrong, since PETSc 3.18 reads other counters of MUMPS."""
 
 import argparse
@@ -43,7 +43,7 @@ METHODS = {
     'deluxe': BDDC + '-pc_bddc_use_deluxe_scaling',
     'adaptive': BDDC + '-pc_bddc_use_deluxe_scaling -pc_bddc_adaptive_threshold 5',
 }
-# Solves of a run, of which the mean is taken
+# Solves of a run, for their mean
 SOLVES = 11
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1', OMPI_ALLOW_RUN_AS_ROOT='1',
                    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM='1', OMPI_MCA_mpi_yield_when_idle='1')
@@ -52,7 +52,7 @@ MONITORING = ['--mca', 'pml_monitoring_enable', '2', '--mca', 'pml_monitoring_en
 
 
 def sent(folder, ranks):
-    """Messages and bytes that each rank sends, as Open MPI's monitoring has counted them."""
+    """Messages and bytes sent by each rank, counted by Open MPI's monitoring."""
     found = np.zeros((ranks, 2))
     for rank in range(ranks):
         for line in (folder/f'count.{rank}.prof').read_text(encoding='utf-8').splitlines():
@@ -63,7 +63,8 @@ def sent(folder, ranks):
 
 
 def run(program, cells, ranks, options, repeats):
-    """Figures of a run with numbers of factorizations and solves, and what each rank sends; None if it fails."""
+    """Figures of a run with given numbers of factorizations and solves, and the messages of each rank; None if it
+    fails."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder/'deck.nml').write_text(DECK.format(cells=cells), encoding='utf-8')
@@ -83,7 +84,7 @@ def run(program, cells, ranks, options, repeats):
 
 
 def row(program, cells, ranks, options, counts_messages):
-    """Cells of a row. What a factorization or a solve sends is the difference of two runs."""
+    """Cells of a row. The messages of a factorization or a solve are the difference of two runs."""
     figures = run(program, cells, ranks, options, (2, SOLVES))
     if figures is None:
         return ['', '', f'{ranks}', 'failed']
@@ -98,13 +99,13 @@ def row(program, cells, ranks, options, counts_messages):
 
 
 def main():
-    """Print a row a method and number of ranks."""
+    """Print a row for each method and number of ranks."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('program')
     parser.add_argument('--cells', type=int, nargs='+', default=[100, 223], help='along a side of the quarter')
     parser.add_argument('--ranks', type=int, nargs='+', default=[1, 2, 4, 8, 16])
     parser.add_argument('--methods', nargs='+', default=list(METHODS), choices=METHODS)
-    parser.add_argument('--static', action='store_true', help='load steps in place of steps in time')
+    parser.add_argument('--static', action='store_true', help='load steps instead of time steps')
     parser.add_argument('--messages', action='store_true', help='count them, by two further runs')
     parser.add_argument('--more', default='', help='further options of PETSc')
     arguments = parser.parse_args()

@@ -10,7 +10,7 @@ deck, and the largest change of the force in the history over the peak force (of
 %. The cost is the number of solves plus 30 for each factorization, which takes about as long as 30 solves. A dash marks
 a run that did not end.
 
-With `own` those constants are varied that few decks use, each on decks that use it: a row has constant, deck, and for
+With `own` the constants that few decks use are varied, each on decks that use it: a row has constant, deck, and for
 each other value ratio and change."""
 
 import csv
@@ -22,19 +22,19 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2] / "input"
-# A blow with plies and an interface that fail; layers that follow damage, with adaptive steps; softening plies in
-# implicit motion; an impact with adaptive steps; buckling under load steps; load steps by dissipated energy.
+# An impact with ply and interface failure; adaptive layers with adaptive steps; softening plies with implicit steps; an
+# impact with adaptive steps; buckling under load steps; load steps by dissipated energy.
 DECKS = {"damage": "small/damage.nml", "layers": "small/layers.nml", "snapping": "verify/snapping.nml",
          "adaptive": "sun_chen.nml", "buckling": "verify/buckled_strip.nml", "dcb": "verify/dcb.nml"}
-# What is added to a deck: steps that follow their error.
+# Additions to a deck: adaptive steps.
 ADDED = {"adaptive": "&adapt on=.true. /\n"}
-# What is replaced in a deck: a first step that the error chooses.
+# Replacements in a deck: a first step chosen by the error.
 REPLACED = {"adaptive": ("step=2e-6", "step=20e-6")}
-# Decks of the constants of load steps, of Newton's method, and of the control of steps in time.
+# Decks for the constants of load steps, of Newton's method, and of the control of time steps.
 BY_LOAD = ("dissipation_tolerance", "load_step_parts")
 NEWTON = ("forcing", "max_forcing", "element", "contact", "search", "force", "last", "alternating")
 PRICE = 30
-# Changes of input/sun_chen.nml for decks of its own: patterns and their replacements.
+# Changes of input/sun_chen.nml: patterns and their replacements.
 COARSE = [("elements=16, 16", "elements=8, 8")]
 SHORT = [*COARSE, ("step=2e-6", "step=0.1e-6")]
 PLAIN = ("'gear4'", "'trapezoidal'")
@@ -42,7 +42,7 @@ CURVED = [*COARSE, PLAIN, ("'linear'", "'von_karman'"), ("end=1000e-6", "end=300
 FRONT = [("starter=12e-3", "starter=12e-3 law='front' growth='one_per_step'")]
 PRESSED = [("step=1e-3", "step=2e-2"), ("step_max=5e-3", "step_max=2e-2"), ("stress_change=0.1 ", ""),
            ("refactor='deflection' stiffness_update=0.003 ", "")]
-# Decks of constants that few decks use: path, changes, and what is added.
+# Decks for constants that few decks use: path, changes, and additions.
 OWN_DECKS = {
     "curved": ("sun_chen.nml", [*CURVED, ("velocity=3", "velocity=30")], ""),
     "exact": ("sun_chen.nml", CURVED, "&solver tolerance=1e-12 /"),
@@ -76,7 +76,7 @@ def constants(program):
 
 
 def run(program, deck, added):
-    """Cost and history of a deck with something added; None if it has not ended."""
+    """Cost and history of a deck with additions; None if it has not ended."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "deck.nml"
         path.write_text(deck + "\n" + added, encoding="utf-8")
@@ -93,7 +93,7 @@ def run(program, deck, added):
 
 
 def compared(found, reference):
-    """Ratio of costs and largest difference of the histories, in words."""
+    """Ratio of costs and largest difference of the histories, as text."""
     if found is None:
         return "-"
     cost, history = found
@@ -103,7 +103,7 @@ def compared(found, reference):
 
 
 def variants(kind, value, key):
-    """Half and double of a value, within what the deck allows."""
+    """Half and double of a value, within the limits of the deck."""
     pair = [value / 2, value * 2]
     if key in ("forcing_factor", "search_max_part", "search_slope"):
         pair[1] = (1 + value) / 2
@@ -135,7 +135,7 @@ def own_deck(name):
 
 
 def vary_own(program, wanted):
-    """Print a row a constant of OWN and deck."""
+    """Print a row for each constant of OWN and deck."""
     values, plain = constants(program), {}
     print("| constant | deck | value | other value: cost, change in % |")
     print("|---|---|---|---|")

@@ -2,8 +2,8 @@
 """Effect of constants of single modules that no deck can set: each with two other values, on small decks.
 Usage: source_constants.py BUILD [CONSTANT ...]     (about five minutes)
 
-BUILD is the folder of a build by Ninja. For each value the one source is compiled with it and linked with the objects
-of the build; sources and build stay as they are. Prints a row a constant and deck: for each value the ratio of costs
+BUILD is the folder of a build by Ninja. For each value the source is compiled with it and linked with the objects of
+the build; sources and build are unchanged. Prints a row for each constant and deck: for each value the ratio of costs
 and the change of the force history as in solution_controls.py. Explicit runs have no cost; their change alone counts.
 """
 
@@ -22,7 +22,7 @@ DECKS = {"chatter": ("verify/chatter.nml", SHORT), "front": ("small/delamination
          "penalty": ("small/delamination.nml", PENALTY), "bands": ("small/crack_bands.nml", []),
          "rounds": ("small/breaking_rounds.nml", []), "nose": ("verify/nose.nml", []),
          "layers": ("small/layers.nml", []), "dent": ("small/dent.nml", []), "cai": ("small/cai_impact.nml", [])}
-# Constant: source, value as it is written there, other values, decks.
+# Constant: source, value as in the source, other values, decks.
 CONSTANTS = {
     "moving_stiffness": ("delamination/surface_contact", "2.0e6_wp", ("2.0e5_wp", "2.0e7_wp"), "chatter front"),
     "max_tail_slope": ("delamination/surface_contact", "1.0e5_wp", ("1.0e4_wp", "1.0e6_wp"), "penalty"),
@@ -45,13 +45,13 @@ CONSTANTS = {
 
 
 def command(build, target, beginning):
-    """The last command by which Ninja makes a target that has these words."""
+    """The last command of Ninja for a target that contains these words."""
     done = subprocess.run(["ninja", "-C", build, "-t", "commands", target], capture_output=True, text=True, check=True)
     return [line for line in done.stdout.splitlines() if beginning in line][-1]
 
 
 def variant(build, folder, source, old, new):
-    """Path of a program in which one line of a source is another one."""
+    """Path of a program with one line of a source replaced."""
     path = ROOT.parent / "src" / f"{source}.f90"
     text = path.read_text(encoding="utf-8")
     if text.count(old) != 1:
@@ -80,7 +80,7 @@ def deck_text(name):
 
 
 def main():
-    """Print a row a constant and deck."""
+    """Print a row for each constant and deck."""
     build, wanted, plain = Path(sys.argv[1]).resolve(), sys.argv[2:], {}
     print("| constant | deck | value | other value: cost, change in % |")
     print("|---|---|---|---|")

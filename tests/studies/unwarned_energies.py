@@ -4,7 +4,7 @@ Usage: unwarned_energies.py FOLDER...
 
 Reads every NAME_summary.json below the folders, such as build/tests/regress after ctest, or the results of a sweep.
 The energy created or dissipated by integrators or load steps, and the energy error, are compared with the largest
-energy at the end. Fronts record fracture energy before the motion has lost it; this does not count as created."""
+energy at the end. Fronts record fracture energy before the motion has released it; this is not counted as created."""
 
 import json
 import sys
@@ -14,11 +14,11 @@ TOLERANCE = 0.01
 
 
 def open_share(summary):
-    """Return the share of the energy that is created, taken or not accounted for; 0 without energy."""
+    """Return the fraction of the energy that is created, dissipated by integrators or in error; 0 without energy."""
     def of(name):
         return summary.get(name) or 0.0
 
-    # What the impactor has transferred counts, too: of one laid on the plate it is all there is.
+    # The energy transferred by the impactor is included: for one laid on the plate it is the only one.
     limit = max(of("energy_impact"), of("energy_impact") - of("energy_impactor"), of("work_external"),
                 of("energy_kinetic") + of("energy_strain"))
     if limit <= 0:
@@ -29,12 +29,12 @@ def open_share(summary):
 
 
 def warned(summary):
-    """Report whether the run, not the deck, was warned of."""
+    """Return whether the run, not the deck, has a warning."""
     return any(entry["at"] is not None for entry in summary["warnings"])
 
 
 def main(folders):
-    """List them; fail if there are any."""
+    """List the runs; fail if there are any."""
     paths = sorted(path for folder in folders for path in Path(folder).rglob("*_summary.json"))
     found = 0
     for path in paths:

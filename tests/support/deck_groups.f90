@@ -1,4 +1,4 @@
-!> Decks of one group, for the tests of the folder that brings its rows.
+!> Decks of one group, for the tests of the folder that defines its rows.
 module deck_groups
   use deck_problems, only: problems_t
   use deck_rules, only: resolve_settings

@@ -1,6 +1,6 @@
-/* Loaded ahead of a program (LD_PRELOAD), sends it the signal numbered EARLY_SIGNAL at a moment that no clock would
-   meet: EARLY_MOMENT=load, while libraries start and main has not begun; metis, while METIS has TERM's handler in its
-   hands. The file EARLY_MARK shows that it was sent. */
+/* Loaded before a program (LD_PRELOAD), sends it the signal EARLY_SIGNAL at a moment that a timer would not meet:
+   EARLY_MOMENT=load, before main, while libraries are initialized; metis, while METIS has replaced the handler of TERM.
+   The file EARLY_MARK shows that the signal was sent. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -21,11 +21,11 @@ static void send_if(const char *moment)
 
 __attribute__((constructor)) static void at_load(void)
 {
-  unsetenv("LD_PRELOAD"); /* the daemon that Open MPI starts is not meant */
+  unsetenv("LD_PRELOAD"); /* not in the daemon that Open MPI starts */
   send_if("load");
 }
 
-/* What METIS calls for its handlers. */
+/* The function by which METIS sets its handlers. */
 handler_t __sysv_signal(int number, handler_t handler)
 {
   handler_t (*real)(int, handler_t) = (handler_t (*)(int, handler_t))dlsym(RTLD_NEXT, "__sysv_signal");

@@ -1,6 +1,6 @@
-/* Loaded ahead of a program (LD_PRELOAD), one write at a place in a file, as HDF5 writes, fails: that numbered FULL_AT, if
-   it is not 0, with the error FULL_ERROR of the system, by default that of a full disk. From then on trial files cannot
-   be written. The file FULL_COUNT receives the number of writes at the end, unless there were none. */
+/* Loaded before a program (LD_PRELOAD), lets one write at a position in a file, as by HDF5, fail: the one with the
+   number FULL_AT, unless it is 0, with the system's error FULL_ERROR, by default that of a full disk. After it trial
+   files cannot be written. At the end the file FULL_COUNT contains the number of writes, unless there were none. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>

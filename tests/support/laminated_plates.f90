@@ -1,4 +1,4 @@
-!> Setups of small plates of carbon and epoxy, also with interfaces between all plies, for tests.
+!> Setups of small carbon/epoxy plates, also with interfaces between all plies, for tests.
 module laminated_plates
   use communicators, only: communicator_t
   use delamination_parameters, only: law_cohesive
@@ -16,7 +16,7 @@ module laminated_plates
 
 contains
 
-  !> A free plate of 40 mm by 30 mm of carbon and epoxy with linear strains.
+  !> A free carbon/epoxy plate of 40 mm by 30 mm with linear strains.
   pure function laminated_plate(angles, thickness, elements) result(setup)
     !> Angles of the plies, degrees, and thickness of them all
     real(wp), intent(in) :: angles(:), thickness
@@ -46,7 +46,7 @@ contains
     setup%laminate%angle = angles
   end function laminated_plate
 
-  !> Holds all plies together by cohesive laws all over the plate.
+  !> Adds cohesive interfaces between all plies over the full plate.
   pure subroutine add_interfaces(setup, strength, toughness)
     !> The setup
     type(setup_t), intent(inout) :: setup
@@ -66,7 +66,7 @@ contains
     end do
   end subroutine add_interfaces
 
-  !> A number between -1 and 1 that goes with another one.
+  !> A pseudo-random number between -1 and 1 computed from another one.
   elemental real(wp) function scattered(number)
     !> The other number
     integer, intent(in) :: number

@@ -39,7 +39,7 @@ contains
     setup%delaminations%zone(2) = 2*width
   end function strip
 
-  !> A quarter of a clamped square of two equal plies, loaded on a square patch in its middle.
+  !> A quarter of a clamped square of two equal plies, loaded on a square patch at its centre.
   pure function disc(material, thickness, side, patch, elements) result(setup)
     !> The material
     type(material_t), intent(in) :: material
@@ -85,7 +85,7 @@ contains
     setup%delaminations%contact = contact_none
   end function layered
 
-  !> Delaminates all cells of a range of columns and rows whose middle is within a radius of the origin.
+  !> Delaminates the cells of a range of columns and rows whose centres are within a radius of the origin.
   subroutine release_cells(model, contact, columns, rows, radius)
     !> The model
     type(model_t), intent(in) :: model

@@ -1,5 +1,5 @@
-!> PETSc for the tests: started once before the first of them and left running, because the test
-!> framework has ended MPI by the time that PETSc could be ended.
+!> PETSc for the tests: started once before the first of them and not finalized, because the test framework has
+!> finalized MPI by then.
 module petsc_fixture
   use communicators, only: communicator_t, start_mpi
   use errors, only: error_t

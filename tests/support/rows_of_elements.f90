@@ -18,9 +18,9 @@ module rows_of_elements
       import :: wp
       !> 'L': the lower triangle is given
       character, intent(in) :: uplo
-      !> Order, right-hand sides, leading dimensions, room to work in
+      !> Order, right-hand sides, leading dimensions, size of the workspace
       integer, intent(in) :: n, columns, lda, ldb, lwork
-      !> Matrix, overwritten by its factor; right-hand side, by the solution; room to work in
+      !> Matrix, overwritten by its factor; right-hand side, by the solution; workspace
       real(wp), intent(inout) :: a(lda, *), b(ldb, *), work(*)
       !> Row exchanges
       integer, intent(out) :: pivots(*)
@@ -47,7 +47,7 @@ contains
     equations = [((element - 1)*(width - shared) + mod(3*i, width), i=1, width)]
   end function equations_of
 
-  !> A symmetric matrix of an element, made of sines; positive definite for a shift above 4.
+  !> A symmetric matrix of an element, of sines; positive definite for a shift above 4.
   pure function element_matrix(element, shift) result(matrix)
     integer, intent(in) :: element
     real(wp), intent(in) :: shift
@@ -91,7 +91,7 @@ contains
     first_row = rank*order_of(elements)/ranks
   end function first_row
 
-  !> Assembles the elements, dealt out to the ranks like cards.
+  !> Assembles the elements, distributed cyclically over the ranks.
   subroutine assemble(solver, communicator, elements, shift, scale, error)
     type(linear_solver_t), intent(inout) :: solver
     type(communicator_t), intent(in) :: communicator

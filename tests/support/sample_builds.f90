@@ -1,4 +1,4 @@
-!> A build for tests of files that carry their provenance.
+!> A build for tests of files with provenance.
 module sample_builds
   use run_provenance, only: build_t
   implicit none
@@ -7,7 +7,7 @@ module sample_builds
 
 contains
 
-  !> What a program might have been built from.
+  !> An example of the data of a build.
   function sample_build() result(build)
     !> Version, commit, compiler and PETSc
     type(build_t) :: build

@@ -33,7 +33,7 @@ contains
     call operator%renew(model, state, stiffness_factor, mass_factor, error)
   end subroutine factor
 
-  !> Vibration mode of lowest frequency among those of the symmetry of a starting shape, by inverse iteration.
+  !> Vibration mode of lowest frequency with the symmetry of a starting shape, by inverse iteration.
   subroutine find_mode(model, mode, frequency, error)
     !> The model
     type(model_t), intent(in) :: model
@@ -47,7 +47,7 @@ contains
     real(wp), allocatable :: force(:, :), rest(:, :)
     real(wp) :: products(2), energy
     integer :: i
-    ! More would let rounding errors of other symmetries grow.
+    ! More iterations would let round-off of other symmetries grow.
     integer, parameter :: iterations = 8
 
     allocate (force, rest, mold=mode)

@@ -54,7 +54,7 @@ contains
     type(material_t), intent(in) :: material
     !> Angles of the plies, degrees, and thickness of them all
     real(wp), intent(in) :: angles(:), thickness
-    !> Elements along each side of what is modelled
+    !> Elements along each side of the modelled part
     integer, intent(in) :: elements
     !> True: a quarter is modelled
     logical, intent(in) :: quarter
@@ -86,7 +86,7 @@ contains
     setup%pressure%distribution = distribution_sine
   end subroutine press
 
-  !> Adds an impactor that falls on a patch a fifth of the side wide.
+  !> Adds an impactor on a patch of a fifth of the side.
   pure subroutine coupling(setup, mass, velocity, k)
     !> The setup
     class(setup_t), intent(inout) :: setup

@@ -45,7 +45,8 @@ def plot_study(rows: list[Row], means: list[Mean], study: Study, path: Path) -> 
         axes.set_xlabel("processor time [s]")
     for axes in grid[:len(panels):columns]:
         axes.set_ylabel(f"{_WORDS[study.error]} [%]")
-    handles, labels = grid[0].get_legend_handles_labels()
+    handles, labels = max((axes.get_legend_handles_labels() for axes in grid[:len(panels)]),
+                          key=lambda entries: len(entries[1]))
     drawing.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 4), fontsize="small")
     with replaced(path) as draft:
         drawing.savefig(draft, dpi=150)
@@ -64,7 +65,12 @@ def series_of(study: Study) -> tuple[list[str], list[str]]:
 
 
 def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]], study: Study) -> None:
-    """Draw the points of a problem as curves, and the Pareto front."""
+    """Draw the points of a problem as curves, and the Pareto front; trials without a result are omitted."""
+    points = [point for point in points if math.isfinite(point[1]) and math.isfinite(point[2])]
+    if not points:
+        axes.text(0.5, 0.5, "no trial is complete", transform=axes.transAxes, horizontalalignment="center")
+        axes.set(xticks=[], yticks=[])
+        return
     words, numbers = series_of(study)
     curves: dict[str, list[tuple[float, float, str]]] = {}
     for method, error, time, _ in points:

@@ -1,5 +1,5 @@
-!> A ball on a rigid base through the elastic-plastic law: the curve, its work, and a whole contact whose loss of motion
-!> is the area between the way in and the way back.
+!> A ball on a rigid base with the elastic-plastic law: the curve, its work, and a complete contact whose loss of
+!> kinetic energy is the area between loading and unloading curve.
 program strike_rigid_base
   use example_checks, only: require
   use impact_parameters, only: impactor_parameters_t, integrator_conserving
@@ -16,10 +16,10 @@ program strike_rigid_base
   real(wp) :: lost, before
 
   call commit(law, contact, 60e-6_wp)
-  call require('dent is where no force is left', contact_force(law, contact, zero_force_indentation(law, contact)), &
+  call require('dent is where the force is zero', contact_force(law, contact, zero_force_indentation(law, contact)), &
                0.0_wp, &
                1e-10_wp)
-  call require('the way back starts where the way in ends', contact_force(law, contact, 60e-6_wp*(1 - 1e-12_wp)), &
+  call require('unloading starts at the end of loading', contact_force(law, contact, 60e-6_wp*(1 - 1e-12_wp)), &
                contact_force(law, contact, 60e-6_wp), 1e-8_wp)
   call require('stiffness against a difference of forces', contact_stiffness(law, contact, 45e-6_wp), &
                (contact_force(law, contact, 45.01e-6_wp) - contact_force(law, contact, 44.99e-6_wp))/0.02e-6_wp, 1e2_wp)
@@ -38,14 +38,14 @@ program strike_rigid_base
     call step(5e-6_wp)
   end do
   lost = before - impactor_energy(ball, impactor)
-  call require('motion lost is the work left in the contact', lost, contact%work, 1e-15_wp)
-  call require('and the area between the ways', lost, closed_path(contact%alpha_max), 1e-15_wp)
+  call require('kinetic energy lost is the work dissipated by the contact', lost, contact%work, 1e-15_wp)
+  call require('and the area between the curves', lost, closed_path(contact%alpha_max), 1e-15_wp)
   print '(a,f6.1,a,f7.4)', 'largest indentation', 1e6_wp*contact%alpha_max, ' um, rebound over impact speed', &
     -impactor%velocity/ball%velocity
 
 contains
 
-  !> One step of ball and contact: the mean force that takes the indentation to where that force leads, by halving.
+  !> One step of ball and contact by bisection: the mean force that gives the indentation to which it leads.
   subroutine step(dt)
     !> Time step
     real(wp), intent(in) :: dt
@@ -82,7 +82,7 @@ contains
     simpson = simpson*(to - from)/(3*parts)
   end function simpson
 
-  !> Energy lost between no indentation and no indentation again, by hand: way in less way back.
+  !> Energy dissipated by loading and full unloading in closed form: work of loading less work of unloading.
   pure real(wp) function closed_path(max_indentation) result(lost)
     !> Largest indentation
     real(wp), intent(in) :: max_indentation

@@ -1,6 +1,6 @@
 !> Elastic-plastic indentation after A. S. Yigit and A. P. Christoforou, Composites Engineering 4 (1994) 1143-1152:
-!> Hertz up to a yield indentation, a straight line from there on with the same slope, and Hertz's curve shifted on the
-!> way back. Reloading runs up the way back until the largest indentation.
+!> Hertz up to a yield indentation, linear from there on with the same slope, and Hertz's curve shifted for unloading.
+!> Reloading follows the unloading curve up to the largest indentation.
 module yigit_christoforou
   use archives, only: archive_t
   use kinds, only: wp
@@ -21,7 +21,7 @@ module yigit_christoforou
   type :: plastic_contact_t
     !> Indentation of the last accepted step, and the largest so far
     real(wp) :: alpha = 0, alpha_max = 0
-    !> Work done on the indentation so far, stored and lost
+    !> Work done on the indentation so far, stored and dissipated
     real(wp) :: work = 0
   contains
     !> Saves or loads the state
@@ -40,7 +40,7 @@ contains
     touch = max(0.0_wp, state%alpha_max**1.5_wp - loading_force(law, state%alpha_max)/law%k)**(2/3.0_wp)
   end function zero_force_indentation
 
-  !> Force at an indentation reached in one direction from the committed one.
+  !> Force at an indentation reached monotonically from the committed one.
   pure real(wp) function contact_force(law, state, alpha) result(force)
     !> The law
     type(plastic_law_t), intent(in) :: law
@@ -57,7 +57,7 @@ contains
     end if
   end function contact_force
 
-  !> Derivative of the force; at the largest indentation that of the way back.
+  !> Derivative of the force; at the largest indentation that of unloading.
   pure real(wp) function contact_stiffness(law, state, alpha) result(stiffness)
     !> The law
     type(plastic_law_t), intent(in) :: law
@@ -72,7 +72,7 @@ contains
     if (alpha > state%alpha_max) stiffness = min(stiffness, 1.5_wp*law%k*sqrt(law%yield))
   end function contact_stiffness
 
-  !> Mean force over a path that does not turn: work over way, for the integrator that keeps the energy.
+  !> Mean force over a monotonic path: work over its length, for the integrator that conserves energy.
   pure real(wp) function mean_force(law, state, alpha_from, alpha_to) result(mean)
     !> The law
     type(plastic_law_t), intent(in) :: law
@@ -80,7 +80,7 @@ contains
     type(plastic_contact_t), intent(in) :: state
     !> Indentations at both ends
     real(wp), intent(in) :: alpha_from, alpha_to
-    !> Below this part of the indentation a way is short, and the force in its middle as good
+    !> Fraction of the indentation below which a path is short enough for the force at its middle
     real(wp), parameter :: short_way = 1e-6_wp
 
     if (abs(alpha_to - alpha_from) <= short_way*max(abs(alpha_to), abs(alpha_from))) then
@@ -94,7 +94,7 @@ contains
   pure subroutine commit(law, state, alpha)
     !> The law
     type(plastic_law_t), intent(in) :: law
-    !> State to be moved on
+    !> State to be updated
     type(plastic_contact_t), intent(inout) :: state
     !> New indentation
     real(wp), intent(in) :: alpha
@@ -127,7 +127,7 @@ contains
             + 1.5_wp*law%k*sqrt(law%yield)*max(0.0_wp, alpha - law%yield)
   end function loading_force
 
-  !> Work of the force from the dent on, in closed form.
+  !> Work of the force beyond the dent, in closed form.
   pure real(wp) function work_to(law, state, alpha) result(work)
     !> The law
     type(plastic_law_t), intent(in) :: law

@@ -1,5 +1,5 @@
-!> Impactor by the second-order backward difference with coefficients for unequal steps: one value of the past, stable
-!> for any step, and damping.
+!> Impactor by the second-order backward difference with coefficients for unequal steps: one earlier value, stable for
+!> any step, and dissipative.
 module bdf2_impactors
   use archives, only: archive_t
   use impact_parameters, only: impactor_parameters_t
@@ -11,9 +11,9 @@ module bdf2_impactors
 
   !> The impactor with the value before the last step.
   type, extends(impactor_t) :: bdf2_impactor_t
-    !> Length of the last step; 0: none was taken, the flight was free
+    !> Length of the last step; 0: no step yet, after free flight
     real(wp) :: last_step = 0
-    !> Displacement and velocity before it
+    !> Displacement and velocity at its start
     real(wp) :: last_displacement = 0, last_velocity = 0
   contains
     !> Saves or loads the state
@@ -40,7 +40,7 @@ contains
     type(bdf2_impactor_t), intent(in) :: impactor
     !> Step
     real(wp), intent(in) :: dt
-    !> Displacement at the end for a zero force, and its fall per unit of force
+    !> Displacement at the end for a zero force, and its decrease per unit of force
     real(wp), intent(out) :: w_free, compliance
     type(bdf2_impactor_t) :: free
     real(wp) :: weights(2), slope
@@ -85,9 +85,9 @@ contains
 
   !> Weights of y_end = sum of weights*y + slope*dt*y'_end for unequal steps: exact for parabolas.
   pure subroutine bdf2_weights(dt, last_step, weights, slope)
-    !> The coming step, and the one before it; 0: as long as the coming one
+    !> The next step, and the last one; 0: as long as the next
     real(wp), intent(in) :: dt, last_step
-    !> Weights of the present and of the last value
+    !> Weights of the current and of the previous value
     real(wp), intent(out) :: weights(2)
     !> Weight of the derivative
     real(wp), intent(out) :: slope
@@ -99,7 +99,7 @@ contains
     weights = [age, -1/age]*slope/(age - 1)
   end subroutine bdf2_weights
 
-  !> Saves or loads the state, the past with it: a restart then goes on as if it had not stopped.
+  !> Saves or loads the state with the earlier value: a restarted run continues as without interruption.
   subroutine visit(self, archive)
     !> The state
     class(bdf2_impactor_t), intent(inout) :: self

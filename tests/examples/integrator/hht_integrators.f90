@@ -1,5 +1,5 @@
 !> Plate by the alpha method of H. M. Hilber, T. J. R. Hughes and R. L. Taylor, Earthquake Engineering and Structural
-!> Dynamics 5 (1977) 283-292: a member of the family of four coefficients, so these are all that it takes.
+!> Dynamics 5 (1977) 283-292: a member of the family of four coefficients, so it is defined by these.
 module hht_integrators
   use kinds, only: wp
   use newmark_integrators, only: plate_integrator_t
@@ -11,7 +11,7 @@ contains
 
   !> The integrator with a damping, 0 (none) to 1/3.
   pure function hht_integrator(alpha) result(integrator)
-    !> Weight of the old forces
+    !> Weight of the forces at the start of the step
     real(wp), intent(in) :: alpha
     !> Coefficients
     type(plate_integrator_t) :: integrator

@@ -1,5 +1,5 @@
-!> What a new integrator has to show: free flight, its order within a contact, and of the plate that the ledger's
-!> formula gives the energy that it takes.
+!> Checks of a new integrator: free flight, its order within a contact, and for the plate the algorithmic dissipation by
+!> the ledger's formula.
 program measure_integrators
   use bdf2_impactors, only: bdf2_impactor_t, new_bdf2_impactor, bdf2_predict, bdf2_advance
   use errors, only: error_t
@@ -37,14 +37,14 @@ program measure_integrators
   call swing(hht_integrator(0.1_wp), 400, ends(2), gain)
   call require('order of the plate''s', log(abs((ends(1) - cos(1.0_wp))/(ends(2) - cos(1.0_wp))))/log(2.0_wp), 2.0_wp, &
                0.1_wp)
-  call require('left a step of the highest frequencies', left_at_high_frequency(hht_integrator(0.1_wp)), &
+  call require('spectral radius at the highest frequencies', left_at_high_frequency(hht_integrator(0.1_wp)), &
                0.9_wp/1.1_wp, 1e-3_wp)
 
 contains
 
-  !> Velocity of the ball in the middle of a contact with a rigid base.
+  !> Velocity of the ball at the middle of a contact with a rigid base.
   real(wp) function velocity_in_contact(steps) result(velocity)
-    !> Steps up to then
+    !> Number of steps until then
     integer, intent(in) :: steps
     type(indentation_law_t) :: law
     type(indentation_t) :: contact
@@ -66,8 +66,8 @@ contains
     velocity = impactor%velocity
   end function velocity_in_contact
 
-  !> Lets an oscillator of unit mass and stiffness swing for a unit of time, and holds what it gains against the formula
-  !> of the ledger in every step.
+  !> Integrates an oscillator of unit mass and stiffness for a unit of time, and compares its gain of energy with the
+  !> formula of the ledger in every step.
   subroutine swing(integrator, steps, displacement, gain)
     !> The integrator
     type(plate_integrator_t), intent(in) :: integrator
@@ -104,7 +104,7 @@ contains
     displacement = new%displacement(3, 1)
   end subroutine swing
 
-  !> What a step leaves of a swing far faster than the step, after a thousand of them.
+  !> Amplitude ratio per step of an oscillation far faster than the step, over a thousand steps.
   real(wp) function left_at_high_frequency(integrator) result(left)
     !> The integrator
     type(plate_integrator_t), intent(in) :: integrator
@@ -122,7 +122,7 @@ contains
     end do
   end function left_at_high_frequency
 
-  !> One step of the oscillator: the displacement at which the weighted equation of motion holds.
+  !> One step of the oscillator: the displacement that satisfies the weighted equation of motion.
   subroutine solve(integrator, h, old, new)
     !> The integrator
     type(plate_integrator_t), intent(in) :: integrator

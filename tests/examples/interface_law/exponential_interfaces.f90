@@ -1,7 +1,7 @@
 !> Exponential cohesive law of M. Ortiz and A. Pandolfi, International Journal for Numerical Methods in Engineering 44
-!> (1999) 1267-1282: traction rises and falls smoothly with one effective jump, and goes straight back to the origin.
+!> (1999) 1267-1282: traction rises and falls smoothly with one effective jump, and unloads linearly to the origin.
 !>
-!> Jumps and tractions stand in the order of the unknowns of a lower layer: two shears, opening. Closing faces are left
+!> Jumps and tractions are in the order of the unknowns of a lower layer: two shears, opening. Closing faces are left
 !> to contact.
 module exponential_interfaces
   use kinds, only: wp
@@ -38,7 +38,7 @@ contains
     real(wp), intent(in) :: jumps(3)
     !> The point in the last accepted state
     type(interface_point_t), intent(in) :: old
-    !> Force per area that pulls the faces back
+    !> Traction: force per area that resists the jumps
     real(wp), intent(out) :: traction(3)
     !> The point with these jumps
     type(interface_point_t), intent(out) :: new
@@ -57,13 +57,13 @@ contains
       tangent(i, i) = stiffness(i)
     end do
     if (.not. new%reach > old%reach) return
-    ! Growing: the secant falls with the jump.
+    ! Loading: the secant stiffness decreases with the jump.
     do i = 1, 3
       tangent(:, i) = tangent(:, i) - secant_stiffness(law, new)*weighted*weighted(i)/(jump*jump_at_strength(law))
     end do
   end subroutine traction_of
 
-  !> Traction over effective jump on the way back to the origin: what a point adds to the operator's diagonal.
+  !> Traction over effective jump in unloading to the origin: the contribution of a point to the operator's diagonal.
   pure real(wp) function secant_stiffness(law, point) result(stiffness)
     !> The law
     type(exponential_law_t), intent(in) :: law
@@ -73,7 +73,7 @@ contains
     stiffness = e*law%strength/jump_at_strength(law)*exp(-point%reach)
   end function secant_stiffness
 
-  !> Energy per area that the jumps would give back.
+  !> Energy per area that the jumps would return.
   pure real(wp) function stored_energy(law, jumps, point) result(energy)
     !> The law
     type(exponential_law_t), intent(in) :: law
@@ -85,7 +85,7 @@ contains
     energy = secant_stiffness(law, point)*sum(weights(law, jumps)*jumps**2)/2
   end function stored_energy
 
-  !> Energy per area that the point has dissipated: all work so far less what would come back.
+  !> Energy per area that the point has dissipated: all work so far less the stored energy.
   pure real(wp) function dissipated_energy(law, point) result(energy)
     !> The law
     type(exponential_law_t), intent(in) :: law
@@ -103,7 +103,7 @@ contains
     jump = law%toughness/(e*law%strength)
   end function jump_at_strength
 
-  !> Weight of the square of each jump; that of a closed opening is none.
+  !> Weight of the square of each jump; zero for a closed opening.
   pure function weights(law, jumps) result(values)
     !> The law
     type(exponential_law_t), intent(in) :: law

@@ -1,5 +1,5 @@
-!> What a law of tractions on jumps has to show: the work to pull it apart is its toughness in any mode, a closed path
-!> loses what it says it dissipates, and its tangent is its derivative.
+!> Checks of a traction-separation law: the work to failure is the toughness in any mode, the work of a closed path is
+!> the dissipated energy, and the tangent is the derivative.
 program pull_interface
   use example_checks, only: require
   use exponential_interfaces, only: exponential_law_t, interface_point_t, traction_of, secant_stiffness, &
@@ -15,9 +15,9 @@ program pull_interface
     angle = i*acos(-1.0_wp)/6
     direction = [0.6_wp*sin(angle), 0.8_wp*sin(angle), cos(angle)]
     point = interface_point_t()
-    call require('work to pull it apart', pulled([0.0_wp, 0.0_wp, 0.0_wp], 500e-6_wp*direction, point), law%toughness, &
+    call require('work to failure', pulled([0.0_wp, 0.0_wp, 0.0_wp], 500e-6_wp*direction, point), law%toughness, &
                  1e-3_wp)
-    call require('all of it dissipated', dissipated_energy(law, point), law%toughness, 1e-6_wp)
+    call require('energy dissipated at failure', dissipated_energy(law, point), law%toughness, 1e-6_wp)
   end do
 
   point = interface_point_t()
@@ -36,7 +36,7 @@ program pull_interface
     matrix(:, i) = (traction_at(ends(:, 2)) - traction_at(ends(:, 1)))/2e-11_wp
   end do
   call require('tangent against differences', maxval(abs(matrix - tangent))/maxval(abs(tangent)), 0.0_wp, 1e-5_wp)
-  call require('what the operator gets', secant_stiffness(law, point), &
+  call require('secant for the operator', secant_stiffness(law, point), &
                sqrt(sum(traction_at([0.0_wp, 0.0_wp, 2e-6_wp])**2))/2e-6_wp, 1e-3_wp)
 
 contains
@@ -52,11 +52,11 @@ contains
     call traction_of(law, jumps, point, found, ignored, slope)
   end function traction_at
 
-  !> Work of the traction along a straight way, accepted in small steps.
+  !> Work of the traction along a straight path of jumps, accepted in small steps.
   real(wp) function pulled(from, to, state) result(total)
     !> Jumps at both ends
     real(wp), intent(in) :: from(3), to(3)
-    !> The point; moved on
+    !> The point; updated
     type(interface_point_t), intent(inout) :: state
     integer, parameter :: steps = 400000
     type(interface_point_t) :: next
@@ -65,7 +65,7 @@ contains
 
     total = 0
     do step = 1, steps
-      ! The traction in the middle of a step.
+      ! The traction at the middle of a step.
       call traction_of(law, from + (to - from)*((step - 0.5_wp)/steps), state, force, next, slope)
       total = total + dot_product(force, to - from)/steps
       state = next

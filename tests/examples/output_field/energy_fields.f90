@@ -18,7 +18,7 @@ module energy_fields
 
 contains
 
-  !> Writes the field if it is wanted.
+  !> Writes the field if it is requested.
   subroutine write_energy_fields(model, stiffness, displacement, output, fields, error)
     !> The model
     type(model_t), intent(in) :: model
@@ -37,7 +37,7 @@ contains
       'strain_energy_density', strain_energy_density(model, stiffness, displacement), error)
   end subroutine write_energy_fields
 
-  !> Strain energy per area, with the stiffness that plies have left.
+  !> Strain energy per area, with the current stiffness of the plies.
   function strain_energy_density(model, stiffness, displacement) result(density)
     !> The model
     type(model_t), intent(in) :: model

@@ -41,7 +41,7 @@ program write_energy
       bent(:, i) = [1e-5_wp*x(2), 2e-5_wp*x(1), 1e-3_wp*(1 - x(1)**2)*(1 - x(2)**2), 1e-2_wp*x(1), -1e-2_wp*x(2)]
     end associate
   end do
-  ! With every coupling that a section can have.
+  ! A section with all couplings.
   stiffness = model%elements%stiffness
   stiffness(:, [3, 5], :) = stiffness(:, [3, 5], :) + 0.1_wp*stiffness(:, [6, 6], :)
   stiffness(:, 7:12, :) = stiffness(:, 7:12, :) + 1e-4_wp*stiffness(:, 1:6, :)

@@ -1,5 +1,5 @@
-!> Criteria of the largest stress: 1 at each strength, and beside those of the program under tension across the fibres
-!> with shear.
+!> Maximum stress criteria: 1 at each strength, and compared with the program's criteria under transverse tension with
+!> shear.
 program compare_criteria
   use example_checks, only: require
   use failure_criteria, only: chosen_indices
@@ -25,16 +25,16 @@ program compare_criteria
   call require('fibres pressed', index_of(fibre_failure, 1, -ply%xc), 1.0_wp, 1e-14_wp)
   call require('matrix pulled', index_of(matrix_cracking, 2, ply%yt), 1.0_wp, 1e-14_wp)
   call require('matrix pressed', index_of(matrix_crushing, 2, -ply%yc), 1.0_wp, 1e-14_wp)
-  call require('sheared in its plane', index_of(matrix_cracking, 3, ply%s12), 1.0_wp, 1e-14_wp)
+  call require('in-plane shear', index_of(matrix_cracking, 3, ply%s12), 1.0_wp, 1e-14_wp)
   call require('sheared across', index_of(matrix_cracking, 5, ply%sm23), 1.0_wp, 1e-14_wp)
-  print '(/a)', 's12 at failure over S12, pulled across the fibres by s22/YT:   largest      Hou   Hashin     Puck'
+  print '(/a)', 's12 at failure over S12, transverse tension s22/YT:   largest      Hou   Hashin     Puck'
   do i = 0, 4
     do set = 0, 3
       shear(set + 1) = shear_at_failure(set, 0.2_wp*i*ply%yt)
     end do
     print '(49x,f5.1,f16.3,3f9.3)', 0.2_wp*i, shear
   end do
-  ! What they say of s22 = 0.8 YT, solved by hand for s12.
+  ! The values of the criteria at s22 = 0.8 YT, solved by hand for s12.
   call require('largest stress at 0.8', shear(1), 1.0_wp, 1e-12_wp)
   call require('Hou at 0.8', shear(2), 0.6_wp, 1e-12_wp)
   call require('Hashin at 0.8', shear(3), 0.6_wp, 1e-12_wp)
@@ -57,11 +57,11 @@ contains
     index_of = indices(mode)
   end function index_of
 
-  !> Shear stress over S12 at which the matrix fails, by halving.
+  !> Shear stress over S12 at which the matrix fails, by bisection.
   real(wp) function shear_at_failure(criteria, across) result(factor)
     !> 0: the new set; else the set of that number
     integer, intent(in) :: criteria
-    !> Stress across the fibres
+    !> Transverse stress
     real(wp), intent(in) :: across
     real(wp) :: lower, upper, indices(failure_modes)
     integer :: step

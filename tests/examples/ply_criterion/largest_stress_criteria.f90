@@ -1,4 +1,4 @@
-!> Stress criteria of ply failure that look at each stress by itself.
+!> Ply failure by maximum stress criteria, without interaction.
 module largest_stress_criteria
   use kinds, only: wp
   use material_parameters, only: material_t
@@ -11,7 +11,7 @@ contains
 
   !> Value of each criterion; a ply fails where it reaches 1.
   pure function largest_stress_indices(material, stress) result(indices)
-    !> Material of the ply; XT, YT, YC, S12 and Sm23 must be there
+    !> Material of the ply; XT, YT, YC, S12 and Sm23 must be given
     type(material_t), intent(in) :: material
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)

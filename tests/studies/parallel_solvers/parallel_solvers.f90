@@ -1,6 +1,6 @@
-!> Study of linear solvers on several ranks: the tangent of a deck's plate, whole or in parts, is factored and solved
-!> with by the solver that PETSc's options choose. tests/studies/parallel_solvers.py has the options and prints the
-!> table.
+!> Study of linear solvers on several ranks: the tangent of a deck's plate, as one matrix or in subdomains, is factored,
+!> and systems are solved, by the solver that PETSc's options choose. tests/studies/parallel_solvers.py has the options
+!> and prints the table.
 !>
 !> Usage: parallel_solvers DECK [-study_parts] [-study_step SECONDS] [-study_factors N] [-study_solves N]
 !>        [options of PETSc]
@@ -39,7 +39,7 @@ program parallel_solvers
   call start_petsc(communicator, options, error)
   if (.not. allocated(error)) call create_model(deck%setup_t, communicator, model, error)
   if (allocated(error)) error stop 'There is no such model.'
-  ! PETSc explains what goes wrong, as it does without Implam's own handler.
+  ! PETSc reports its errors, as without Implam's own handler.
   call PetscPopErrorHandler(ierr)
   call number_equations(model%mesh, model%distribution, model%fixed, numbering, model%images)
   call assemble()
@@ -52,7 +52,7 @@ program parallel_solvers
 
 contains
 
-  !> The deck, and all else for PETSc.
+  !> The deck, and all other arguments for PETSc.
   subroutine read_arguments(path, options)
     !> Path of the deck
     character(len=:), allocatable, intent(out) :: path
@@ -91,7 +91,8 @@ contains
     call PetscOptionsHasName(PETSC_NULL_OPTIONS, '', name, has, ierr)
   end function has
 
-  !> Assembles K + 4 M/h^2, the tangent of a step of Newmark's method, or K; as one matrix, or in parts of the ranks.
+  !> Assembles K + 4 M/h^2, the tangent of a step of Newmark's method, or K; as one matrix, or in subdomains of the
+  !> ranks.
   subroutine assemble()
     real(wp), allocatable :: diagonal(:, :), still(:, :)
     real(wp) :: step
@@ -132,7 +133,7 @@ contains
     call KSPSetFromOptions(krylov, ierr)
   end subroutine set_up
 
-  !> Factors and solves, and prints what the last factor and all solves took.
+  !> Factors and solves, and prints the cost of the last factor and of all solves.
   subroutine measure()
     real(wp) :: seconds(3), flops(3), iterations
     real(wp), allocatable :: load(:)
@@ -163,7 +164,7 @@ contains
     call print_line(seconds, flops, iterations/max(1, option('-study_solves', 1)))
   end subroutine measure
 
-  !> Factors now what one rank has gathered, and not in the first solve.
+  !> Factors the matrix gathered on one rank now, and not in the first solve.
   subroutine factorize_gathered()
     type(tPC) :: preconditioner
     type(tKSP) :: inner
@@ -178,9 +179,9 @@ contains
     call KSPSetUp(inner, ierr)
   end subroutine factorize_gathered
 
-  !> Processor time and operations of this rank once all ranks are here.
+  !> Processor time and operations of this rank, after a barrier of all ranks.
   subroutine note(seconds, flops)
-    !> Processor time, and operations that PETSc knows of
+    !> Processor time, and operations counted by PETSc
     real(wp), intent(out) :: seconds, flops
     integer :: ierr, ranks
 
@@ -190,8 +191,8 @@ contains
     call PetscGetFlops(flops, ierr)
   end subroutine note
 
-  !> Operations of MUMPS by its own count. PETSc 3.18 takes other figures of it: those of assembly in place of
-  !> elimination, and of pivots in place of entries of the factor.
+  !> Operations of MUMPS by its own count. PETSc 3.18 reads other counters: those of assembly instead of elimination,
+  !> and of pivots instead of entries of the factor.
   subroutine count_of_mumps(flops)
     !> Operations before the last factor, after it, after the solves
     real(wp), intent(inout) :: flops(3)
@@ -211,7 +212,7 @@ contains
     call MatMumpsGetRinfo(factor, 3, eliminations, ierr)
     call MatMumpsGetInfo(factor, 27, entries, ierr)
     flops(2) = flops(1) + eliminations
-    ! A negative number of entries is one of millions.
+    ! A negative number of entries is in millions.
     flops(3) = flops(2) + option('-study_solves', 1)*4*merge(-1.0e6_wp, 1.0_wp, entries < 0)*entries
   end subroutine count_of_mumps
 

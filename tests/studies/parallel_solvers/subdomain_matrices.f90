@@ -1,4 +1,4 @@
-!> A matrix in the parts of the ranks (MATIS), which domain decomposition needs, and the motions of the plate for BDDC.
+!> A matrix in subdomains of the ranks (MATIS) for domain decomposition, and the rigid motions of the plate for BDDC.
 module subdomain_matrices
   use, intrinsic :: iso_c_binding, only: c_intptr_t
   use petscksp, only: tIS, tMatNullSpace, tPC, tVec, PETSC_COMM_SELF, PETSC_COPY_VALUES, PETSC_FALSE, &
@@ -14,13 +14,14 @@ module subdomain_matrices
 
 contains
 
-  !> Makes the matrix. Its part on this rank has all equations of the rank's points, also those that other ranks own.
+  !> Creates the matrix. Its subdomain on this rank has all equations of the rank's points, also those owned by other
+  !> ranks.
   subroutine create_parts(communicator, numbering, matrix)
     type(communicator_t), intent(in) :: communicator
     type(numbering_t), intent(in) :: numbering
-    !> The matrix, to be assembled as if it were whole
+    !> The matrix, to be assembled like a global one
     type(petsc_matrix_t), intent(inout) :: matrix
-    ! PETSc's handle of the map from equations of the part to those of the whole
+    ! PETSc's handle of the map from equations of the subdomain to global ones
     integer(c_intptr_t) :: mapping
     integer, allocatable :: equations(:), widths(:)
     integer :: ierr
@@ -37,8 +38,8 @@ contains
     call ISLocalToGlobalMappingDestroy(mapping, ierr)
   end subroutine create_parts
 
-  !> Gives BDDC the equations of each component and the rigid motions of the plate. Without the components it
-  !> finds no corners of parts, and these can move freely.
+  !> Gives BDDC the equations of each component and the rigid motions of the plate. Without the components it finds no
+  !> corners of subdomains, and these are unrestrained.
   subroutine describe_motions(communicator, model, numbering, matrix, preconditioner)
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(in) :: model
@@ -74,8 +75,8 @@ contains
     call PCBDDCSetDofsSplittingLocal(preconditioner, size(fields), fields, ierr)
   end subroutine describe_motions
 
-  !> A rigid motion in this rank's rows: three displacements, and rotations about the three axes. A fibre through the
-  !> thickness turns with the surface, so that rotations are minus the slopes.
+  !> A rigid motion in this rank's rows: three displacements, and rotations about the three axes. A material normal
+  !> rotates with the surface, so that rotations are minus the slopes.
   function rigid_motion(model, numbering, number) result(rows)
     type(model_t), intent(in) :: model
     type(numbering_t), intent(in) :: numbering

@@ -20,12 +20,12 @@ contains
     law = create_cohesive_law([600.0_wp, 600.0_wp], 1.75_wp, [27e6_wp, 40e6_wp], 4e14_wp, 0.0_wp, 0.0_wp)
   end function even_law
 
-  !> The least N, 20.
+  !> The smallest admissible N, 20.
   pure type(cohesive_law_t) function brittle_law() result(law)
     law = create_cohesive_law([280.0_wp, 790.0_wp], 1.3_wp, [60e6_wp, 90e6_wp], 0.0_wp, 9e9_wp, 1e-2_wp)
   end function brittle_law
 
-  !> N from 1e6 (case 0) down to 1e3 (case 3), exponents of all kinds.
+  !> N from 1e6 (case 0) down to 1e3 (case 3), a range of exponents.
   pure type(cohesive_law_t) function extreme_law(case) result(law)
     integer, intent(in) :: case
     real(wp), parameter :: exponents(0:3) = [0.3_wp, 0.97_wp, 1.75_wp, 7.3_wp]
@@ -34,7 +34,7 @@ contains
                               0.0_wp, 0.0_wp)
   end function extreme_law
 
-  !> Jumps of a size, turned from opening towards shear.
+  !> Jumps of a magnitude, turned from opening towards shear.
   pure function jumps_of(size, degrees) result(jumps)
     real(wp), intent(in) :: size, degrees
     real(wp) :: jumps(3), angle
@@ -43,7 +43,7 @@ contains
     jumps = size*[0.6_wp*sin(angle), -0.8_wp*sin(angle), cos(angle)]
   end function jumps_of
 
-  !> Toughness of jumps that do not close, written out.
+  !> Mixed-mode toughness for jumps that do not close, written out.
   pure real(wp) function toughness_by_hand(law, jumps) result(toughness)
     type(cohesive_law_t), intent(in) :: law
     real(wp), intent(in) :: jumps(3)
@@ -55,7 +55,7 @@ contains
                 (shear/(shear + opening))**law%mixing_exponent
   end function toughness_by_hand
 
-  !> A point that has been to these jumps.
+  !> A point after a history of these jumps.
   pure type(cohesive_point_t) function grown_to(law, jumps) result(point)
     type(cohesive_law_t), intent(in) :: law
     real(wp), intent(in) :: jumps(3)

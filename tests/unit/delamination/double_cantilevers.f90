@@ -13,8 +13,8 @@ module double_cantilevers
 
 contains
 
-  !> One arm from its loaded end at edges(1) = 0 to the tied part, which begins where x = crack; its mirror
-  !> image is the other one. Force is what the ties hold back, jump is twice the deflection of the arm.
+  !> One arm from its loaded end at edges(1) = 0 to the tied part, which begins where x = crack; the other arm is its
+  !> mirror image. Force is the tie force, jump is twice the deflection of the arm.
   subroutine solve_double_cantilever(edges, force, jump)
     real(wp), intent(in) :: edges(:)
     real(wp), allocatable, intent(out) :: force(:), jump(:)

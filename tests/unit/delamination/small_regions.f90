@@ -1,4 +1,4 @@
-!> Small meshes and regions drawn as pictures, for the tests of the front.
+!> Small meshes and regions given as pictures, for the tests of the front.
 module small_regions
   use delaminated_regions, only: delaminated_region_t, create_region
   use kinds, only: wp
@@ -9,7 +9,7 @@ module small_regions
 
 contains
 
-  !> A mesh of given edges with one zone; only what regions and fronts look at.
+  !> A mesh of given edges with one zone; only the components that regions and fronts use are set.
   pure function mesh_with_zone(x_edges, y_edges, columns, rows) result(mesh)
     real(wp), intent(in) :: x_edges(:), y_edges(:)
     integer, intent(in) :: columns(2), rows(2)
@@ -29,8 +29,8 @@ contains
     end do
   end function mesh_with_zone
 
-  !> A region whose zone is the whole of a mesh of unit cells; `picture` shows the rows from the top down,
-  !> `#` is delaminated.
+  !> A region whose zone is a complete mesh of unit cells; `picture` shows the rows from the top down, `#` is
+  !> delaminated.
   subroutine drawn_region(picture, mesh, region)
     character(len=*), intent(in) :: picture(:)
     type(layered_mesh_t), intent(out) :: mesh

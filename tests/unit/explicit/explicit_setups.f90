@@ -1,4 +1,4 @@
-!> Small plates moved by central differences, for the tests of these.
+!> Small plates moved by central differences, for their tests.
 module explicit_setups
   use central_difference_energies, only: record_energies
   use central_difference_parameters, only: central_difference_parameters_t
@@ -12,20 +12,20 @@ module explicit_setups
   private
   public :: explicit_run_t
 
-  !> A plate, its state and how it is moved.
+  !> A plate, its state and its integrator.
   type :: explicit_run_t
     !> The plate
     type(model_t) :: model
     !> Its state
     type(state_t) :: now
-    !> What central differences know
+    !> Data of the integrator
     type(central_difference_t) :: method
   contains
-    !> Puts the plate at rest.
+    !> Sets the plate at rest.
     procedure :: begin
-    !> Gives it velocities that differ from point to point.
+    !> Sets velocities that vary from point to point.
     procedure :: shake
-    !> Takes the first step, after which the ledger counts.
+    !> Takes the first step, from which the ledger is counted.
     procedure :: count_from
     !> Takes steps.
     procedure :: go
@@ -35,15 +35,15 @@ module explicit_setups
 
 contains
 
-  !> Puts the plate at rest.
+  !> Sets the plate at rest.
   subroutine begin(self, setup, parameters, softness)
     !> The run
     class(explicit_run_t), intent(out) :: self
     !> The setup
     type(setup_t), intent(in) :: setup
-    !> How steps are taken
+    !> Parameters of the steps
     type(central_difference_parameters_t), intent(in) :: parameters
-    !> Part of the elements' stiffness that is left
+    !> Fraction of the elements' stiffness retained
     real(wp), intent(in), optional :: softness
 
     call build(setup, self%model)
@@ -52,7 +52,7 @@ contains
     call self%method%start(self%model, parameters, self%now)
   end subroutine begin
 
-  !> Gives the plate velocities that differ from point to point.
+  !> Sets velocities that vary from point to point.
   subroutine shake(self, largest)
     !> The run
     class(explicit_run_t), intent(inout) :: self
@@ -71,8 +71,8 @@ contains
     call self%count_from()
   end subroutine shake
 
-  !> Takes the first step, and the energy after it for that of the start: plates begin at rest, and work in the first
-  !> half step is counted for that.
+  !> Takes the first step and sets the initial energy to that after it: plates start from rest, and the ledger counts
+  !> work in the first half step for that state.
   subroutine count_from(self)
     !> The run
     class(explicit_run_t), intent(inout) :: self
@@ -88,9 +88,9 @@ contains
     class(explicit_run_t), intent(inout) :: self
     !> Number of steps
     integer, intent(in) :: steps
-    !> Time that no step passes; left out: far away
+    !> Time at which steps end; absent: far away
     real(wp), intent(in), optional :: end
-    !> Part of the velocities that damping leaves before each step; left out: there is none
+    !> Fraction of the velocities that damping leaves before each step; absent: 1
     real(wp), intent(in), optional :: kept
     real(wp) :: event, left
     integer :: i

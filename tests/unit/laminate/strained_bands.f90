@@ -1,4 +1,4 @@
-!> A softening ply under strains of its own, for the tests of its law.
+!> A softening ply under given strains, for the tests of its law.
 module strained_bands
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, flow_band, soften_band
   use kinds, only: wp
@@ -12,13 +12,13 @@ contains
   pure subroutine strain_band(band, lengths, total, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
-    !> Length of the element along and across the fibres
+    !> Length of the element along and transverse to the fibres
     real(wp), intent(in) :: lengths(2)
     !> Strains of the ply
     type(band_strains_t), intent(in) :: total
     !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
-    !> The ply with these strains
+    !> The ply under these strains
     type(band_state_t), intent(out) :: new
     type(band_strains_t) :: strains
 

@@ -1,4 +1,4 @@
-!> Linear equations of one solver, preconditioned by another one's factor.
+!> Linear equations of one solver, preconditioned by the factor of another one.
 module solver_systems
   use errors, only: error_t, fail, exit_convergence
   use kinds, only: wp

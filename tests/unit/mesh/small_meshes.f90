@@ -1,4 +1,4 @@
-!> Small meshes for the tests of what is dealt out and numbered.
+!> Small meshes for the tests of distributions and numberings.
 module small_meshes
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t

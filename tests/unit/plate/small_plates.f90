@@ -92,7 +92,7 @@ contains
     end do
   end subroutine distort
 
-  !> Bends the lines of a mesh of the unit-scaled square smoothly, its border kept: curved sides.
+  !> Distorts the lines of a mesh of the unit-scaled square smoothly, its border unchanged: curved sides.
   subroutine curve(amount, side, x)
     !> Largest move over the side
     real(wp), intent(in) :: amount
@@ -130,7 +130,7 @@ contains
     end do
   end subroutine elements_of
 
-  !> Section with every coupling there is, positive definite.
+  !> Positive definite section with all couplings.
   function coupled_section() result(section)
     !> The 21 numbers
     real(wp) :: section(21)
@@ -154,9 +154,9 @@ contains
     section([19, 21]) = 5.0_wp/6.0_wp*section(6)
   end function isotropic_section
 
-  !> Numbers between -1 and 1 that look random and are always the same.
+  !> Pseudo-random numbers between -1 and 1 that are the same in every run.
   function noise(points, seed) result(u)
-    !> Number of points and which series
+    !> Number of points and number of the sequence
     integer, intent(in) :: points, seed
     !> Values (5, points)
     real(wp) :: u(5, points)
@@ -169,7 +169,7 @@ contains
     end do
   end function noise
 
-  !> Matrix of the whole mesh from those of its elements.
+  !> Matrix of the mesh, assembled from those of its elements.
   function matrix_of(batches, kinematics, u, stiffness_factor, mass_factor) result(matrix)
     !> The elements
     type(element_batches_t), intent(in) :: batches
@@ -177,7 +177,7 @@ contains
     integer, intent(in) :: kinematics
     !> Unknowns
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> What multiplies stiffness and mass
+    !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
     !> The matrix, unknown = 5 (point - 1) + component
     real(wp), allocatable :: matrix(:, :)
@@ -209,13 +209,13 @@ contains
     f = reshape(matmul(matrix, column), shape(u))
   end function times
 
-  !> Linear solution with some unknowns held at their values.
+  !> Linear solution with some unknowns constrained to given values.
   subroutine solve(batches, load, held, u)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Forces (5, points)
     real(wp), intent(in) :: load(:, :)
-    !> Unknowns that are held (5, points)
+    !> Unknowns that are constrained (5, points)
     logical, intent(in) :: held(:, :)
     !> Values of the constrained unknowns on entry, solution on return (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :)
@@ -236,7 +236,7 @@ contains
     u = reshape(full, shape(u))
   end subroutine solve
 
-  !> Eigenvalues of a symmetric matrix, rising.
+  !> Eigenvalues of a symmetric matrix, ascending.
   function eigenvalues(matrix) result(values)
     !> The matrix
     real(wp), intent(in) :: matrix(:, :)

@@ -30,7 +30,7 @@ module cracked_plates
     type(tangent_operator_t) :: operator
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
-    !> Required convergence
+    !> Required convergence tolerance
     type(equilibrium_t) :: equilibrium
   contains
     !> Builds the model of a setup, without forces and delaminated cells.
@@ -41,7 +41,7 @@ module cracked_plates
     procedure :: pull
     !> Adds a force on the patch, half of it on the lower layer.
     procedure :: coupling
-    !> Softens the layers of all cells of some columns.
+    !> Reduces the stiffness of the layers of all cells of some columns.
     procedure :: soften
     !> Finds equilibrium.
     procedure :: equilibrate
@@ -70,7 +70,7 @@ contains
     if (allocated(error)) error stop 'no operator'
   end subroutine create
 
-  !> Delaminates all cells of a range of columns and rows whose middle is within a radius of the origin.
+  !> Delaminates the cells of a range of columns and rows whose centres are within a radius of the origin.
   subroutine release(self, columns, rows, radius)
     class(cracked_plate_t), intent(inout) :: self
     integer, intent(in) :: columns(2), rows(2)
@@ -88,7 +88,7 @@ contains
     integer, intent(in) :: component
     !> Force
     real(wp), intent(in) :: force
-    !> True: acts on the unknowns of the lower layer, for u, v, w its jumps
+    !> True: acts on the unknowns of the lower layer, for u, v, w on its jumps
     logical, intent(in) :: lower
     integer :: j, point
 
@@ -105,7 +105,7 @@ contains
     end associate
   end subroutine pull
 
-  !> Adds a force on the patch, half of it on the lower layer so that the faces neither part nor meet.
+  !> Adds a force on the patch, half of it on the lower layer so that the faces neither open nor close.
   subroutine coupling(self, force)
     class(cracked_plate_t), intent(inout) :: self
     real(wp), intent(in) :: force
@@ -122,7 +122,7 @@ contains
     end associate
   end subroutine coupling
 
-  !> Softens the layers of all cells of some columns.
+  !> Reduces the stiffness of the layers of all cells of some columns.
   subroutine soften(self, columns, factor)
     class(cracked_plate_t), intent(inout) :: self
     integer, intent(in) :: columns(2)
@@ -155,7 +155,7 @@ contains
     rest = new_state(self%model)
     rest%interfaces%contact = self%state%interfaces%contact
     rest%plies%stiffness = self%stiffness
-    ! Steps take plies over where the deck has them fail, and here none does.
+    ! Steps take over the plies' data if the deck has ply failure; here there is none.
     self%state%plies%stiffness = self%stiffness
     problem = new_static_step(self%model, 1.0_wp, 1.0_wp)
     call solve_step(problem, self%model, self%equilibrium, self%operator, rest, self%state, converged, error)

@@ -1,4 +1,4 @@
-!> Setups together with how their steps are taken, for the tests of dynamics.
+!> Setups together with the parameters of their steps, for the tests of dynamics.
 module stepped_setups
   use kinds, only: wp
   use errors, only: error_t
@@ -19,7 +19,7 @@ module stepped_setups
 
   !> A setup and its steps.
   type, extends(setup_t) :: stepped_setup_t
-    !> How steps are taken
+    !> Parameters of the steps
     type(stepping_t) :: stepping
   end type stepped_setup_t
 
@@ -31,7 +31,7 @@ contains
     type(material_t), intent(in) :: material
     !> Angles of the plies, degrees, and thickness of them all
     real(wp), intent(in) :: angles(:), thickness
-    !> Elements along each side of what is modelled
+    !> Elements along each side of the modelled part
     integer, intent(in) :: elements
     !> True: a quarter is modelled
     logical, intent(in) :: quarter
@@ -42,7 +42,7 @@ contains
     setup%stepping%equilibrium%tolerance = 1.0e-12_wp
   end function stepped_plate
 
-  !> Makes a setup ready for computing.
+  !> Prepares a setup for computing.
   subroutine build_model(setup, communicator, model, error)
     !> The setup
     type(stepped_setup_t), intent(in) :: setup
@@ -56,7 +56,7 @@ contains
     call create_model(setup%setup_t, communicator, model, error)
   end subroutine build_model
 
-  !> Puts the plate of a setup at rest.
+  !> Starts the plate of a setup from rest.
   subroutine start_stepping(setup, model, stepper, error)
     !> The setup
     type(stepped_setup_t), intent(in) :: setup
@@ -71,7 +71,7 @@ contains
     call stepper%start(model, setup%stepping, linear_solver, .false., error)
   end subroutine start_stepping
 
-  !> Puts a plate that has been started into a shape from which it is released.
+  !> Gives a started plate a shape from which it is released.
   subroutine release_from(stepper, model, displacement, error)
     !> The time stepper, started
     type(time_stepper_t), intent(inout) :: stepper
