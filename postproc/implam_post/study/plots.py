@@ -65,8 +65,7 @@ def series_of(study: Study) -> tuple[list[str], list[str]]:
 
 
 def _draw(axes: Axes, points: list[tuple[dict[str, object], float, float, bool]], study: Study) -> None:
-    """Draw the points of a problem as curves, and the front through the best of them; trials without a result are
-    left out."""
+    """Draw the points of a problem as curves, and the Pareto front; trials without a result are omitted."""
     points = [point for point in points if math.isfinite(point[1]) and math.isfinite(point[2])]
     if not points:
         axes.text(0.5, 0.5, "no trial is complete", transform=axes.transAxes, horizontalalignment="center")
