@@ -36,8 +36,9 @@ contains
         call report(s, problems, mesh_group, key_mass, 'central differences need a lumped mass; leave it out, or '// &
                   'write &time integrator = ''generalized_alpha''.')
       if (s%has_group(adapt_group)) call remark(s, problems, adapt_group, '', no_effect)
-      ! Equilibrium with residual stresses is found before the first step.
-      if (s%has_group(solver_group) .and. .not. deck%has_thermal) call remark(s, problems, solver_group, '', no_effect)
+      ! Equilibrium with residual stresses or fixed lines is found before the first step.
+      if (s%has_group(solver_group) .and. .not. (deck%has_thermal .or. any(deck%lines%precedes()))) &
+        call remark(s, problems, solver_group, '', no_effect)
       if (deck%impactor%integrator /= integrator_central) &
         call remark_idle(s, problems, impactor_group, key_integrator, no_effect)
     end associate

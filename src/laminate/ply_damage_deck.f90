@@ -28,7 +28,7 @@ module ply_damage_deck
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
       &Where in a ply stresses are evaluated: its mid-plane, or the face with the higher failure index.', &
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
-      &Whether YT and S12 are in-situ strengths, from the thickness of each block of plies, G_mt and G_mc.', &
+      &Whether YT and S12 are raised to in-situ strengths, by the thickness of each block of plies, G_mt and G_mc.', &
     'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
       &Whether nonlinear shear strain (shear_failure_strain) is permanent after unloading, which leaves a dent.', &
     'ply_damage | crack_closure | logical | 1 | - | .false. | .true. .false. | &
