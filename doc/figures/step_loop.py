@@ -7,7 +7,7 @@ IMPLICIT = [
     "first guess from the accepted state",
     "residual r: internal, inertia, impact, contact",
     "tangent J; GMRES with the lagged factor",
-    "impact force, line search, u = u + du",
+    "contact force, line search, u = u + du",
     "contact multipliers; fronts grow?",
     "accept: plies, ledger, output",
 ]

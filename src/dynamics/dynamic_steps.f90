@@ -1,5 +1,5 @@
 !> One time step of plate and impactor together, theory (T1), (T2) and (F10). Each equilibrium iteration solves for the
-!> impact force by the compliance of impactor and plate.
+!> contact force by the compliance of impactor and plate.
 module dynamic_steps
   use kinds, only: wp
   use errors, only: error_t, exit_convergence
@@ -189,7 +189,7 @@ contains
     if (model%communicator%is_root()) energy = energy + old%ledger%strain/model%mesh%multiplicity
   end subroutine find_internal_from_motion
 
-  !> Residual relative to internal, inertia and impact forces.
+  !> Residual relative to internal, inertia and contact forces.
   real(wp) function residual_norm(self, at)
     !> The problem
     class(dynamic_step_t), intent(in) :: self

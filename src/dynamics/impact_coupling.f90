@@ -86,7 +86,7 @@ contains
     forces_agree = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
   end function forces_agree
 
-  !> Solves for the impact force, given the correction of the plate for the force assumed. Where the tangent is the
+  !> Solves for the contact force, given the correction of the plate for the force assumed. Where the tangent is the
   !> factored operator, the plate's response to the change of the force is known and added. Otherwise the correction
   !> includes the slope of the force, and the remaining difference to the indentation law is part of the next residual:
   !> the response of the factored operator would open contacts that have closed since the factorization.
@@ -137,7 +137,7 @@ contains
     if (.not. allocated(error)) slope = max(0.0_wp, (here%load() - beyond%load())/step)
   end function slope
 
-  !> Finds the impact force for a mean deflection of the patch and the compliance of the patch.
+  !> Finds the contact force for a mean deflection of the patch and the compliance of the patch.
   subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)
     !> The coupling
     class(impact_coupling_t), intent(inout) :: self
