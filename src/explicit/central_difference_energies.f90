@@ -10,6 +10,7 @@ module central_difference_energies
   use kinds, only: wp
   use models, only: model_t
   use rank_totals, only: total_of, totals_of
+  use rig_steps, only: last_layer
   use states, only: state_t
   implicit none
   private
@@ -128,7 +129,8 @@ contains
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
       do i = 1, model%distribution%owned
         if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
-        if (model%rig%elastic) call stored%add(-model%rig%clamp_preload(i)*u(3, i))
+        if (model%rig%elastic) &
+          call stored%add(-model%rig%clamp_preload(i)*sum(u(3, i:last_layer(model%map%above, i))))
         if (.not. allocated(cohesive%cohesive)) cycle
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0) then

@@ -19,7 +19,7 @@ module central_differences
   use nodal_steps, only: nodal_steps_t
   use element_batches, only: lanes
   use rank_totals, only: total_of
-  use rig_steps, only: create_rig_steps
+  use rig_steps, only: add_clamp_forces, create_rig_steps
   use plate_options, only: kinematics_von_karman
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
@@ -287,7 +287,7 @@ contains
     self%force = -self%field(:, :size(self%force, 2))
     call model%profile%leave()
     call self%impact%patch%add_force(model%mesh%multiplicity, now%force, self%force)
-    if (model%rig%elastic) self%force(3, :) = self%force(3, :) + model%rig%clamp_preload
+    call add_clamp_forces(model, self%force)
     call self%inertia%fold(self%force)
   end subroutine find_forces
 

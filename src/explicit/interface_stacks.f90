@@ -106,7 +106,9 @@ contains
     if (i < size(above)) has_layer_below = above(i + 1) == i
   end function has_layer_below
 
-  !> Onset energies: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode.
+  !> Onset energies: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode. The
+  !> interfaces of a node below a clamp with a force do not separate: the clamp acts on one node of the mesh, which
+  !> could not carry a force that lifts the upper layers.
   pure subroutine find_onsets(self, model, cohesive)
     !> The stacks
     class(interface_stacks_t), intent(inout) :: self
@@ -121,8 +123,24 @@ contains
       if (model%zone(i) == 0) cycle
       law = cohesive%law_at(model, i)
       self%min_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
+      if (model%rig%elastic) then
+        if (model%rig%clamp_preload(first_layer(model%map%above, i)) > 0) self%min_onset(i) = huge(1.0_wp)
+      end if
     end do
   end subroutine find_onsets
+
+  !> Point of the first layer of the node of a point of this rank.
+  pure integer function first_layer(above, i) result(point)
+    !> Point above each point of this rank; 0: none
+    integer, intent(in) :: above(:)
+    !> The point
+    integer, intent(in) :: i
+
+    point = i
+    do while (above(point) > 0)
+      point = above(point)
+    end do
+  end function first_layer
 
   !> Marks damaged stacks.
   pure subroutine find_damaged(self, cohesive)

@@ -5,6 +5,7 @@ module rig_reactions
   use kinds, only: wp
   use models, only: model_t
   use rank_totals, only: totals_of
+  use rig_steps, only: last_layer
   use states, only: state_t
   use support_parameters, only: max_supports
   implicit none
@@ -32,7 +33,7 @@ contains
       associate (constrained_by => model%rig%constrained_by(i), on_frame => model%rig%frame(i), &
                  clamps => model%rig%clamps(i))
         if (constrained_by > 0) then
-          do layer = i, last_layer(i)
+          do layer = i, last_layer(model%map%above, i)
             call sums(constrained_by)%add(method%force(3, layer))
           end do
         else
@@ -49,19 +50,5 @@ contains
       end associate
     end do
     reactions = reactions*model%mesh%multiplicity
-
-  contains
-
-    !> Point of the lowest layer below a point of this rank.
-    pure integer function last_layer(i)
-      !> The point
-      integer, intent(in) :: i
-
-      last_layer = i
-      do while (last_layer < size(model%map%above))
-        if (model%map%above(last_layer + 1) /= last_layer) exit
-        last_layer = last_layer + 1
-      end do
-    end function last_layer
   end function reactions_of
 end module rig_reactions

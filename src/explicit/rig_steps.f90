@@ -1,7 +1,8 @@
 !> Unilateral frames, clamps and elastic edges in a step, node by node.
 !>
-!> A frame supports the lower face: it constrains w of the lowest layer of its nodes to w <= 0. Springs act on the first
-!> layer; they are implicit, so that their stiffness does not limit the step.
+!> A frame supports the lower face: it constrains w of the lowest layer of its nodes to w <= 0. The force of a clamp
+!> acts on the same layer, so that clamp and frame are in equilibrium without pressure between the layers. Springs act
+!> on the first layer; they are implicit, so that their stiffness does not limit the step.
 module rig_steps
   use archives, only: archive_t
   use kinds, only: wp
@@ -9,7 +10,7 @@ module rig_steps
   use step_lengths, only: step_lengths_t
   implicit none
   private
-  public :: rig_steps_t, create_rig_steps
+  public :: rig_steps_t, create_rig_steps, add_clamp_forces, last_layer
 
   !> State of frames and springs at the first points of this rank's nodes, (points) each.
   type :: rig_steps_t
@@ -45,6 +46,35 @@ contains
     allocate (self%reaction(points), self%approach(points), self%frame_loss(points), self%step_loss(points), &
               source=0.0_wp)
   end function create_rig_steps
+
+  !> Adds the forces of clamps to those on the lowest layers.
+  pure subroutine add_clamp_forces(model, force)
+    type(model_t), intent(in) :: model
+    !> Forces on the layers, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    integer :: i, lowest
+
+    if (.not. model%rig%elastic) return
+    do i = 1, model%distribution%owned
+      if (.not. model%rig%clamp_preload(i) > 0) cycle
+      lowest = last_layer(model%map%above, i)
+      force(3, lowest) = force(3, lowest) + model%rig%clamp_preload(i)
+    end do
+  end subroutine add_clamp_forces
+
+  !> Point of the lowest layer of the node of a point of this rank.
+  pure integer function last_layer(above, i) result(point)
+    !> Point above each point of this rank; 0: none
+    integer, intent(in) :: above(:)
+    !> The point
+    integer, intent(in) :: i
+
+    point = i
+    do while (point < size(above))
+      if (above(point + 1) /= point) exit
+      point = point + 1
+    end do
+  end function last_layer
 
   !> Stops a layer that would penetrate its frame, and records the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)

@@ -11,6 +11,7 @@ steep    where slopes stiffen the plate, steps with scaled inertia create no ene
 fracture the fracture energy is the toughness times the area, to 1e-6
 dent     after the impact the plate comes to rest, with a dent where shear strains of plies are permanent; without
          damping the summary says that vibration is part of the dent
+clamps   clamps with a force at nodes with several layers press the plate on the frame without a motion
 softened residual stresses that crack plies, shear them permanently or delaminate edges before the impact: the energy
          balances within 1e-4 of the impact, also in implicit steps; the check says that their contact may last longer
          than that of an undamaged plate, where it foresees the end
@@ -363,9 +364,34 @@ def check_softened(implam, folder, _):
         require(("more where damage lengthens the contact" in said) == unknown, f"The check says: {said}")
 
 
+CLAMPED = """&case name='clamped' units='mm-t-s' /
+&plate length=60, 40 edges='free' symmetry='point' /
+&support window=50, 30 unilateral=.true. /
+&support clamps=28,18, -28,18, 28,-18, -28,-18 clamp_force=1100 /
+&mesh elements=14, 20 patch=4 core=24, 24 cell=2 /
+&material name='cf' library='t700gc_m21' /
+&laminate materials='cf' stacking='[45/0/-45/90]s' ply_thickness=0.25 /
+&impactor mass=1e-3 velocity=10 radius=6 /
+&delamination below_ply='between_angles' zone=60, 40 /
+&time end=5e-6 /
+"""
+
+
+def check_clamps(implam, folder, _):
+    """An impact of .05 mJ on a plate that four clamps press on its frame: nothing but the impact moves it."""
+    deck = write_deck(folder / "clamped", "karas.nml")
+    deck.write_text(CLAMPED, encoding="utf-8")
+    found, energy = read_history(run_deck(implam, deck)), 0.05
+    for column in ("energy_delamination", "energy_contact", "energy_algorithmic", "energy_error"):
+        worst = max(map(abs, found[column]))/energy
+        print(f"{column}: at most {worst:.1e} of the impact energy")
+        require(worst < 1e-4, f"{column} is {worst:.2g} of the impact energy.")
+    require(min(found["energy_strain"]) > -1e-9*energy, "Clamps in equilibrium have released energy.")
+
+
 TRIALS = {"ranks": check_ranks, "signal": check_signal, "kill": check_kill, "events": check_events,
           "travel": check_travel, "lines": check_lines, "steep": check_steep, "fracture": check_fracture,
-          "dent": check_dent, "softened": check_softened}
+          "dent": check_dent, "clamps": check_clamps, "softened": check_softened}
 
 if __name__ == "__main__":
     Path(sys.argv[3]).parent.mkdir(parents=True, exist_ok=True)
