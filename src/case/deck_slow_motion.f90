@@ -7,6 +7,7 @@ module deck_slow_motion
   use delamination_parameters, only: law_cohesive
   use kinds, only: wp
   use short_numbers, only: short_text
+  use solver_deck, only: solver_group
   use static_deck, only: key_dissipation, static_group
   implicit none
   private
@@ -42,12 +43,14 @@ contains
     character(len=:), allocatable :: clause
 
     clause = ''
-    if (is_pressed(deck)) then
+    if (is_pressed(deck) .and. (deck%has_ply_damage .or. size(deck%delaminations) > 0)) then
       clause = ' With softening there may be no equilibrium'//slow_motion(deck)//'.'
     else if (deck%is_static() .and. .not. deck%static%dissipation > 0 .and. &
              any(deck%delaminations%law == law_cohesive)) then
       clause = ' With a softening interface there may be no equilibrium at this load: use &'//static_group//' '// &
                key_dissipation//' to trace its growth.'
+    else if (deck%is_static() .and. any(deck%supports%unilateral)) then
+      clause = ' Contact with a frame may take more iterations: give a larger &'//solver_group//' max_iterations.'
     end if
   end function slow_motion_advice
 
