@@ -120,6 +120,14 @@ class CommandTest(unittest.TestCase):
                 self.assertNotIn("Errno", text)
                 self.assertEqual(text.count("none.csv"), 0 if self.folder in words else 1, text)
 
+    def test_current_folder(self) -> None:
+        """The current folder in place of a file is refused in one sentence."""
+        with contextlib.chdir(self.folder):
+            for command in (plot.main, movie.main, check_impact.main, from_nastran.main):
+                with self.subTest(command=command.__module__):
+                    code, text = self.run_quietly(command, ".")
+                    self.assertEqual((code, len(text.splitlines())), (4, 1), text)
+
     def test_damaged_record(self) -> None:
         """An invalid record of a run is reported with what to do."""
         for content in ("", "[]", '{"exit_code": 0, "other": 1}', '{"exit_code": 0, "cpu_time": "x"}', "[" * 100000):

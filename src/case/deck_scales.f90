@@ -83,7 +83,9 @@ contains
     type(problems_t), intent(inout) :: problems
 
     associate (o => deck%expected)
-      if (any(o%step_error > error_limits)) call remark(deck%settings, problems, time_group, key_step, &
+      ! A step that the program has chosen keeps the accuracy that the deck requests.
+      if (any(o%step_error > error_limits) .and. deck%settings%is_given(time_group, key_step)) &
+        call remark(deck%settings, problems, time_group, key_step, &
         'is too long for this impact: by a preliminary elastic impact the error of the largest force '// &
         'would be '//short_text(100*o%step_error(1))//' %, of the history '//short_text(100*o%step_error(2))// &
         ' %; make it shorter, or leave it out with &case accuracy.')

@@ -5,6 +5,7 @@ import io
 import math
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Never
 
 EXIT_DONE, EXIT_USAGE, EXIT_DECK, EXIT_FILES, EXIT_INTERRUPTED = 0, 1, 2, 4, 130
@@ -66,9 +67,17 @@ def positive(text: str) -> float:
     return number
 
 
+def _named(value: object) -> object:
+    """Return a path such as `.` with the name of its folder, so that names of files beside it can be formed."""
+    if isinstance(value, list):
+        return [_named(item) for item in value]
+    return value.resolve() if isinstance(value, Path) and not value.name else value
+
+
 def run(command: Callable[[argparse.Namespace], int], parser: CommandParser, arguments: Sequence[str] | None) -> int:
     """Run `command` with the parsed `arguments` and return the exit code; errors are printed as one sentence."""
     options = parser.parse_args(arguments)
+    vars(options).update({name: _named(value) for name, value in vars(options).items()})
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # file names with bytes that are not text
     try:
