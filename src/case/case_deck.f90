@@ -6,7 +6,7 @@ module case_deck
   use text, only: lower_case
   implicit none
   private
-  public :: fill_case, fill_accuracy, has_accuracy, needs_coarse_run
+  public :: fill_case, fill_accuracy, stem_of, has_accuracy, needs_coarse_run
 
   !> Names of the group and of keys.
   character(len=*), parameter, public :: case_group = 'case', key_name = 'name', &
@@ -106,16 +106,26 @@ contains
   pure function name_from(path) result(name)
     !> The path
     character(len=*), intent(in) :: path
-    !> Name of the case
+    !> A valid case name
     character(len=:), allocatable :: name
     integer :: i
 
-    name = path(index(path, '/', back=.true.) + 1:)
-    if (index(name, '.', back=.true.) > 1) name = name(:index(name, '.', back=.true.) - 1)
+    name = stem_of(path)
     name = name(:min(len(name), 80))
     do i = 1, len(name)
       if (verify(lower_case(name(i:i)), 'abcdefghijklmnopqrstuvwxyz0123456789._-') > 0) name(i:i) = '_'
     end do
     if (verify(name(:min(1, len(name))), '._-') == 0) name = 'case'//name
   end function name_from
+
+  !> File name of a path without folders and extension.
+  pure function stem_of(path) result(stem)
+    !> The path
+    character(len=*), intent(in) :: path
+    !> The name
+    character(len=:), allocatable :: stem
+
+    stem = path(index(path, '/', back=.true.) + 1:)
+    if (index(stem, '.', back=.true.) > 1) stem = stem(:index(stem, '.', back=.true.) - 1)
+  end function stem_of
 end module case_deck

@@ -1,6 +1,7 @@
 !> Reports keys without effect because the group that uses them is missing.
 module deck_idle_keys
   use adapt_deck, only: adapt_group, keys_of_lengths
+  use case_deck, only: case_group, key_name, stem_of
   use controls_deck, only: controls_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -35,6 +36,10 @@ contains
       call check_material(deck, place, problems)
     end do
     associate (s => deck%settings)
+      if (.not. s%is_given(case_group, key_name) .and. s%text_of(case_group, key_name) /= stem_of(deck%source)) &
+        call remark(s, problems, case_group, key_name, 'is '''//s%text_of(case_group, key_name)//''', as the file '// &
+                    'name of the deck has other characters than letters, digits, . _ and -; give a name, so that '// &
+                    'decks do not share results.')
       if (s%has_group(controls_group)) call remark(s, problems, controls_group, '', 'is for studies of the iteration.')
       if (.not. (deck%stepping%adapt%on .or. deck%is_static() .or. is_explicit(deck%stepping)) .and. deck%has_time) &
         call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
