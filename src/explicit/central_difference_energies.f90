@@ -7,10 +7,10 @@
 module central_difference_energies
   use central_differences, only: central_difference_t
   use exact_sums, only: exact_sum_t
+  use interface_stacks, only: last_layer
   use kinds, only: wp
   use models, only: model_t
   use rank_totals, only: total_of, totals_of
-  use rig_steps, only: last_layer
   use states, only: state_t
   implicit none
   private

@@ -10,7 +10,7 @@ module interface_stacks
   use weighted_jumps, only: newest
   implicit none
   private
-  public :: interface_stacks_t, create_interface_stacks
+  public :: interface_stacks_t, create_interface_stacks, last_layer
 
   !> Stacks of layers. Points of a stack follow each other downwards; each but the first carries the interface above it.
   type :: interface_stacks_t
@@ -70,10 +70,7 @@ contains
                         [(has_layer_below(above, i), i=1, owned)])
       allocate (self%layers(size(self%first)), self%damaged(size(self%first)))
       do i = 1, size(self%first)
-        self%layers(i) = 1
-        do while (has_layer_below(above, self%first(i) + self%layers(i) - 1))
-          self%layers(i) = self%layers(i) + 1
-        end do
+        self%layers(i) = last_layer(above, self%first(i)) - self%first(i) + 1
       end do
     end associate
     self%height = model%map%height
@@ -106,6 +103,19 @@ contains
     if (i < size(above)) has_layer_below = above(i + 1) == i
   end function has_layer_below
 
+  !> Point of the lowest layer of the node of a point of this rank.
+  pure integer function last_layer(above, i) result(point)
+    !> Point above each point; 0: none
+    integer, intent(in) :: above(:)
+    !> The point
+    integer, intent(in) :: i
+
+    point = i
+    do while (has_layer_below(above, point))
+      point = point + 1
+    end do
+  end function last_layer
+
   !> Onset energies: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode. The
   !> interfaces of a node below a clamp with a force do not separate: the clamp acts on one node of the mesh, which
   !> could not carry a force that lifts the upper layers.
@@ -123,24 +133,12 @@ contains
       if (model%zone(i) == 0) cycle
       law = cohesive%law_at(model, i)
       self%min_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
-      if (model%rig%elastic) then
-        if (model%rig%clamp_preload(first_layer(model%map%above, i)) > 0) self%min_onset(i) = huge(1.0_wp)
-      end if
+    end do
+    if (.not. model%rig%elastic) return
+    do i = 1, model%distribution%owned
+      if (model%rig%clamp_preload(i) > 0) self%min_onset(i + 1:last_layer(model%map%above, i)) = huge(1.0_wp)
     end do
   end subroutine find_onsets
-
-  !> Point of the first layer of the node of a point of this rank.
-  pure integer function first_layer(above, i) result(point)
-    !> Point above each point of this rank; 0: none
-    integer, intent(in) :: above(:)
-    !> The point
-    integer, intent(in) :: i
-
-    point = i
-    do while (above(point) > 0)
-      point = above(point)
-    end do
-  end function first_layer
 
   !> Marks damaged stacks.
   pure subroutine find_damaged(self, cohesive)

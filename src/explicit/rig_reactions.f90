@@ -2,10 +2,10 @@
 module rig_reactions
   use central_differences, only: central_difference_t
   use exact_sums, only: exact_sum_t
+  use interface_stacks, only: last_layer
   use kinds, only: wp
   use models, only: model_t
   use rank_totals, only: totals_of
-  use rig_steps, only: last_layer
   use states, only: state_t
   use support_parameters, only: max_supports
   implicit none

@@ -5,12 +5,13 @@
 !> on the first layer; they are implicit, so that their stiffness does not limit the step.
 module rig_steps
   use archives, only: archive_t
+  use interface_stacks, only: last_layer
   use kinds, only: wp
   use models, only: model_t
   use step_lengths, only: step_lengths_t
   implicit none
   private
-  public :: rig_steps_t, create_rig_steps, add_clamp_forces, last_layer
+  public :: rig_steps_t, create_rig_steps, add_clamp_forces
 
   !> State of frames and springs at the first points of this rank's nodes, (points) each.
   type :: rig_steps_t
@@ -61,20 +62,6 @@ contains
       force(3, lowest) = force(3, lowest) + model%rig%clamp_preload(i)
     end do
   end subroutine add_clamp_forces
-
-  !> Point of the lowest layer of the node of a point of this rank.
-  pure integer function last_layer(above, i) result(point)
-    !> Point above each point of this rank; 0: none
-    integer, intent(in) :: above(:)
-    !> The point
-    integer, intent(in) :: i
-
-    point = i
-    do while (point < size(above))
-      if (above(point + 1) /= point) exit
-      point = point + 1
-    end do
-  end function last_layer
 
   !> Stops a layer that would penetrate its frame, and records the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
