@@ -27,10 +27,12 @@ function(implam_add_layers)
       add_dependencies(implam_${layer} implam_${name})
     endforeach()
     target_link_libraries(implam_${layer} PRIVATE implam_flags)
-    # CMake follows modules within a target only: a stamp renews the layers after a changed one.
+    # CMake follows modules within a target only: a stamp with the digest of the layer's modules renews the layers after
+    # it. A change that leaves all modules as they are, in the body of a procedure, leaves the stamp and those layers.
     set_property(SOURCE ${sources} APPEND PROPERTY OBJECT_DEPENDS ${stamps})
     add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/${layer}.stamp DEPENDS $<TARGET_OBJECTS:implam_${layer}>
-      COMMAND ${CMAKE_COMMAND} -E touch ${CMAKE_BINARY_DIR}/${layer}.stamp VERBATIM)
+      COMMAND ${CMAKE_COMMAND} -DMODULES=${CMAKE_BINARY_DIR}/modules/${layer} -DSTAMP=${CMAKE_BINARY_DIR}/${layer}.stamp
+              -P ${CMAKE_CURRENT_SOURCE_DIR}/cmake/module_stamp.cmake VERBATIM)
     list(APPEND tier ${layer})
     list(APPEND tier_stamps ${CMAKE_BINARY_DIR}/${layer}.stamp)
   endforeach()
