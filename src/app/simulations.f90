@@ -31,7 +31,7 @@ module simulations
   use wall_limits, only: wall_limit_t
   use queue_signals, only: announce_stop, stop_signal
   use output_clocks, only: clock_t, next_event, shown_time
-  use energy_checks, only: energy_check_t, new_energy_check
+  use energy_checks, only: energy_check_t
   use initial_states, only: take_initial_state, visit_incomplete_start
   use adaptive_zones, only: visit_evolving
   use result_rows, only: row_of, column_names, column_whole
@@ -172,7 +172,6 @@ contains
     if (allocated(error)) return
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
-    self%energy_check = new_energy_check(deck)
     call log_model(self%deck, self%model, self%stepper, self%log)
     call start_progress(self%progress, self%stepper, end_of(self))
   end subroutine prepare

@@ -58,6 +58,7 @@ contains
     new%ledger%strain = products%strain
     new%ledger%contact = old%ledger%contact - products%contact
     new%ledger%external_work = old%ledger%external_work + sum(amplitudes)/2*products%pressure + products%lines
+    call new%ledger%note_largest()
     gain = integrator_gain(integrator, step, products, amplitudes(2) - amplitudes(1)) &
            + (products%strain - old%ledger%strain - products%mean_internal)
     new%ledger%algorithmic = old%ledger%algorithmic - gain
@@ -70,7 +71,7 @@ contains
     new%ledger%algorithmic = new%ledger%algorithmic - (damage + fracture + heat)
     call new%plies%measure_lag(damage, products%strain - old%ledger%strain - products%mean_internal &
                                - products%cohesive, &
-                         max(new%ledger%initial + new%ledger%external_work, products%strain))
+                         new%ledger%largest + new%ledger%residual)
     if (model%map%layered) then
       ! Subtracts the fracture energy, which is recorded when ties are released.
       call new%interfaces%ties%record(model, old%interfaces%ties, &

@@ -60,10 +60,11 @@ contains
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated) + now%plies%permanent_shear
       end if
-      if (.not. model%setup%has_impactor) return
-      ledger%indentation = now%indentation%work
-      if (model%setup%impactor%travel > 0) return
-      ledger%impactor = method%impact%energy(model, method%steps%now, now)
+      if (model%setup%has_impactor) then
+        ledger%indentation = now%indentation%work
+        if (.not. model%setup%impactor%travel > 0) ledger%impactor = method%impact%energy(model, method%steps%now, now)
+      end if
+      call ledger%note_largest()
     end associate
   end subroutine record_energies
 

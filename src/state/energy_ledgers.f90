@@ -6,7 +6,12 @@ module energy_ledgers
   private
   public :: ledger_t
 
-  !> The energy ledger.
+  !> Fraction of the energy of residual stresses below which energies are not checked. The initial equilibrium has a
+  !> residual of 1e-6 of the forces (`tolerance` of &solver), whose work is up to 1e-6 of this energy: 1 % of the
+  !> smallest energy that is checked.
+  real(wp), parameter :: fine = 1.0e-4_wp
+
+  !> The energy ledger. It has many components because each is an entry of the balance.
   type :: ledger_t
     !> Kinetic energy of the impactor and its potential of gravity
     real(wp) :: impactor = 0
@@ -30,9 +35,13 @@ module energy_ledgers
     real(wp) :: initial = 0, residual = 0
     !> Part of the kinetic energy in motions with scaled inertia
     real(wp) :: scaled = 0
+    !> Largest energy so far, the reference of errors: the present energy may return to zero, as in free vibration
+    real(wp) :: largest = 0
   contains
     !> Energy error.
     procedure :: error
+    !> Updates the largest energy so far.
+    procedure :: note_largest
     !> Saves or loads the ledger.
     procedure :: visit
   end type ledger_t
@@ -48,6 +57,16 @@ contains
             + self%ply_damage + self%contact + self%friction + self%algorithmic + self%layers + self%damping &
             - self%external_work - self%initial
   end function error
+
+  !> Updates the largest energy so far: of the impactor, of the plate, or the work of the loads, which may be negative.
+  !> The energy of residual stresses is excluded, as it may be far larger than that of the loads.
+  pure subroutine note_largest(self)
+    !> The ledger, complete
+    class(ledger_t), intent(inout) :: self
+
+    self%largest = max(self%largest, self%initial - self%residual, self%kinetic + self%strain - self%residual, &
+                       abs(self%external_work), fine*self%residual)
+  end subroutine note_largest
 
   !> Saves or loads every entry.
   subroutine visit(self, archive)
@@ -71,5 +90,6 @@ contains
     call archive%item('ledger/initial', self%initial)
     call archive%item('ledger/residual', self%residual)
     call archive%item('ledger/scaled', self%scaled)
+    call archive%item('ledger/largest', self%largest)
   end subroutine visit
 end module energy_ledgers

@@ -3,7 +3,9 @@
 module states
   use kinds, only: wp
   use archives, only: archive_t
+  use contact_loading, only: loading_indentation
   use contact_patches, only: contact_patch_t
+  use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use impactors, only: impactor_t, new_impactor, impactor_energy
   use tan_sun_indentation, only: indentation_t
   use energy_ledgers, only: ledger_t
@@ -52,6 +54,8 @@ module states
     integer :: iterations = 0, force_iterations = 0, contact_iterations = 0
     !> Their sums over all steps
     integer :: all_iterations = 0, all_force_iterations = 0, all_contact_iterations = 0
+    !> True: plies and interfaces keep their damage, as a state mapped to this mesh comes to equilibrium
+    logical :: holds_damage = .false.
     !> Largest forces so far, the reference of the residual when forces are small: translations, rotations
     real(wp) :: largest_forces(2) = 0
   end type small_state_t
@@ -72,6 +76,8 @@ module states
     procedure :: pressed_area
     !> True once plies have failed or delaminations have grown.
     procedure :: has_failures
+    !> Holds the damage, or lets it grow.
+    procedure :: hold_damage
     !> Counts a step and its iterations.
     procedure :: count_step
     !> Stores the changes of a load step.
@@ -104,7 +110,22 @@ contains
     self%impactor = new_impactor(model%setup%impactor)
     self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor
+    self%ledger%largest = energy_of_weight(model%setup%impactor, model%setup%indentation)
   end function new_state
+
+  !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
+  !> of an impactor placed on a plate at rest begins with zero, and its first steps are compared with this energy.
+  pure real(wp) function energy_of_weight(impactor, law) result(energy)
+    !> The impactor
+    type(impactor_parameters_t), intent(in) :: impactor
+    !> The indentation law
+    type(indentation_law_t), intent(in) :: law
+    real(wp) :: weight
+
+    energy = 0
+    weight = impactor%mass*impactor%gravity
+    if (weight > 0) energy = weight*loading_indentation(law, weight)
+  end function energy_of_weight
 
   !> Copies the state from which a step starts; of the motion only the displacement, as velocity, acceleration and
   !> forces are computed by the step.
@@ -172,6 +193,18 @@ contains
     has_failures = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
   end function has_failures
 
+  !> Holds the damage of plies and interfaces, or lets it grow.
+  pure subroutine hold_damage(self, holds)
+    !> The state
+    class(state_t), intent(inout) :: self
+    !> True: damage does not grow
+    logical, intent(in) :: holds
+
+    self%holds_damage = holds
+    self%plies%keeps_stiffness = holds
+    self%interfaces%cohesive%is_held = holds
+  end subroutine hold_damage
+
   !> Counts a step and its iterations.
   pure subroutine count_step(self, old)
     !> State at the end of the step
@@ -227,6 +260,8 @@ contains
     call self%plies%visit(archive, model)
     call self%interfaces%visit(archive, model)
     call self%ledger%visit(archive)
+    call archive%item('holds_damage', self%holds_damage)
+    if (archive%loading) call self%hold_damage(self%holds_damage)
     call archive%item('iterations', self%iterations)
     call archive%item('force_iterations', self%force_iterations)
     call archive%item('contact_iterations', self%contact_iterations)

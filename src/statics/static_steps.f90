@@ -236,6 +236,7 @@ contains
       if (.not. allocated(model%nose) .and. fracture + heat + new%ledger%ply_damage <= 0) &
         call correct_work(excess, sums(6), new%ledger%external_work)
       new%ledger%algorithmic = old%ledger%algorithmic - excess + sums(5) - fracture - heat - damage
+      call new%ledger%note_largest()
     end associate
   end subroutine finish
 
