@@ -5,6 +5,7 @@ module run_costs
   use kinds, only: wp
   use model_sizes, only: model_size_t
   use plate_options, only: kinematics_linear
+  use shortest_cells, only: shortest_cell_text
   use stepping_parameters, only: is_error_controlled, is_explicit
   use text, only: line_t, append, counted, rounded_text, to_text
   implicit none
@@ -41,6 +42,7 @@ contains
       return
     else if (is_explicit(deck%stepping)) then
       call append(lines, explicit_sentence(deck, model_size))
+      call append(lines, 'The shortest cells limit the step: '//shortest_cell_text(deck)//'.')
       if (untaken_step(deck, deck%stepping%time%step) /= '') &
         call append(lines, untaken_step(deck, deck%stepping%time%step))
     else

@@ -18,6 +18,7 @@ module deck_central_differences
   use setup_elastic_impacts, only: contact_end, start_elastic_impact
   use setup_scales, only: scales_of, setup_scales_t
   use short_numbers, only: short_text
+  use shortest_cells, only: check_narrow_cells, shortest_cell_text
   use stepping_parameters, only: past_contact
   use text, only: append, counted, to_text
   use time_deck, only: key_end, key_mass_scaling, key_step, max_steps, time_group
@@ -125,7 +126,8 @@ contains
     call limit_by_contact(deck, step)
     if (deck%stepping%time%end > max_steps*step) then
       call report(deck%settings, problems, time_group, key_end, 'takes more than '//to_text(max_steps)//' stable '// &
-                'steps of '//short_text(step)//'; allowed: up to '//short_text(max_steps*step)//'.')
+                  'steps of '//short_text(step)//'; allowed: up to '//short_text(max_steps*step)// &
+                  ', or longer cells than '//shortest_cell_text(deck)//'.')
       return
     end if
     associate (time => deck%stepping%time)
@@ -135,6 +137,7 @@ contains
     end associate
     if (.not. deck%settings%is_given(time_group, key_step)) &
       call deck%settings%derive(time_group, key_step, short_text(step), .false.)
+    call check_narrow_cells(deck, problems)
     if (deck%settings%is_given(output_group, key_history_every)) return
     deck%output%steps_between_rows = max(1, nint(deck%stepping%time%end/deck%stepping%time%step/rows))
     call append(deck%reasons, 'A row of the history every '// &

@@ -1,19 +1,145 @@
-!> Lines required in the mesh, by rigs or by decks of later runs.
+!> Lines required in the mesh, by rigs or by decks of later runs: those that nearly coincide are merged, those that the
+!> mesh cannot have are reported.
 module deck_mesh_lines
   use cell_grids, only: cell_edges
+  use coincident_lines, only: merged_lines, merging_distance
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: report
+  use deck_remarks, only: remark, report
   use kinds, only: wp
-  use mesh_deck, only: key_lines, mesh_group
+  use mesh_deck, only: key_core, key_lines, mesh_group
+  use mesh_parameters, only: add_lines
   use rigs, only: window_lines
   use roundings, only: rounding
+  use short_numbers, only: short_text
   use support_deck, only: key_window, support_group
+  use support_parameters, only: window_rectangle
+  use text, only: to_text
   implicit none
   private
-  public :: check_window_lines, lacks_window_lines
+  public :: place_mesh_lines, check_window_lines, lacks_window_lines
 
 contains
+
+  !> Collects the lines required in the mesh. Lines that nearly coincide with each other, the patch or the border are
+  !> merged: the edges of windows are moved.
+  subroutine place_mesh_lines(deck, problems)
+    !> The deck, its patch, core and windows known; receives the lines
+    type(deck_t), intent(inout) :: deck
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: lines(:)
+    integer :: direction
+
+    call shorten_core(deck, problems)
+    do direction = 1, 2
+      call merge_along(deck, direction, lines, problems)
+      if (direction == 1) call move_alloc(lines, deck%mesh%x_lines)
+      if (direction == 2) call move_alloc(lines, deck%mesh%y_lines)
+      call remark_core(deck, direction, problems)
+    end do
+  end subroutine place_mesh_lines
+
+  !> Warns of a border of the core that is moved to a line.
+  subroutine remark_core(deck, direction, problems)
+    !> The deck with its lines
+    type(deck_t), intent(in) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: distances(:)
+    integer :: side, nearest
+
+    if (.not. deck%mesh%cell > 0) return
+    associate (mesh => deck%mesh, lines => lines_along(deck, direction))
+      if (size(lines) == 0) return
+      do side = 1, -1, -2
+        distances = abs(lines - mesh%struck(direction) - side*mesh%core(direction)/2)
+        nearest = minloc(distances, dim=1)
+        if (distances(nearest) >= mesh%cell/2 .or. distances(nearest) <= rounding*deck%plate%length(direction)) cycle
+        call remark(deck%settings, problems, mesh_group, key_core, 'its border is less than half a cell from a '// &
+                    'line of the mesh at '//merge('x', 'y', direction == 1)//' = '//to_text(lines(nearest))// &
+                    ' and is moved there, to avoid cells of '//short_text(distances(nearest))//' between them.')
+        exit
+      end do
+    end associate
+  end subroutine remark_core
+
+  !> A core whose border is less than half a cell from that of the plate ends a cell before it.
+  subroutine shorten_core(deck, problems)
+    !> The deck
+    type(deck_t), intent(inout) :: deck
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: most
+    integer :: direction
+
+    associate (mesh => deck%mesh)
+      if (.not. mesh%cell > 0) return
+      do direction = 1, 2
+        most = deck%plate%length(direction) - 2*abs(mesh%struck(direction))
+        if (mesh%core(direction) >= most*(1 - rounding) .or. mesh%core(direction) <= most - mesh%cell) cycle
+        if (.not. most > 2*mesh%cell) cycle
+        mesh%core(direction) = most - 2*mesh%cell
+        call remark(deck%settings, problems, mesh_group, key_core, 'ends less than half a cell before the border '// &
+                    'of the plate; along '//merge('x', 'y', direction == 1)//' it is '// &
+                    short_text(mesh%core(direction))//', a cell before it.')
+      end do
+    end associate
+  end subroutine shorten_core
+
+  !> Merges the lines required along one direction.
+  subroutine merge_along(deck, direction, lines, problems)
+    !> The deck; its windows are moved
+    type(deck_t), intent(inout) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> The lines
+    real(wp), allocatable, intent(out) :: lines(:)
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: given(:), places(:)
+    integer :: i, windows
+
+    allocate (given(0), lines(0))
+    if (deck%settings%is_known(mesh_group, key_lines(direction))) &
+      given = abs(deck%settings%reals_of(mesh_group, key_lines(direction)))
+    windows = size(deck%supports)
+    associate (mesh => deck%mesh, half => deck%plate%length(direction)/2)
+      places = [merge(deck%supports%window(direction)/2, 0.0_wp, deck%supports%shape == window_rectangle), given]
+      places = merged_lines(places, [abs(mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2), half], &
+                            merging_distance*2*half)
+      do i = 1, windows
+        if (deck%supports(i)%shape /= window_rectangle) cycle
+        call remark_moved(deck%supports(i)%window(direction)/2, places(i), support_group, key_window, i)
+        deck%supports(i)%window(direction) = 2*places(i)
+      end do
+      do i = 1, size(given)
+        call remark_moved(given(i), places(windows + i), mesh_group, key_lines(direction))
+      end do
+    end associate
+    given = places(windows + 1:)
+    call add_lines(lines, [-given, given])
+    call add_lines(lines, window_lines(deck%supports, direction))
+
+  contains
+
+    !> Warns of a line that is moved.
+    subroutine remark_moved(from, to, group, key, place)
+      !> Distances from the centre
+      real(wp), intent(in) :: from, to
+      !> Group and key that require the line
+      character(len=*), intent(in) :: group, key
+      !> Index among the groups of this name
+      integer, intent(in), optional :: place
+
+      if (abs(to - from) <= rounding*from) return
+      call remark(deck%settings, problems, group, key, 'the line at '//merge('x', 'y', direction == 1)//' = '// &
+                  to_text(from)//' nearly coincides with another one at '//to_text(to)//' and is moved there, to '// &
+                  'avoid cells of '//short_text(abs(to - from))//' between them.', place)
+    end subroutine remark_moved
+  end subroutine merge_along
 
   !> Reports windows and requested lines without a line in the mesh, because all are used by the patch or by other
   !> windows.
@@ -31,11 +157,25 @@ contains
     end if
     do direction = 1, 2
       if (.not. deck%settings%is_given(mesh_group, key_lines(direction))) cycle
-      if (misses(deck, deck%settings%reals_of(mesh_group, key_lines(direction)), direction)) &
+      if (misses(deck, lines_along(deck, direction), direction)) &
         call report(deck%settings, problems, mesh_group, key_lines(direction), 'no line of the mesh can be moved '// &
                   'there; allowed: on the plate, off the patch, with more elements between lines.')
     end do
   end subroutine check_window_lines
+
+  !> Lines required along a direction.
+  pure function lines_along(deck, direction) result(lines)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> Their coordinates
+    real(wp), allocatable :: lines(:)
+
+    allocate (lines(0))
+    if (direction == 1 .and. allocated(deck%mesh%x_lines)) lines = deck%mesh%x_lines
+    if (direction == 2 .and. allocated(deck%mesh%y_lines)) lines = deck%mesh%y_lines
+  end function lines_along
 
   !> True if the edge of a rectangular window is no line of the mesh, which then has no nodes on it.
   pure logical function lacks_window_lines(deck) result(lacks)

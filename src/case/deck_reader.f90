@@ -18,6 +18,7 @@ module deck_reader
   use deck_explicit_checks, only: check_central_differences
   use deck_first_zones, only: check_left_out_zones, set_first_zones
   use deck_idle_keys, only: check_idle_keys
+  use deck_mesh_lines, only: place_mesh_lines
   use deck_problems, only: problems_t
   use deck_refinements, only: refine
   use deck_rules, only: resolve_settings
@@ -49,13 +50,11 @@ module deck_reader
   use material_deck, only: fill_materials, normal_compliance
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh, check_mesh
-  use mesh_parameters, only: add_lines
   use output_deck, only: fill_output
   use plate_deck, only: fill_plate, check_plate
   use ply_damage_deck, only: fill_ply_damage, ply_damage_group
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
-  use rigs, only: window_lines
   use stepping_parameters, only: is_error_controlled, is_explicit
   use support_deck, only: fill_supports, check_rigs
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
@@ -121,6 +120,7 @@ contains
     call fill_loads(deck, problems)
     call fill_steps(deck)
     call refine(deck)
+    call place_mesh_lines(deck, problems)
     call check_groups(deck, problems)
     call check_sizes(deck, problems)
     call check_across_groups(deck, problems)
@@ -175,8 +175,6 @@ contains
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
     call fill_mesh(deck%settings, deck%mesh)
-    call add_lines(deck%mesh%x_lines, window_lines(deck%supports, 1))
-    call add_lines(deck%mesh%y_lines, window_lines(deck%supports, 2))
     call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
     call fill_materials(deck%settings, deck%materials, problems)
     call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)

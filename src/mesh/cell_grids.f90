@@ -69,7 +69,6 @@ contains
     integer, intent(in) :: direction
     !> Ascending coordinates, (0:cells)
     real(wp), allocatable :: edges(:)
-    real(wp) :: kept(5)
     logical :: halved(2)
     integer :: half
 
@@ -88,9 +87,25 @@ contains
     else
       edges(:) = graded_line(plate%length(direction), mesh%elements(direction), mesh%patch, mesh%grading)
     end if
-    kept = mesh%struck(direction) + [-mesh%core(direction), -mesh%patch, 0.0_wp, mesh%patch, mesh%core(direction)]/2
-    if (direction == 1 .and. allocated(mesh%x_lines)) call move_to_lines(edges, kept, mesh%x_lines)
-    if (direction == 2 .and. allocated(mesh%y_lines)) call move_to_lines(edges, kept, mesh%y_lines)
+    if (direction == 1 .and. allocated(mesh%x_lines)) call take(mesh%x_lines)
+    if (direction == 2 .and. allocated(mesh%y_lines)) call take(mesh%y_lines)
+
+  contains
+
+    !> Moves edges to required lines. The border of the core is kept unless a line is within half a cell of it: it then
+    !> moves to that line, as a narrow row of cells between them would limit the step.
+    pure subroutine take(lines)
+      !> The lines
+      real(wp), intent(in) :: lines(:)
+      real(wp) :: kept(5)
+      integer :: i
+
+      kept = mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch, -mesh%core(direction), mesh%core(direction)]/2
+      do i = 4, 5
+        if (any(abs(lines - kept(i)) < mesh%cell/2)) kept(i) = mesh%struck(direction)
+      end do
+      call move_to_lines(edges, kept, lines)
+    end subroutine take
   end function cell_edges
 
   !> True if the elements along x or y suffice for the loaded patch, the core and the plate around them.

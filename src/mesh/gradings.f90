@@ -55,7 +55,7 @@ contains
     integer :: counts(2), i
 
     counts = core_elements(half_patch, half_core, cell)
-    border = max(half_patch, half_core)
+    border = core_border(half_patch, half_core, cell)
     do i = 0, counts(1)
       edges(i) = half_patch*i/max(counts(1), 1)
     end do
@@ -65,8 +65,7 @@ contains
     edges(sum(counts):) = outer_edges(edges(sum(counts)), half_length, elements - sum(counts), cell, grading)
   end function cored_half_line
 
-  !> Numbers of elements on half the patch, and from there to the border of the core; at least one where the length is
-  !> not zero.
+  !> Numbers of elements on half the patch, at least one, and from there to the border of the core.
   pure function core_elements(half_patch, half_core, cell) result(counts)
     !> Half the side of the loaded patch; 0: none
     real(wp), intent(in) :: half_patch
@@ -76,12 +75,25 @@ contains
     real(wp), intent(in) :: cell
     !> On the patch, and on the rest of the core
     integer :: counts(2)
-    real(wp) :: lengths(2)
 
-    lengths = [half_patch, max(0.0_wp, half_core - half_patch)]
-    counts = nint(lengths/cell + tie)
-    where (lengths > rounding*half_core) counts = max(1, counts)
+    counts = nint([half_patch, max(0.0_wp, half_core - half_patch)]/cell + tie)
+    if (half_patch > rounding*half_core) counts(1) = max(1, counts(1))
   end function core_elements
+
+  !> Distance of the border of the core from the struck point: that of the patch where less than half an element fits
+  !> between them.
+  pure real(wp) function core_border(half_patch, half_core, cell) result(border)
+    !> Half the side of the loaded patch; 0: none
+    real(wp), intent(in) :: half_patch
+    !> Half the extent of the core
+    real(wp), intent(in) :: half_core
+    !> Side of the core's elements
+    real(wp), intent(in) :: cell
+    integer :: counts(2)
+
+    counts = core_elements(half_patch, half_core, cell)
+    border = merge(half_core, half_patch, counts(2) > 0)
+  end function core_border
 
   !> Element edges from border to border, symmetric about the struck point in the middle.
   pure function graded_line(length, elements, patch, grading) result(edges)
@@ -136,7 +148,7 @@ contains
     side = cell
     if (side <= 0) side = length/elements
     inside = sum(core_elements(patch/2, core/2, side))
-    outside = length/2 + [struck, -struck] - max(patch, core)/2
+    outside = length/2 + [struck, -struck] - core_border(patch/2, core/2, side)
     chosen = 1
     best = huge(best)
     do low = 1, elements - 2*inside - 1

@@ -5,7 +5,7 @@ module mesh_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
-  use mesh_parameters, only: add_lines, mesh_t
+  use mesh_parameters, only: mesh_t
   use text, only: to_text
   implicit none
   private
@@ -40,7 +40,7 @@ module mesh_deck
 
 contains
 
-  !> The mesh without the choices of its element.
+  !> The mesh without the choices of its element and without required lines.
   subroutine fill_mesh(settings, mesh)
     !> Keys in effect
     type(settings_t), intent(in) :: settings
@@ -52,22 +52,6 @@ contains
     mesh%patch = settings%real_of(mesh_group, key_patch)
     if (settings%is_known(mesh_group, key_core)) mesh%core = settings%reals_of(mesh_group, key_core)
     if (settings%is_known(mesh_group, key_cell)) mesh%cell = settings%real_of(mesh_group, key_cell)
-    if (settings%is_known(mesh_group, key_lines(1))) call take_lines(key_lines(1), mesh%x_lines)
-    if (settings%is_known(mesh_group, key_lines(2))) call take_lines(key_lines(2), mesh%y_lines)
-
-  contains
-
-    !> Reads coordinates on both sides of the centre.
-    subroutine take_lines(key, lines)
-      !> The key
-      character(len=*), intent(in) :: key
-      !> Receives them
-      real(wp), allocatable, intent(inout) :: lines(:)
-      real(wp), allocatable :: given(:)
-
-      given = settings%reals_of(mesh_group, key)
-      call add_lines(lines, [-given, given])
-    end subroutine take_lines
   end subroutine fill_mesh
 
   !> Checks the number of elements, the grading, and keys that require each other.
