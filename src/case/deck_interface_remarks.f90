@@ -11,6 +11,7 @@ module deck_interface_remarks
   use kinds, only: wp
   use material_parameters, only: material_t, first_alike
   use short_numbers, only: short_text
+  use text, only: to_text
   implicit none
   private
   public :: check_interfaces
@@ -27,19 +28,19 @@ contains
     type(deck_t), intent(in) :: deck
     !> Receives the warnings
     type(problems_t), intent(inout) :: problems
-    logical :: within(size(deck%delaminations)), beyond(size(deck%delaminations))
+    logical :: beyond(size(deck%delaminations))
     integer :: i
 
     if (problems%errors() > 0) return
     do i = 1, size(deck%delaminations)
       associate (d => deck%delaminations(i), groups => deck%delaminations%group)
-        within(i) = lies_within_a_block(deck, d%below_ply)
+        ! Messages that differ only in the ply are merged.
+        if (lies_within_a_block(deck, d%below_ply)) &
+          call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies on both sides of the '// &
+                      'interface below ply '//to_text(d%below_ply)//' are of one material and angle, and act as '// &
+                      'one thick ply; impacts delaminate plies of different angles.', d%group)
         beyond(i) = any(beyond_core(deck, d%zone)) .and. .not. d%is_adaptive
-        ! Each warning is given once per group.
-        if (within(i) .and. .not. any(within(:i - 1) .and. groups(:i - 1) == d%group)) &
-          call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies above and below are '// &
-                      'of one material and angle, and act as one thick ply; impacts delaminate plies of different '// &
-                      'angles.', d%group)
+        ! All interfaces of a group have one zone.
         if (beyond(i) .and. .not. any(beyond(:i - 1) .and. groups(:i - 1) == d%group)) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'reaches beyond the core of the mesh, '// &
                       'where cells are up to '//short_text(longest_cell(deck, d%zone))// &

@@ -18,6 +18,7 @@ module deck_process_zones
   use process_zones, only: process_zone_t, process_zone_warning, resolved_part
   use scale_tables, only: length_unit, length_unit_size
   use stacking, only: stacked_plies, section_stiffness
+  use text, only: to_text
   implicit none
   private
   public :: check_process_zones, set_flaws
@@ -62,8 +63,8 @@ contains
           call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect without '// &
                            '&ply_damage.', d%group)
         else if (.not. d%flaw_strength < 1) then
-          call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect as the cells '// &
-                           'resolve the strengths.', d%group)
+          call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect below ply '// &
+                           to_text(d%below_ply)//', where the cells resolve the strengths.', d%group)
         end if
       end associate
     end do
@@ -87,7 +88,8 @@ contains
                        ply=delamination%below_ply, delamination%below_ply + 1)])
       if (least < delamination%strength_shear) return
       call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, &
-        'has no effect, as the shear strength of the plies exceeds that of the interface.', delamination%group)
+        'has no effect below ply '//to_text(delamination%below_ply)//', where the shear strength of the plies '// &
+        'exceeds that of the interface.', delamination%group)
     else
       call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
                        '&ply_damage.', delamination%group)
