@@ -1,13 +1,16 @@
 !> Cost of a run by central differences: steps and processor time.
 module explicit_costs
   use deck_contents, only: deck_t
+  use elastic_impacts, only: elastic_impact_t
   use element_steps, only: smallest_element_step
   use kinds, only: wp
   use mathematical_constants, only: pi
   use model_sizes, only: model_size_t
   use delamination_parameters, only: law_cohesive
   use plate_options, only: kinematics_von_karman
+  use setup_elastic_impacts, only: contact_end, start_elastic_impact
   use setup_scales, only: free_span
+  use stepping_parameters, only: end_of_run
   use text, only: counted, rounded_text, to_text
   use time_deck, only: key_step, time_group
   implicit none
@@ -30,12 +33,13 @@ contains
     type(model_size_t), intent(in) :: model_size
     !> One sentence
     character(len=:), allocatable :: sentence
-    real(wp) :: steps, step
+    real(wp) :: steps, step, end
     character(len=:), allocatable :: bound, time_bound
     logical :: lengthened
 
-    steps = deck%stepping%time%end/deck%stepping%time%step*shortened(deck)
-    step = deck%stepping%time%end/steps
+    end = expected_end(deck)
+    steps = end/deck%stepping%time%step*shortened(deck)
+    step = end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
     ! Damage lengthens the contact by an unknown time.
@@ -50,6 +54,23 @@ contains
       sentence = sentence//', more where damage lengthens the contact beyond that of an undamaged plate'
     sentence = sentence//'.'
   end function explicit_sentence
+
+  !> Expected end of a run: that of the deck, or later where the run continues until the impactor has left and the plate
+  !> is at rest. A contact longer than the deck's end is found by an elastic impact of its own.
+  real(wp) function expected_end(deck) result(end)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    type(elastic_impact_t) :: elastic
+
+    end = deck%stepping%time%end
+    if (.not. (deck%is_impact() .and. deck%expected%of_impact)) return
+    if (.not. deck%expected%is_cut) then
+      end = end_of_run(deck%stepping, deck%expected%last_contact)
+    else if (deck%stepping%central%settle > 0 .or. deck%stepping%time%extends_to_contact_end) then
+      elastic = contact_end(start_elastic_impact(deck%setup_t, deck%expected%scales), 0.0_wp)
+      end = end_of_run(deck%stepping, elastic%last_contact)
+    end if
+  end function expected_end
 
   !> True: an interface is cohesive.
   pure logical function has_cohesive(deck)

@@ -14,6 +14,7 @@ module initial_states
   use inherited_starts, only: begin_inherited
   use inherited_states, only: visit_inheritance
   use initial_state_deck, only: initial_state_group
+  use initial_state_parameters, only: motion_rest
   use adaptive_zones, only: visit_zones
   use delaminated_regions, only: extent_of_cells
   use delamination_deck, only: key_zone
@@ -224,12 +225,16 @@ contains
     call load_transfer(deck, model, stepper, transfer, record%mapping, old, error)
     if (allocated(error)) return
     call log%note('The plate starts from the end of the run of '//deck%initial%from//'.')
+    ! At rest, damage would only grow by errors of the mapping.
+    call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%load_start > 0 .and. &
+                                 deck%initial%motion == motion_rest)
     call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
     if (allocated(error)) return
     call record%inherit(model, stepper%now)
     if (is_mapped(deck, old)) then
       call record%mapping%note(model, stepper%now, after_mapping)
       call log%note(record%mapping%line(deck%delaminations%below_ply))
+      call log%note(record%mapping%energy_line(stepper%now%holds_damage))
       if (record%mapping%first_loss() > 0) then
         call refuse(deck, 'the interface below ply '// &
                     to_text(deck%delaminations(record%mapping%first_loss())%below_ply)// &
@@ -271,6 +276,7 @@ contains
     if (allocated(error)) return
     allocate (state, source=new_state(old_model))
     call visit_inheritance(state, archive, old_model)
+    call archive%item('ledger/strain', state%ledger%strain)
     call archive%close(error)
     if (allocated(error)) return
     if (is_mapped(deck, old)) then

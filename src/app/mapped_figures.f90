@@ -19,19 +19,29 @@ module mapped_figures
   !> number of a mesh. Round-off of the sums is a thousand times smaller.
   real(wp), parameter :: tolerance = 1.0e-6_wp
 
+  !> Rise of the strain energy by the mapping above which it is reported, as a fraction of what was stored, the
+  !> tolerance of energies in general; and the smallest that is, as a fraction of stored and dissipated energy: the
+  !> strain energy of a plate at rest may be next to nothing.
+  real(wp), parameter :: max_rise = 0.01_wp, fine = 1.0e-4_wp
+
   !> Quantities of the full plate, the same on every rank; unallocated: no mapping.
   type :: mapped_figures_t
     !> Area and energy dissipated of each interface, (zones, before and after)
     real(wp), allocatable :: area(:, :), energy(:, :)
     !> Areas of all plies times the damage of fibres and of the matrix, and energy of plies, (3, before and after)
     real(wp), allocatable :: plies(:, :)
+    !> Strain energy, before and after, and energy dissipated before
+    real(wp) :: strain(2) = 0, dissipated = 0
   contains
     !> Stores the quantities of a state.
     procedure :: note
     !> First interface with a loss of area or energy; 0: none.
     procedure :: first_loss
-    !> One line for the log.
+    !> True: the strain energy has risen.
+    procedure :: raises_strain
+    !> Lines for the log: quantities of damage, and strain energy.
     procedure :: line
+    procedure :: energy_line
     !> Adds them to the summary.
     procedure :: put
     !> Saves or loads.
@@ -54,12 +64,15 @@ contains
       allocate (self%area(size(model%mesh%zones), 2), self%energy(size(model%mesh%zones), 2), self%plies(3, 2), &
                 source=0.0_wp)
     end if
+    self%strain(moment) = state%ledger%strain
     self%area(:, moment) = state%interfaces%cohesive%area(model)
     self%energy(:, moment) = state%interfaces%cohesive%energy(model)
+    if (moment == before_mapping) self%dissipated = sum(self%energy(:, moment))
     if (.not. allocated(state%plies%bands)) return
     self%plies(:2, moment) = damage_of_plies(model, state)
     call state%plies%total_dissipation(model)
     self%plies(3, moment) = sum(state%plies%dissipated) + state%plies%permanent_shear
+    if (moment == before_mapping) self%dissipated = self%dissipated + self%plies(3, moment)
   end subroutine note
 
   !> Areas of all plies times the damage of fibres and of the matrix, of the full plate. Collective.
@@ -94,6 +107,31 @@ contains
     first_loss = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
                     self%energy(:, 2) < (1 - tolerance)*self%energy(:, 1), .true., dim=1)
   end function first_loss
+
+  !> True if the strain energy has risen by more than 1 % of what was stored: mapped damage and displacements do not fit
+  !> to each other, and stresses may cause further damage.
+  pure logical function raises_strain(self)
+    !> The quantities
+    class(mapped_figures_t), intent(in) :: self
+
+    associate (rise => self%strain(2) - self%strain(1))
+      raises_strain = rise > max_rise*self%strain(1) .and. rise > fine*(self%strain(1) + self%dissipated)
+    end associate
+  end function raises_strain
+
+  !> The strain energy, and what becomes of it.
+  pure function energy_line(self, holds) result(line)
+    !> The quantities
+    class(mapped_figures_t), intent(in) :: self
+    !> True: damage is held until the plate is at rest
+    logical, intent(in) :: holds
+    !> Before and after
+    character(len=:), allocatable :: line
+
+    line = 'Strain energy by the mapping: '//both(self%strain)
+    if (holds) line = line//'; damage is held until the plate has come to rest, at the end of settle'
+    line = line//'.'
+  end function energy_line
 
   !> One line for the log.
   pure function line(self, below_plies)
@@ -148,6 +186,7 @@ contains
     call put_both('fibre_damage_area', self%plies(1, :))
     call put_both('matrix_damage_area', self%plies(2, :))
     call put_both('energy_ply_damage', self%plies(3, :))
+    call put_both('energy_strain', self%strain)
     call json%close()
 
   contains
@@ -178,5 +217,8 @@ contains
     call archive%item('mapping/area', self%area)
     call archive%item('mapping/energy', self%energy)
     call archive%item('mapping/plies', self%plies)
+    call archive%item('mapping/strain_before', self%strain(1))
+    call archive%item('mapping/strain_after', self%strain(2))
+    call archive%item('mapping/dissipated', self%dissipated)
   end subroutine visit
 end module mapped_figures

@@ -3,6 +3,7 @@ module run_records
   use archives, only: archive_t
   use compressed_damage, only: compressed_damage_t, damage_of
   use compression_records, only: compression_record_t
+  use deck_contents, only: deck_t
   use force_filters, only: force_filter_t
   use interface_figures, only: stage_damaged, stage_grown, stage_intact, stages_of
   use kinds, only: wp
@@ -11,6 +12,7 @@ module run_records
   use models, only: model_t
   use output_clocks, only: shown_time
   use placed_gauges, only: back_to_back, gauge_strains, percent_bending
+  use slow_motions, only: slow_motion_t
   use states, only: state_t
   implicit none
   private
@@ -20,11 +22,11 @@ module run_records
   !> an indentation above the thickness; slopes beyond moderate rotations; a clamped plate with failed fibres and large
   !> membrane strains; a hole; adaptive layers beyond the core; steps of the smallest length with too large an error;
   !> energy error; kinetic energy in slow motion; kinetic energy of motions with scaled inertia; energy
-  !> dissipated by contact of surfaces.
+  !> dissipated by contact of surfaces; strain energy raised by mapping to another mesh.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
                                 warning_slopes = 5, warning_membrane = 6, warning_perforation = 7, warning_core = 8, &
                                 warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
-                                warning_scaled = 12, warning_contact = 13
+                                warning_scaled = 12, warning_contact = 13, warning_mapping = 14
 
   !> Time of an event before the run.
   real(wp), parameter :: before_run = -1
@@ -58,6 +60,8 @@ module run_records
     type(mapped_figures_t) :: mapping
     !> Largest kinetic energy of motions with scaled inertia, and largest energy of the run
     real(wp) :: scaled_energy = 0, energy = 0
+    !> Kinetic energy over the work of a slow motion
+    type(slow_motion_t) :: slow_motion
     !> Warnings given: kinds, and zones or 0
     integer, allocatable :: warning_kinds(:), warning_zones(:)
     !> Their times
@@ -69,8 +73,8 @@ module run_records
     procedure :: observe
     !> Updates the record with a complete state.
     procedure :: observe_reactions
-    !> Updates the energy of motions with scaled inertia.
-    procedure :: note_scaled
+    !> Updates kinetic energies.
+    procedure :: note_motion
     !> Their largest fraction of the energy.
     procedure :: scaled_share
     !> Stores a warning.
@@ -200,16 +204,22 @@ contains
     self%contact_end = to
   end subroutine count_contacts
 
-  !> Updates the energy of motions with scaled inertia.
-  pure subroutine note_scaled(self, scaled, energy)
+  !> Updates the energy of motions with scaled inertia, and that of a slow motion. In a compression they count up to the
+  !> strength: the collapse of the plate is dynamic in a test, too.
+  pure subroutine note_motion(self, deck, now)
     !> The record
     class(run_record_t), intent(inout) :: self
-    !> Their kinetic energy, and the largest energy so far
-    real(wp), intent(in) :: scaled, energy
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> A complete state, the last observed
+    type(state_t), intent(in) :: now
+    logical :: counts
 
-    self%scaled_energy = max(self%scaled_energy, scaled)
-    self%energy = energy
-  end subroutine note_scaled
+    counts = .not. self%compression%strength > 0 .or. self%compression%at >= shown_time(now%time)
+    call self%slow_motion%observe(deck, now%time, now%ledger, counts)
+    if (counts) self%scaled_energy = max(self%scaled_energy, now%ledger%scaled)
+    self%energy = now%ledger%largest
+  end subroutine note_motion
 
   !> Largest fraction of the energy in motions with scaled inertia.
   pure real(wp) function scaled_share(self) result(share)
@@ -275,6 +285,7 @@ contains
     call archive%item('record/growth', self%growth)
     call archive%item('record/scaled_energy', self%scaled_energy)
     call archive%item('record/energy', self%energy)
+    call self%slow_motion%visit(archive)
     call archive%item('record/warning_kinds', self%warning_kinds)
     call archive%item('record/warning_zones', self%warning_zones)
     call archive%item('record/warning_times', self%warning_times)

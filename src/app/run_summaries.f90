@@ -57,7 +57,7 @@ contains
     integer :: i
 
     call find_figures(model, stepper%now, figures)
-    if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record)
+    if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record, stepper%now%has_failures())
     ended = .not. (allocated(error) .or. deck%is_static() .or. deck%initial%is_inherited)
     needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
     if (needed) call run_coarse_model(deck, model%communicator, coarse_run)

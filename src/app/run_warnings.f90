@@ -8,7 +8,6 @@ module run_warnings
   use errors, only: error_t, exit_convergence, fail
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, thicknesses_ahead
-  use line_loads, only: line_ramp
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
@@ -17,8 +16,9 @@ module run_warnings
   use roundings, only: rounding
   use run_records, only: run_record_t, warning_border, warning_contact, warning_core, warning_energy, &
                          warning_perforation, warning_indentation, warning_kinetic, warning_ledger, warning_loss, &
-                         warning_scaled, warning_slopes, warning_steps, warning_membrane
+                         warning_scaled, warning_slopes, warning_steps, warning_membrane, warning_mapping
   use run_moments, only: moment
+  use slow_motions, only: has_developed
   use stepping_parameters, only: is_explicit
   use states, only: state_t
   use text, only: line_t, append
@@ -27,10 +27,6 @@ module run_warnings
   implicit none
   private
   public :: report_warnings, report_last_warnings, reported_warnings
-
-  !> Fraction of the run after which the kinetic energy of slow motion is checked: the default rise of a travel, after
-  !> which the velocity is constant.
-  real(wp), parameter :: slow_start = 0.25_wp
 
 contains
 
@@ -128,6 +124,7 @@ contains
     end do
     if (now%indentation%alpha > max_indentation(deck)) call add(warning_indentation, 0)
     if (step_errs) call add(warning_steps, 0)
+    if (record%mapping%raises_strain()) call add(warning_mapping, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call add(warning_slopes, 0)
     end if
@@ -140,8 +137,8 @@ contains
     end if
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
-    call record%note_scaled(now%ledger%scaled, energy_check%largest)
-    call add_motion_warnings(deck, now, energy_check%largest, record, warnings)
+    call record%note_motion(deck, now)
+    call add_motion_warnings(deck, now, record, warnings)
     call add_energy_warnings(deck, exceeded, now%time, record, warnings)
 
   contains
@@ -156,30 +153,24 @@ contains
   end subroutine find_warnings
 
   !> Adds warnings of kinetic energy: of motions with scaled inertia, lost as surfaces meet, and of a slow motion.
-  subroutine add_motion_warnings(deck, now, energy, record, warnings)
+  subroutine add_motion_warnings(deck, now, record, warnings)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
-    !> Largest energy so far
-    real(wp), intent(in) :: energy
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> Receives their sentences
     type(line_t), allocatable, intent(inout) :: warnings(:)
-    logical :: has_begun
 
-    has_begun = now%time > slow_start*deck%stepping%time%end
-    if (deck%is_impact() .or. has_begun) then
-      if (record%scaled_energy > max_scaled*energy) &
+    if (deck%is_impact() .or. has_developed(deck, now%time)) then
+      if (record%scaled_energy > max_scaled*now%ledger%largest) &
         call add_warning(deck, warning_scaled, 0, now%time, record, warnings)
-      if (is_explicit(deck%stepping) .and. now%ledger%contact > max_contact*energy) &
+      if (is_explicit(deck%stepping) .and. now%ledger%contact > max_contact*now%ledger%largest) &
         call add_warning(deck, warning_contact, 0, now%time, record, warnings)
     end if
-    if (is_slow_motion(deck) .and. has_begun) then
-      if (now%ledger%kinetic > max_kinetic*abs(now%ledger%external_work)) &
-        call add_warning(deck, warning_kinetic, 0, now%time, record, warnings)
-    end if
+    if (record%slow_motion%share > max_kinetic) &
+      call add_warning(deck, warning_kinetic, 0, now%time, record, warnings)
   end subroutine add_motion_warnings
 
   !> Adds warnings of energies.
@@ -227,19 +218,6 @@ contains
     limit = deck%expected%scales%thickness
     if (deck%impactor%radius > 0) limit = min(limit, deck%impactor%radius)
   end function max_indentation
-
-  !> True: only prescribed motions in time load the plate, as in a quasi-static test.
-  pure logical function is_slow_motion(deck)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-
-    is_slow_motion = .false.
-    if (deck%is_static() .or. deck%has_pressure .or. deck%is_impact()) return
-    is_slow_motion = deck%impactor%travel > 0
-    if (allocated(deck%lines)) is_slow_motion = is_slow_motion .or. &
-      any(deck%lines%prescribed .and. (deck%lines%history == line_ramp .or. deck%lines%rise > 0) .and. &
-          abs(deck%lines%value) > 0)
-  end function is_slow_motion
 
   !> True: adaptive layers extend so far beyond the core that damage does, too.
   pure logical function leaves_core(deck, interface) result(leaves)

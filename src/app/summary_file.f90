@@ -19,6 +19,7 @@ module summary_file
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
   use run_warnings, only: reported_warnings
+  use slow_motions, only: is_slow_motion
   use states, only: state_t
   use text, only: line_t
   use time_stepping, only: time_stepper_t
@@ -75,6 +76,7 @@ contains
       call json%put('peak_force', record%peak_force)
       call json%put('peak_force_at', shown_time(record%peak_time))
     end if
+    if (is_slow_motion(deck)) call json%put('kinetic_share', record%slow_motion%share)
     if (record%scaled_energy > 0) call json%put('scaled_kinetic_share', record%scaled_share())
     call put_errors(json, errors)
     call put_energies(json, deck, stepper%now)

@@ -11,6 +11,7 @@ module summary_lines
   use run_moments, only: moment
   use run_records, only: run_record_t
   use run_warnings, only: reported_warnings
+  use slow_motions, only: is_slow_motion
   use states, only: state_t
   use text, only: line_t, append, counted, rounded_text, to_text
   implicit none
@@ -58,6 +59,8 @@ contains
     if (struck .and. .not. now%force > 0) call add_dent(lines, deck, figures)
     if (struck) call add_impact_energy(lines, deck, now)
     call add_energies(lines, now%ledger)
+    if (is_slow_motion(deck)) call add_figure(lines, 'slow motion', 'kinetic energy at most '// &
+                                              rounded_text(100*record%slow_motion%share, 2)//' % of the work')
     if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'kinetic energy at most '// &
                                             rounded_text(100*record%scaled_share(), 2)//' % of the total')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, record, figures, errors)

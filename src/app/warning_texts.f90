@@ -2,10 +2,11 @@
 module warning_texts
   use deck_contents, only: deck_t
   use energy_checks, only: energy_tolerance
+  use initial_state_parameters, only: motion_rest
   use kinds, only: wp
   use run_records, only: warning_border, warning_contact, warning_core, warning_energy, warning_perforation, &
                          warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
-                         warning_slopes, warning_steps, warning_membrane
+                         warning_slopes, warning_steps, warning_membrane, warning_mapping
   use plate_options, only: max_slope
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit
@@ -63,8 +64,8 @@ contains
              ' % of the energy since '//at//': use a smaller '// &
              trim(merge('step_factor.         ', 'tolerance of &solver.', is_explicit(deck%stepping)))
     case (warning_kinetic)
-      text = 'The kinetic energy of the plate has exceeded '//short_text(100*max_kinetic)//' % of the work since '// &
-             at//': the motion is too fast for a quasi-static test; give a longer end or rise.'
+      text = 'The kinetic energy of the plate has exceeded '//short_text(100*max_kinetic)//' % of the work of the '// &
+             'load since '//at//': the motion is too fast for a quasi-static test; give a longer end or rise.'
     case (warning_scaled)
       text = 'The kinetic energy of motions with scaled inertia has exceeded '//short_text(100*max_scaled)// &
              ' % of the energy since '//at//': use a smaller mass_scaling, or compare with 1.'
@@ -86,6 +87,9 @@ contains
       text = 'The deflection of the clamped plate has exceeded '//to_text(max_deflection_ratio)// &
              ' thicknesses with failed fibres since '//at// &
              ': membrane forces carry the load, and tearing of plies is not modelled; later results are not valid.'
+    case (warning_mapping)
+      text = 'The mapping to this mesh has raised the strain energy by more than 1 % of what was stored '// &
+             '(energy_strain of `mapping` in the summary): '//mapping_remedy(deck)
     case (warning_perforation)
       text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
              ': the impactor perforates the plate, which is not modelled; later results are not valid.'
@@ -117,6 +121,21 @@ contains
       end if
     end function energy_text
   end function warning_text
+
+  !> Remedy for strain energy raised by a mapping.
+  pure function mapping_remedy(deck) result(cure)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> End of a sentence
+    character(len=:), allocatable :: cure
+
+    if (deck%load_start > 0 .and. deck%initial%motion == motion_rest) then
+      cure = 'damage is held until the end of settle, which must bring the plate to rest.'
+    else
+      cure = 'damage may grow by it; give settle of &time and motion=''rest'', with which damage is held until the '// &
+             'plate is at rest, or the mesh of the other run.'
+    end if
+  end function mapping_remedy
 
   !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
   !> released is damped.

@@ -18,6 +18,9 @@ module cohesive_interfaces
   private
   public :: cohesive_interfaces_t, new_cohesive_interfaces
 
+  !> Factor of the toughness of interfaces whose damage is held: no jump of a plate has so much energy.
+  real(wp), parameter :: unreached = 1.0e30_wp
+
   !> Points of all cohesive interfaces.
   type :: cohesive_interfaces_t
     !> True for this rank's points with a cohesive law, (local points); unallocated: there are none
@@ -26,6 +29,8 @@ module cohesive_interfaces
     type(cohesive_point_t), allocatable :: points(:)
     !> Strength factor of flaws at each point, (local points)
     real(wp), allocatable :: strength(:)
+    !> True: damage does not grow
+    logical :: is_held = .false.
     !> Stiffness of the jumps for the factored operator, (3, local points)
     real(wp), allocatable :: stiffness(:, :)
     !> Consistent tangents, used in load steps instead, unsymmetric, (3, 3, local points)
@@ -343,8 +348,10 @@ contains
     type(model_t), intent(in) :: model
     !> The point
     integer, intent(in) :: i
+    type(cohesive_surfaces_t) :: surfaces
 
-    law = weakened(model%cohesive_laws(model%zone(i)), self%strength(i))
+    surfaces = self%surfaces_of(model, model%zone(i), self%strength(i))
+    law = surfaces%law
   end function law_at
 
   !> Surfaces of an interface.
@@ -358,6 +365,10 @@ contains
     real(wp), intent(in) :: strength
 
     surfaces%law = weakened(model%cohesive_laws(zone), strength)
+    if (self%is_held) then
+      surfaces%law%toughness_opening = unreached*surfaces%law%toughness_opening
+      surfaces%law%toughness_shear = unreached*surfaces%law%toughness_shear
+    end if
     surfaces%closing = prevents_penetration(model, zone)
     surfaces%friction = model%setup%delaminations(zone)%friction
   end function surfaces_of

@@ -126,7 +126,7 @@ contains
     real(wp), contiguous, intent(out) :: energies(:, :)
     real(wp) :: energy
 
-    if (allocated(self%bands)) then
+    if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       call self%bands%commit_sections(self%stiffness, self%free)

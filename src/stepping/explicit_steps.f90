@@ -33,10 +33,11 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: kept
 
+    if (now%holds_damage .and. .not. now%time < model%setup%load_start) call release_damage(method, model, now)
     kept = 1
     if (is_damped(method, model, now)) call damp_motion(method, model, now, method%parameters%settle, kept)
     call method%advance(model, event, kept, now)
-    if (model%setup%has_ply_damage .and. .not. allocated(now%plies%bands)) then
+    if (model%setup%has_ply_damage .and. .not. (allocated(now%plies%bands) .or. now%holds_damage)) then
       call model%profile%enter('ply criteria')
       call now%plies%grow(model, now%motion%displacement)
       call model%profile%leave()
@@ -48,6 +49,18 @@ contains
     if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
     call model%profile%leave()
   end subroutine advance_explicit
+
+  !> Lets damage grow again in a plate that has come to rest.
+  subroutine release_damage(method, model, now)
+    !> Central differences
+    type(central_difference_t), intent(inout) :: method
+    type(model_t), intent(in) :: model
+    !> The state
+    type(state_t), intent(inout) :: now
+
+    call now%hold_damage(.false.)
+    if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
+  end subroutine release_damage
 
   !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left the plate
   !> and moves away.

@@ -1,11 +1,12 @@
 """Manual: runs that create energy or load the plate too fast warn of it, and others do not.
 Usage: energy_warning.py IMPLAM FOLDER"""
 
+import json
 import re
 import sys
 from pathlib import Path
 
-from solver_runs import require, run
+from solver_runs import read_history, require, run
 
 WARNING = "created more than 1 %"
 BEGINNING = """&case name='pressed' /
@@ -39,6 +40,73 @@ LAID = SLOW.replace("travel=1e-4", "mass=0.2 velocity=0 gravity=9.81").replace("
 SUDDEN = re.sub(r"&impactor.*\n&indentation.*\n", "&pressure value=1e5 /\n", SLOW).replace(" patch=4e-3", "")
 # A line with a rise of a tenth of the run, far shorter than a period, that is then constant.
 SET_IN = TURNED.replace("rise=2e-4", "history='fixed' rise=1e-5").replace("end=1e-3", "end=1e-4")
+# Free vibration about the deflection under a sudden load: work and energies return to zero after each period.
+SINE = """&case name='sine' units='SI' kinematics='linear' strict=.true. /
+&plate length=0.1, 0.1 edges='simple' in_plane='free' symmetry='quarter' /
+&mesh elements=4, 4 grading=1 /
+&material name='al' density=2700 E=70e9 nu=0.3 /
+&laminate materials='al' angles=0 thicknesses=2e-3 /
+&pressure value=1e2 distribution='sine' /
+&time integrator='central_difference' end=4e-3 mass_scaling=1 /
+"""
+PERIOD = 1 / 966.73  # of the first mode, Mindlin's theory
+FREE = {
+    "sine": SINE,
+    # Rows, and with them checks, at multiples of the period, where all energies are zero.
+    "rare": SINE + f"&output history_every={PERIOD:.6e} /\n",
+    # Deflections of a fifth of the thickness: energies of terms that are not linear remain.
+    "steep": SINE.replace("linear", "von_karman").replace("1e2", "2e3"),
+    "graded": SINE.replace("grading=1", "grading=20 patch=2e-3").replace("elements=4, 4", "elements=8, 8"),
+    # The same by implicit steps of a fiftieth of the period.
+    "implicit": SINE.replace("integrator='central_difference'", f"integrator='newmark' step={PERIOD / 50:.6e}")
+                    .replace(" mass_scaling=1", ""),
+    # A force along a line, of which nothing remains after a period, either.
+    "line": SINE.replace("&pressure value=1e2 distribution='sine' /",
+                         "&line at=0 component='w' force=1 history='fixed' /"),
+}
+# A compression of a plate that is damped before: the work of its supports does not count.
+PRESSED = """&case name='pressed' units='SI' /
+&plate length=60e-3, 40e-3 edges='simple' in_plane='free' /
+&mesh elements=8, 8 grading=1 patch=6e-3 /
+&material name='ply' density=1600 E1=130e9 E2=7.7e9 G12=4.8e9 G13=4.8e9 G23=3.8e9 nu12=0.30 /
+&laminate materials='ply' stacking='[0/90]s' ply_thickness=0.6e-3 /
+&line at=30e-3 component='u' displacement=-0.05e-3 rise=1.5e-3 /
+&line at=-30e-3 component='u' displacement=0.05e-3 rise=1.5e-3 /
+&time integrator='central_difference' settle=0 end=3e-3 mass_scaling=10 /
+"""
+SHARE = (2e-4, 2e-3)  # bounds of the largest kinetic energy over work
+
+
+def check_free_vibration(implam, folder):
+    """Free vibration ends neither as unstable nor with a warning, and returns to rest after a period."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, deck in FREE.items():
+        (folder / f"{name}.nml").write_text(deck.replace("'sine' units", f"'{name}' units"), encoding="utf-8")
+        run([implam, folder / f"{name}.nml", "--output", folder])
+        if name in ("rare", "line"):
+            continue
+        rows = read_history(folder / f"{name}_history.csv")
+        near = [i for i, time in enumerate(rows["time"]) if 0.6 * PERIOD < time < 1.4 * PERIOD]
+        back = min(near, key=lambda i: rows["deflection"][i])
+        tolerance = 0.06 if name == "steep" else 0.01
+        require(abs(rows["time"][back] / PERIOD - 1) < tolerance, f"{name}: back at {rows['time'][back]} s.")
+        require(abs(rows["deflection"][back]) < 0.02 * max(rows["deflection"]), f"{name} is not back at rest.")
+
+
+def check_settled_compression(implam, folder):
+    """With and without `settle` the kinetic energy of a slow compression is a small fraction of the work."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for settle in ("0", "1e-3"):
+        deck = PRESSED.replace("settle=0 end=3e-3", f"settle={settle} end={3e-3 + float(settle):.6g}")
+        (folder / "pressed.nml").write_text(deck, encoding="utf-8")
+        printed = run([implam, folder / "pressed.nml", "--output", folder])
+        share = json.loads((folder / "pressed_summary.json").read_text(encoding="utf-8"))["kinetic_share"]
+        require("too fast" not in printed and SHARE[0] < share < SHARE[1], f"settle={settle}: {share} of the work.")
+    # Twenty times as fast it is too fast, with `settle`, too.
+    deck = PRESSED.replace("settle=0 end=3e-3", "settle=1e-3 end=1.15e-3").replace("rise=1.5e-3", "rise=0.075e-3")
+    (folder / "pressed.nml").write_text(deck, encoding="utf-8")
+    printed = run([implam, folder / "pressed.nml", "--output", folder])
+    require("too fast for a quasi-static test" in printed, "There is no warning of a fast compression after settle.")
 
 
 def warnings_of(implam, folder, history, time):
@@ -79,6 +147,8 @@ def main(implam, folder):
     (turned / "turned.nml").write_text(SET_IN, encoding="utf-8")
     printed = run([implam, turned / "turned.nml", "--output", turned])
     require("the motion is too fast for a quasi-static test" in printed, "There is no warning of a fast line.")
+    check_free_vibration(implam, folder / "free")
+    check_settled_compression(implam, folder / "settled")
 
 
 if __name__ == "__main__":

@@ -15,8 +15,6 @@ STRENGTH, STRESS = "residual_strength", "far_field_stress"
 # The plate has failed once the stress falls below this fraction of its maximum at a nominal strain above this one, as
 # in the summary. Later maxima are ignored: the halves of a failed plate vibrate with a load above its strength.
 _FAILED, _FAILED_BEYOND = 0.7, 1e-3
-# Fraction of the strength from which on the motion has to be slow: below it the work is too small as a reference.
-_FROM = 0.1
 
 
 class Across(NamedTuple):
@@ -31,15 +29,6 @@ def row_of_strength(history: History) -> int:
     stress = history[STRESS]
     failed = (stress < _FAILED * np.maximum.accumulate(stress)) & (history["nominal_strain"] > _FAILED_BEYOND)
     return int(np.argmax(stress[:int(np.argmax(failed)) + 1] if np.any(failed) else stress))
-
-
-def kinetic_share(history: History) -> float:
-    """Return the largest ratio of kinetic energy to external work, from a tenth of the strength to the strength."""
-    stress, top = history[STRESS], row_of_strength(history)
-    low = np.flatnonzero(stress[:top + 1] < _FROM * stress[top])
-    rows = slice(int(low[-1]) + 1 if len(low) else 0, top + 1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.max(np.abs(history["energy_kinetic"][rows] / history["work_external"][rows])))
 
 
 def strength_of(path: Path) -> float:

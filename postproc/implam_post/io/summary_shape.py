@@ -32,7 +32,7 @@ _FIGURES = (
     "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage", "energy_contact",
     "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic", "energy_error", "delaminated_area",
     "projected_area", "threshold_force_at_starter", "fibre_failures", "matrix_cracks", "matrix_crushings",
-    "effective_modulus", "buckling_strain")
+    "effective_modulus", "buckling_strain", "kinetic_share")
 _ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
              "energy_contact", "energy_friction")
 ACROSS = "failed_across_width"

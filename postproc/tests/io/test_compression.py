@@ -7,22 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from implam_post.io.compression import failed_across_width, kinetic_share, row_of_strength, strength_of
+from implam_post.io.compression import failed_across_width, row_of_strength, strength_of
 from implam_post.io.errors import FileError
 from implam_post.io.history import History
 from tests.io.test_summary_shape import SUMMARY
 
 
 class CompressionTest(unittest.TestCase):
-    """Energy ratio, strength and failures."""
-
-    def test_kinetic_share_between_a_tenth_and_the_strength(self) -> None:
-        """Vibration at the start and collapse do not count."""
-        history = History({"time": np.arange(7.0), "far_field_stress": np.array([1.0, 9, 20, 60, 100, 30, 110]),
-                           "nominal_strain": np.array([0.0, 0, 1, 2, 3, 4, 5]) * 1e-3,
-                           "work_external": np.array([1.0, 2, 10, 50, 200, 220, 230]),
-                           "energy_kinetic": np.array([5.0, 1, 0.2, 0.5, 1.8, 100, 90])})
-        self.assertAlmostEqual(kinetic_share(history), 0.02)
+    """Strength and failures."""
 
     def test_strength_before_the_failure(self) -> None:
         """The load of the halves of a failed plate is not a strength; a drop at small strains is not a failure."""
