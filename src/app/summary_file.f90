@@ -4,13 +4,11 @@ module summary_file
   use summary_provenance, only: put_provenance
   use deck_contents, only: deck_t
   use errors, only: error_t, exit_files, fail
-  use files, only: rename_file
   use force_filters, only: filter_kind
   use json_text, only: json_t
   use impactors, only: impactor_energy, new_impactor
   use interface_summary, only: put_interfaces
   use kinds, only: wp
-  use output_streams, only: output_stream_t
   use output_clocks, only: shown_time
   use output_deck, only: key_force_filter
   use profiles, only: profile_row_t
@@ -24,7 +22,7 @@ module summary_file
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: summary_text, write_summary
+  public :: summary_text
 
   !> Ending of its name.
   character(len=*), parameter, public :: summary_ending = '_summary.json'
@@ -309,26 +307,4 @@ contains
     end do
     call json%close()
   end subroutine put_profile
-
-  !> Writes the summary to a temporary file and renames it.
-  subroutine write_summary(path, content, error)
-    !> Path of the file
-    character(len=*), intent(in) :: path
-    !> The text
-    character(len=*), intent(in) :: content
-    !> Set if it cannot be written
-    type(error_t), allocatable, intent(inout) :: error
-    type(output_stream_t) :: file
-
-    call file%open(path//'.tmp', 'w')
-    call file%put(content)
-    if (file%is_open()) call file%synchronise()
-    call file%close()
-    if (file%failed) then
-      call fail(error, exit_files, "Cannot write "//path//': does the folder exist, is the disk full or the quota '// &
-                'used up?')
-    else
-      call rename_file(path//'.tmp', path, error)
-    end if
-  end subroutine write_summary
 end module summary_file
