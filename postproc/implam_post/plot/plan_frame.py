@@ -17,7 +17,7 @@ from implam_post.plot.style import PictureStyle
 
 _PLAIN = PictureStyle()
 # Size of a page in inches, the part of its width for labels, and the largest number of maps side by side.
-PAGE, _LABELS, _MOST_COLUMNS = (7.5, 10.0), 0.7, 6
+PAGE, _LABELS, _MAX_COLUMNS = (7.5, 10.0), 0.7, 6
 # Width for the title of a small map, inches.
 _TITLE = 1.35
 # Margin of a map as a fraction of the region shown, with space for the small plate in its corner.
@@ -128,7 +128,7 @@ def arrangement(count: int, reach: Sequence[float], words: Sequence[float], rest
     `words` are the inches beside the maps of a column and above those of a row, `rest` those below all of them.
     """
     slope, best = height_of(1.0, reach), (0.0, 1, 1)
-    for number in [columns] if columns else range(1, min(count, _MOST_COLUMNS) + 1):
+    for number in [columns] if columns else range(1, min(count, _MAX_COLUMNS) + 1):
         rows = -(-count // number)
         width = min((PAGE[0] - _LABELS) / number - words[0], ((PAGE[1] - rest) / rows - words[1]) / slope)
         best = max(best, (width, number, rows))
