@@ -1,5 +1,5 @@
-!> Steps of stacks without damage, several nodes at a time: the formulas of `stack_motions` for stacks on no frame and no
-!> line, whose interfaces have a constant stiffness, over lanes of stacks with the same number of layers.
+!> Steps of stacks without damage, several nodes at a time: the formulas of `stack_motions` for stacks on no frame and
+!> no line, whose interfaces have a constant stiffness, over lanes of stacks with the same number of layers.
 module intact_stacks
   use element_batches, only: lanes
   use interface_stacks, only: interface_stacks_t
@@ -31,6 +31,7 @@ contains
 
   !> Batches of the undamaged stacks among some. Stacks of the same number of layers share batches.
   pure function create_intact_batches(stacks, inertia, candidates) result(batches)
+    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
@@ -55,6 +56,7 @@ contains
 
   !> A batch of stacks.
   pure function new_batch(stacks, inertia, members) result(self)
+    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
@@ -80,7 +82,9 @@ contains
 
   !> Updates the stacks of a batch, and the history of their jumps.
   pure subroutine move_intact(batch, steps, force, stacks, u, v, reaches_onset)
+    !> The batch
     type(intact_batch_t), intent(in) :: batch
+    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Forces on the layers without tractions, (5, points)
     real(wp), contiguous, intent(in) :: force(:, :)
@@ -274,6 +278,7 @@ contains
     integer, intent(in) :: n
     !> Stiffness of shear and opening
     real(wp), intent(in) :: stiffness(lanes, 2, n)
+    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Unknowns at the start of the step
     real(wp), intent(in) :: displacement(lanes, 5, n + 1)

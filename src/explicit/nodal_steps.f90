@@ -21,8 +21,9 @@ module nodal_steps
     real(wp), allocatable :: force(:, :)
     !> Nodes with several layers
     type(interface_stacks_t) :: stacks
-    !> Undamaged stacks on no frame and no line, and the indices of the others; unallocated: to be found for the step
+    !> Undamaged stacks on no frame and no line; unallocated: to be found for the step
     type(intact_batch_t), allocatable :: intact(:)
+    !> Indices of the other stacks
     integer, allocatable :: others(:)
     !> Work arrays of stacks, one for each number of interfaces
     type(stack_t), allocatable :: workspaces(:)

@@ -78,7 +78,8 @@ contains
     do i = 1, size(is_other)
       associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
         is_other(i) = nodes%stacks%damaged(i) .or. nodes%rigs%on_frame(first)
-        if (size(nodes%lines%dofs) > 0) is_other(i) = is_other(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
+        if (size(nodes%lines%dofs) == 0) cycle
+        is_other(i) = is_other(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
       end associate
     end do
     nodes%others = pack([(i, i=1, size(is_other))], is_other)

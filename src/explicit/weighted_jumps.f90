@@ -21,8 +21,8 @@ module weighted_jumps
   real(wp), parameter :: weights(0:3) = [1.0_wp, 2*r + q, r**2 + 2*r*q, r**2*q]/((1 + r)**2*(1 + q))
   !> Weight of the jumps at the end of the step
   real(wp), parameter :: newest = weights(0)
-  !> Contribution of earlier jumps to the weighted mean: factor of the jump at the start of the step, and minus those of its
-  !> changes in the two steps before
+  !> Contribution of earlier jumps to the weighted mean: factor of the jump at the start of the step, and minus those of
+  !> its changes in the two steps before
   real(wp), parameter :: past_weights(3) = [1 - weights(0), weights(2) + weights(3), weights(3)]
   !> Number of steps whose forces depend on a jump
   integer, parameter :: memory = size(weights)
