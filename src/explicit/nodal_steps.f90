@@ -25,6 +25,8 @@ module nodal_steps
     type(intact_batch_t), allocatable :: intact(:)
     !> Indices of the other stacks
     integer, allocatable :: others(:)
+    !> Number of damaged stacks when both were found
+    integer :: damaged = 0
     !> Work arrays of stacks, one for each number of interfaces
     type(stack_t), allocatable :: workspaces(:)
     !> Lines

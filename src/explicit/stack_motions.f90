@@ -47,10 +47,10 @@ contains
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
     logical :: reaches_onset(lanes)
-    integer :: i, b, lane, damaged
+    integer :: i, b, lane
 
+    if (allocated(nodes%intact) .and. count(nodes%stacks%damaged) > nodes%damaged) deallocate (nodes%intact)
     if (.not. allocated(nodes%intact)) call separate_stacks(nodes)
-    damaged = count(nodes%stacks%damaged)
     do b = 1, size(nodes%intact)
       call move_intact(nodes%intact(b), nodes%steps, nodes%force, nodes%stacks, u, v, reaches_onset)
       if (.not. any(reaches_onset)) cycle
@@ -65,7 +65,6 @@ contains
     do i = 1, size(nodes%others)
       call move_stack(nodes, nodes%others(i), model, cohesive, u, v)
     end do
-    if (count(nodes%stacks%damaged) > damaged) deallocate (nodes%intact)
   end subroutine move_stacks
 
   !> Separates undamaged stacks on no frame and no line from the others.
@@ -82,6 +81,7 @@ contains
         is_other(i) = is_other(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
       end associate
     end do
+    nodes%damaged = count(nodes%stacks%damaged)
     nodes%others = pack([(i, i=1, size(is_other))], is_other)
     nodes%intact = create_intact_batches(nodes%stacks, nodes%inertia, pack([(i, i=1, size(is_other))], .not. is_other))
   end subroutine separate_stacks
