@@ -1,5 +1,6 @@
 !> Cost of a run by central differences: steps and processor time.
 module explicit_costs
+  use contact_durations, only: stiffened_duration
   use deck_contents, only: deck_t
   use elastic_impacts, only: elastic_impact_t
   use element_steps, only: smallest_element_step
@@ -64,12 +65,13 @@ contains
 
     end = deck%stepping%time%end
     if (.not. (deck%is_impact() .and. deck%expected%of_impact)) return
-    if (.not. deck%expected%is_cut) then
-      end = end_of_run(deck%stepping, deck%expected%last_contact)
-    else if (deck%stepping%central%settle > 0 .or. deck%stepping%time%extends_to_contact_end) then
+    elastic%last_touch = deck%expected%last_touch
+    elastic%deflection = deck%expected%deflection
+    if (deck%expected%is_cut .and. (deck%stepping%central%settle > 0 .or. &
+                                    deck%stepping%time%extends_to_contact_end)) &
       elastic = contact_end(start_elastic_impact(deck%setup_t, deck%expected%scales), 0.0_wp)
-      end = end_of_run(deck%stepping, elastic%last_contact)
-    end if
+    end = end_of_run(deck%stepping, stiffened_duration(deck%setup_t, deck%expected%scales, elastic%last_touch, &
+                                                       elastic%deflection))
   end function expected_end
 
   !> True: an interface is cohesive.

@@ -23,6 +23,8 @@ module elastic_impacts
     real(wp) :: indentation = 0, deflection = 0
     !> Time after which the force no longer exceeds a hundredth of its peak
     real(wp) :: last_contact = 0
+    !> Time after which there is no force at all: the force may be small for a long time before the bodies separate
+    real(wp) :: last_touch = 0
     !> Total time of contact, and velocity of the impactor at the end
     real(wp) :: duration = 0, velocity = 0
     !> Number of contacts
@@ -93,6 +95,7 @@ contains
       if (now > 0 .and. .not. before > 0) elastic%contacts = elastic%contacts + 1
       if (now > 0) elastic%duration = elastic%duration + step
       if (now > contact_part*elastic%peak) active = i
+      if (now > 0) elastic%last_touch = i*step
       if (i > waiting*active .and. active > 0 .and. .not. to_the_end) exit
     end do
     elastic%complete = i <= max_steps

@@ -27,8 +27,8 @@ module modal_plates
   !> frequency. Square plates have their first frequency at 19.74 (SSSS), 28.95 (SCSC) and 23.65 (SSSC) times
   !> sqrt(D/(rho h))/a**2 (A. W. Leissa, Vibration of Plates, NASA SP-160, 1969); beams with a free end at 3.516 instead
   !> of 9.870, and at 15.42 for the first bending mode of one hinged at its support.
-  real(wp), parameter :: shortened_clamped = 0.719_wp, shortened_one_clamped = 0.846_wp, &
-                         lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
+  real(wp), parameter, public :: shortened_clamped = 0.719_wp
+  real(wp), parameter :: shortened_one_clamped = 0.846_wp, lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Largest number of modes along one direction; the deflection by higher ones is negligible for an estimate.
   integer, parameter :: max_modes = 300
   !> Modes along one direction are included if their half wave is no shorter than this fraction of the patch: for

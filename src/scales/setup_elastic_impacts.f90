@@ -33,8 +33,8 @@ module setup_elastic_impacts
     real(wp) :: force = 0, indentation = 0, deflection = 0
     !> Number of contacts
     integer :: contacts = 0
-    !> End of the last contact
-    real(wp) :: last_contact = 0
+    !> End of the last contact with a force above 1 % of the peak, and of any contact
+    real(wp) :: last_contact = 0, last_touch = 0
     !> True: it ends later, as the calculation ends in contact
     logical :: is_cut = .false.
     !> Side of the elements near the struck point
@@ -170,6 +170,7 @@ contains
     expected%deflection = fine%deflection
     expected%contacts = fine%contacts
     expected%last_contact = fine%last_contact
+    expected%last_touch = fine%last_touch
     expected%is_cut = fine%is_cut
     expected%contact_side = contact_side(setup, fine%indentation)
     if (.not. setup%mesh%patch > expected%contact_side) return

@@ -15,7 +15,7 @@ module setup_scales
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
   private
-  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span
+  public :: setup_scales_t, scales_of, plate_modes, contact_side, free_span, free_edges, bending_section
 
   !> Scales of a setup. It has many components because each is one line of the table that users read.
   type :: setup_scales_t

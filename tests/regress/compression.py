@@ -49,10 +49,8 @@ ROUNDED = 1e-11
 # Finer cells of the compression; areas and energies are then kept to round-off, relative.
 FINER = ["mesh%elements=14, 22"]
 MAPPED = 1e-12
-# Measured, after impacts whose steps differ by 1.5 %: matrix .4 and 2.6, ply energy .5 and 12 %, first step +2.5 and
-# 2.0 % of fracture energy, 1.1e-2 and 2e-3 of the total energy.
-EXTENDED = {"matrix_damage_area": 0.05, "energy_ply_damage": 0.15}
-GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 2e-2, 1e-6
+# Of the total energy. Measured: 3.4e-5 in the first step, 1.7e-8 up to half of the run.
+LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 1e-3, 1e-6
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
 ENERGIES = ("kinetic", "strain", "delamination", "ply_damage", "contact", "friction", "algorithmic", "layers",
@@ -191,19 +189,23 @@ def check_mapped(implam, folder, launcher):
     pairs += [(name, kept[f"{name}_before"], kept[f"{name}_after"])
               for name in ("fibre_damage_area", "matrix_damage_area", "energy_ply_damage")]
     for name, before, after in pairs:
-        # Strains of the new cells vary about the mean of the old ones, and extend matrix cracks.
-        bound = EXTENDED.get(name, MAPPED)
-        require(-MAPPED * before <= after - before <= bound * before, f"{name}: {before} before, {after} after.")
-    # Jumps interpolated between the old nodes may damage an interface in the first step.
-    grown = rows["energy_delamination"][0] / impact["energy_delamination"] - 1
+        require(abs(after - before) <= MAPPED * before, f"{name}: {before} before, {after} after.")
+    # Mapped damage and displacements do not fit to each other: damage is held until the plate is at rest.
+    settled = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
+    for name in ("energy_delamination", "energy_ply_damage"):
+        require(abs(rows[name][settled] / impact[name] - 1) < MAPPED, f"{name} changes until the plate is at rest.")
+        require(rows[name][-1] > 1.01 * impact[name], f"{name} does not grow under the load.")
+    risen = kept["energy_strain_after"] / kept["energy_strain_before"] - 1
+    log = (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8")
+    require(risen > 0.01 and "has raised the strain energy" in log, f"No warning of {risen} more strain energy.")
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
     lost = rows["energy_algorithmic"][0] / total
     error = max(abs(value) for value, time in zip(rows["energy_error"], rows["time"], strict=True)
                 if time < 0.5 * rows["time"][-1]) / total
-    print(f"delamination grows by {grown:.1e} in the first step, which dissipates {lost:.1e} of the energy; "
+    print(f"strain energy rises by {100 * risen:.2g} %; the first step dissipates {lost:.1e} of the energy; "
           f"error {error:.1e}")
-    require(0 <= grown < GROWN_BY_MAPPING and abs(lost) < LOST_BY_MAPPING and error < CLOSED_AFTER_MAPPING,
-            "In the first step from a mapped state damage or the energy error is larger.")
+    require(abs(lost) < LOST_BY_MAPPING and error < CLOSED_AFTER_MAPPING,
+            "In the first step from a mapped state the energy error is larger.")
     if launcher:
         other = press(implam, folder, FINER, [*launcher, "2"])
     else:
