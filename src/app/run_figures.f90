@@ -73,7 +73,7 @@ contains
       figures%thickness = model%thickness
     end if
     zones = size(figures%interfaces)
-    bending = effective_bending_stiffness(model%section%stiffness)
+    bending = effective_bending_stiffness(model%bending_section%stiffness)
     allocate (figures%threshold(zones))
     do zone = 1, zones
       toughness = toughnesses(model%setup%delaminations(zone))

@@ -43,10 +43,10 @@ contains
     if (allocated(error)) return
     plies = new_ply_failure(model)
     scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
-    call highest_element_frequency(model, plies%stiffness, scaling, frequency, element, of_elements)
+    call highest_element_frequency(model, plies%largest_stiffness(), scaling, frequency, element, of_elements)
     if (present(slope)) then
       do direction = 1, 2
-        frequency = max(frequency, stiffened_frequency(model, plies%stiffness, of_elements, &
+        frequency = max(frequency, stiffened_frequency(model, plies%largest_stiffness(), of_elements, &
                                                        sloped_motion(model, slope, direction)))
       end do
     end if

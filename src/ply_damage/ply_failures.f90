@@ -4,6 +4,7 @@ module ply_failures
   use internal_forces, only: add_internal_force
   use kinds, only: wp
   use archives, only: archive_t
+  use bimodular_sections, only: bimodular_sections_t, new_bimodular_sections
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t, ply_t
@@ -29,10 +30,14 @@ module ply_failures
     type(failed_modes_t) :: modes
     !> Softening plies; unallocated: failure is sudden
     type(crack_band_sections_t), allocatable :: bands
+    !> Sections of plies with E1c without softening; unallocated: there are none
+    type(bimodular_sections_t), allocatable :: signs
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> Resultants of stress-free strains with this stiffness, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
+    !> Changes of the sections against mean strains, (lanes, change_values, batches); unallocated: there are none
+    real(wp), allocatable :: mean_change(:, :, :)
     !> True if failures have reduced the stiffness after the last step
     logical :: softened = .false.
     !> Energy dissipated in each mode by softening plies, of the full plate
@@ -48,6 +53,10 @@ module ply_failures
     procedure :: find_forces
     !> Forces of the elements on the layers, with softening plies.
     procedure :: add_layer_forces
+    !> Section stiffness for all strains, with the present moduli of compressed plies.
+    procedure :: uniform_stiffness
+    !> Upper bound of the section stiffness for any sign of the stresses.
+    procedure :: largest_stiffness
     !> Records the energy dissipated by softening in a step, and measures the lag of damage.
     procedure :: record
     procedure :: measure_lag
@@ -85,8 +94,13 @@ contains
     if (model%setup%has_crack_bands()) then
       self%bands = new_crack_band_sections(model)
       if (allocated(self%bands%free)) self%free = self%bands%free
+      if (allocated(self%bands%signs)) self%mean_change = self%bands%signs%change
     else
       self%modes = new_failed_modes(model)
+      if (.not. model%setup%is_bimodular()) return
+      self%signs = new_bimodular_sections(model)
+      self%free = self%signs%free
+      self%mean_change = self%signs%signs%change
     end if
   end function new_ply_failure
 
@@ -102,11 +116,18 @@ contains
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 
-    if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
+    if (allocated(self%bands) .and. (allocated(self%mean_change) .or. .not. self%keeps_stiffness)) then
+      self%bands%keeps_damage = self%keeps_stiffness
       ! Unallocated resultants are passed on as an absent argument.
       call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
+      self%bands%keeps_damage = .false.
       self%stiffness = self%bands%stiffness
       if (allocated(self%free)) self%free = self%bands%free
+      if (allocated(self%mean_change)) self%mean_change = self%bands%signs%change
+    else if (allocated(self%signs)) then
+      call model%internal(self%stiffness, displacement, force, energy, self%signs, free=self%free)
+      self%free = self%signs%free
+      self%mean_change = self%signs%signs%change
     else
       call model%internal(self%stiffness, displacement, force, energy, free=self%free)
     end if
@@ -130,11 +151,38 @@ contains
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       call self%bands%commit_sections(self%stiffness, self%free)
+    else if (allocated(self%signs)) then
+      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+                              self%signs, self%free, energies)
     else
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
+
+  !> Section stiffness for all strains, with the moduli that the mean strains of each element have: that of the operator.
+  pure function uniform_stiffness(self) result(stiffness)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    !> (lanes, 21, batches)
+    real(wp), allocatable :: stiffness(:, :, :)
+
+    stiffness = self%stiffness
+    if (allocated(self%mean_change)) stiffness(:, :18, :) = stiffness(:, :18, :) + self%mean_change(:, :18, :)
+  end function uniform_stiffness
+
+  !> Upper bound of the section stiffness for any sign of the stresses.
+  pure function largest_stiffness(self) result(stiffness)
+    !> The failures
+    class(ply_failure_t), intent(in) :: self
+    !> (lanes, 21, batches)
+    real(wp), allocatable :: stiffness(:, :, :)
+
+    stiffness = self%stiffness
+    if (allocated(self%signs)) call self%signs%signs%add_excess(stiffness)
+    if (.not. allocated(self%bands)) return
+    if (allocated(self%bands%signs)) call self%bands%signs%add_excess(stiffness)
+  end function largest_stiffness
 
   !> Records the energy dissipated by softening in a step. Collective.
   subroutine record(self, model, energy)
@@ -314,6 +362,8 @@ contains
                         model%setup%laminate%shear_correction)
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
         free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
+      if (allocated(self%signs)) call self%signs%reduce(element, self%elasticities(model, element), &
+                                                        self%free(lane_of(element), :, batch_of(element)))
     end associate
   end subroutine soften
 
@@ -372,7 +422,7 @@ contains
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer :: mode, element
+    integer :: mode, element, ply
 
     call self%modes%visit(archive, model)
     if (allocated(self%bands)) then
@@ -389,6 +439,10 @@ contains
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         self%free(lane_of(element), :, batch_of(element)) = &
           free_resultants(self%strained_plies(model, range(1), range(2), element), self%elasticities(model, element))
+        if (.not. allocated(self%signs)) cycle
+        if (any([(self%modes%failed(ply, element), ply=range(1), range(2))])) &
+          call self%signs%reduce(element, self%elasticities(model, element), &
+                                 self%free(lane_of(element), :, batch_of(element)))
       end associate
     end do
   end subroutine visit
