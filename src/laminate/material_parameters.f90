@@ -11,8 +11,8 @@ module material_parameters
   !> Constants of a material, and their names in the deck in the order of the type.
   integer, parameter, public :: constants = 23
   character(len=*), parameter, public :: constant_names(constants) = [character(len=10) :: 'density', 'E1', 'E1c', &
-    'E2', 'G12', 'G13', 'G23', 'nu12', 'nu23', 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', 'Sm23', 'shear_beta', 'G_ft', 'G_fc', &
-    'G_mt', 'G_mc', 'alpha1', 'alpha2']
+    'E2', 'G12', 'G13', 'G23', 'nu12', 'nu23', 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', 'Sm23', 'shear_beta', 'G_ft', &
+    'G_fc', 'G_mt', 'G_mc', 'alpha1', 'alpha2']
 
   !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less. It has many
   !> components because the deck gives that many constants.

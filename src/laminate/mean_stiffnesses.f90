@@ -15,8 +15,8 @@ module mean_stiffnesses
   !> Values of a change: stiffness against mean strains A, B, D, then Nxx to Mxy of the stress-free strains with it, and
   !> their energy per area.
   integer, parameter, public :: change_values = 25
-  !> Increase of the error of bending by a sub-ply at the neutral axis, where the number of sub-plies is odd: it is .24
-  !> for three and less for more of them.
+  !> Increase of the error of bending by a sub-ply at the neutral axis, where the number of sub-plies is odd: at most a
+  !> quarter for E1c down to .6 E1, for any number.
   real(wp), parameter :: odd_number = 1.25_wp
   !> Largest number of sub-plies of a ply.
   integer, parameter :: max_sub_plies = 1000
@@ -34,8 +34,8 @@ contains
       modulus = 4*modulus*elasticity%compression/(1 + sqrt(elasticity%compression))**2
   end function bending_modulus
 
-  !> A ply with its modulus in bending, for estimates of plates whose plies are in tension on one side of the mid-plane and
-  !> in compression on the other.
+  !> A ply with its modulus in bending, for estimates of plates whose plies are in tension on one side of the mid-plane
+  !> and in compression on the other.
   elemental function in_bending(ply) result(same)
     !> The ply
     type(ply_t), intent(in) :: ply

@@ -62,7 +62,8 @@ contains
 
     is_bimodular = .false.
     if (.not. (allocated(self%laminate%material) .and. allocated(self%materials))) return
-    is_bimodular = any([(modulus_differs(self%materials(self%laminate%material(i))), i=1, size(self%laminate%material))])
+    is_bimodular = any([(modulus_differs(self%materials(self%laminate%material(i))), &
+                         i=1, size(self%laminate%material))])
   end function is_bimodular
 
   !> True: the sections of the elements depend on their state, by failure of plies or the sign of their stresses.

@@ -82,7 +82,8 @@ contains
     integer :: i
 
     do i = 1, lanes
-      f(i, 1) = c(i, 1)*e(i, 1) + c(i, 2)*e(i, 2) + c(i, 3)*e(i, 3) + c(i, 7)*e(i, 4) + c(i, 8)*e(i, 5) + c(i, 9)*e(i, 6)
+      f(i, 1) = c(i, 1)*e(i, 1) + c(i, 2)*e(i, 2) + c(i, 3)*e(i, 3) + c(i, 7)*e(i, 4) + c(i, 8)*e(i, 5) &
+                + c(i, 9)*e(i, 6)
       f(i, 2) = c(i, 2)*e(i, 1) + c(i, 4)*e(i, 2) + c(i, 5)*e(i, 3) + c(i, 8)*e(i, 4) + c(i, 10)*e(i, 5) &
                 + c(i, 11)*e(i, 6)
       f(i, 3) = c(i, 3)*e(i, 1) + c(i, 5)*e(i, 2) + c(i, 6)*e(i, 3) + c(i, 9)*e(i, 4) + c(i, 11)*e(i, 5) &

@@ -4,11 +4,12 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
+  use band_energies, only: changed_by_signs, dissipated_in_trial, dissipated_so_far
   use batch_resultants, only: element_means
   use band_states, only: band_states_t, new_band_states
   use crack_closures, only: closing_resultants
-  use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, mean_elasticity, &
-                         degraded_elasticity, energy_of_shear, is_damaged, stiffness_lost
+  use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
+                         is_damaged, stiffness_lost
   use crack_band_limits, only: onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
@@ -17,7 +18,6 @@ module crack_band_sections
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
   use mean_sections, only: mean_sections_t, new_mean_sections
-  use mean_stiffnesses, only: change_values, mean_change, mean_strains_at, sub_ply_middle
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
@@ -225,36 +225,12 @@ contains
         means(lane, :) = common(:6)
       end if
       undamaged(lane) = .not. self%touched(element)
-      if (self%touched(element)) call self%signs%set_element(element, change_of(self, element, means(lane, :)))
+      if (self%touched(element)) call self%signs%set_element(element, &
+        changed_by_signs(self%plies, self%bands, self%states, element, means(lane, :)))
     end do
     call self%signs%update(b, means, undamaged)
     resultants = self%tensile(:, :, b) + self%signs%resultants(b, means)
   end function signed_resultants
-
-  !> Change of the section of a damaged element against mean strains.
-  pure function change_of(self, element, means) result(change)
-    !> The plies
-    type(crack_band_sections_t), intent(in) :: self
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Its mean strains
-    real(wp), intent(in) :: means(6)
-    !> The change
-    real(wp) :: change(change_values)
-    real(wp) :: z
-    integer :: ply, number
-
-    change = 0
-    do ply = self%states%range(1, element), self%states%range(2, element)
-      associate (band => self%bands(ply), state => self%states%trial(self%states%offset(element) + ply))
-        do number = 1, self%plies(ply)%sub_plies
-          z = sub_ply_middle(self%plies(ply), number)
-          change = change + mean_change(self%plies(ply), degraded_elasticity(band, state), &
-                                        mean_elasticity(band, state, mean_strains_at(self%plies(ply), means, z)), z)
-        end do
-      end associate
-    end do
-  end function change_of
 
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness)
@@ -334,34 +310,9 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes
     type(exact_sum_t) :: energies(energy_modes)
-    real(wp) :: dissipated(energy_modes)
-    integer :: element, ply, mode
 
-    do element = 1, size(self%touched)
-      if (.not. self%touched(element)) cycle
-      do ply = self%states%range(1, element), self%states%range(2, element)
-        dissipated = dissipated_in(self, ply, element)
-        do mode = 1, energy_modes
-          call energies(mode)%add(dissipated(mode))
-        end do
-      end do
-    end do
+    energies = dissipated_in_trial(self%states, self%plies, self%area, self%touched)
   end function dissipation_sums
-
-  !> Energy that the trial dissipates in each mode in one ply of an element.
-  pure function dissipated_in(self, ply, element) result(energies)
-    !> The plies
-    class(crack_band_sections_t), intent(in) :: self
-    !> Ply of the laminate, and element of this rank
-    integer, intent(in) :: ply, element
-    !> In the order of the modes
-    real(wp) :: energies(energy_modes)
-
-    associate (state => self%states%offset(element) + ply)
-      energies = self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
-                 *(self%states%trial(state)%dissipated - self%states%accepted(state)%dissipated)
-    end associate
-  end function dissipated_in
 
   !> Energy dissipated so far in each mode and by permanent shear, of this rank's elements, as exact sums.
   pure function dissipated(self) result(energies)
@@ -369,20 +320,8 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes, then permanent shear
     type(exact_sum_t) :: energies(energy_modes + 1)
-    integer :: element, ply, mode
 
-    do element = 1, size(self%touched)
-      if (.not. self%touched(element)) cycle
-      do ply = self%states%range(1, element), self%states%range(2, element)
-        associate (volume => self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top), &
-                   state => self%states%accepted(self%states%offset(element) + ply))
-          do mode = 1, energy_modes
-            call energies(mode)%add(volume*state%dissipated(mode))
-          end do
-          call energies(energy_modes + 1)%add(volume*energy_of_shear(self%bands(ply), state))
-        end associate
-      end do
-    end do
+    energies = dissipated_so_far(self%states, self%plies, self%bands, self%area, self%touched)
   end function dissipated
 
   !> Reduced elastic constants of a ply of an element.

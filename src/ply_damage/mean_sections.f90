@@ -1,5 +1,5 @@
-!> Sections of the elements against their mean strains, where plies have another modulus along the fibres in compression:
-!> the changes by compressed sub-plies, which are updated where a sign changes.
+!> Sections of the elements against their mean strains, where plies have another modulus along the fibres in
+!> compression: the changes by compressed sub-plies, which are updated where a sign changes.
 module mean_sections
   use batch_resultants, only: mean_resultants
   use element_batches, only: batch_of, lane_of, lanes

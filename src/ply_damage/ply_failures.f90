@@ -53,10 +53,6 @@ module ply_failures
     procedure :: find_forces
     !> Forces of the elements on the layers, with softening plies.
     procedure :: add_layer_forces
-    !> Section stiffness for all strains, with the present moduli of compressed plies.
-    procedure :: uniform_stiffness
-    !> Upper bound of the section stiffness for any sign of the stresses.
-    procedure :: largest_stiffness
     !> Records the energy dissipated by softening in a step, and measures the lag of damage.
     procedure :: record
     procedure :: measure_lag
@@ -75,8 +71,6 @@ module ply_failures
     procedure :: grow
     !> Computes the stiffness of elements split into layers.
     procedure :: restack
-    !> Number of ply elements failed in each mode, of the full plate.
-    procedure :: counts
     !> Saves or loads.
     procedure :: visit
   end type ply_failure_t
@@ -159,30 +153,6 @@ contains
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
-
-  !> Section stiffness for all strains, with the moduli that the mean strains of each element have: that of the operator.
-  pure function uniform_stiffness(self) result(stiffness)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    !> (lanes, 21, batches)
-    real(wp), allocatable :: stiffness(:, :, :)
-
-    stiffness = self%stiffness
-    if (allocated(self%mean_change)) stiffness(:, :18, :) = stiffness(:, :18, :) + self%mean_change(:, :18, :)
-  end function uniform_stiffness
-
-  !> Upper bound of the section stiffness for any sign of the stresses.
-  pure function largest_stiffness(self) result(stiffness)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    !> (lanes, 21, batches)
-    real(wp), allocatable :: stiffness(:, :, :)
-
-    stiffness = self%stiffness
-    if (allocated(self%signs)) call self%signs%signs%add_excess(stiffness)
-    if (.not. allocated(self%bands)) return
-    if (allocated(self%bands%signs)) call self%bands%signs%add_excess(stiffness)
-  end function largest_stiffness
 
   !> Records the energy dissipated by softening in a step. Collective.
   subroutine record(self, model, energy)
@@ -391,29 +361,6 @@ contains
       end associate
     end do
   end subroutine restack
-
-  !> Number of ply elements failed in each mode, of the full plate.
-  function counts(self, model)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Fibre failure, matrix cracking, matrix crushing
-    integer :: counts(failure_modes)
-    integer :: element, ply, mode
-
-    counts = 0
-    if (.not. model%setup%has_ply_damage) return
-    do element = 1, model%elements%elements
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        do ply = range(1), range(2)
-          where (self%failed(ply, element)) counts = counts + model%mesh%multiplicity
-        end do
-      end associate
-    end do
-    do mode = 1, failure_modes
-      call model%communicator%sum(counts(mode))
-    end do
-  end function counts
 
   !> Saves or loads the failures.
   subroutine visit(self, archive, model)

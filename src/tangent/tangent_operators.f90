@@ -5,6 +5,7 @@ module tangent_operators
   use kinds, only: wp
   use archives, only: archive_t
   use errors, only: error_t
+  use section_bounds, only: uniform_stiffness
   use section_stiffnesses, only: visit_stiffness
   use timers, only: timer_set_t
   use contact_patches, only: contact_patch_t
@@ -131,7 +132,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     self%displacement = state%motion%displacement
-    self%stiffness = state%plies%uniform_stiffness()
+    self%stiffness = uniform_stiffness(state%plies)
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
