@@ -244,6 +244,7 @@ contains
     call self%circles%prepare(model, self%inertia%inverse(7, :))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
+    if (allocated(self%intact)) deallocate (self%intact)
     self%prepared = self%steps
   end subroutine prepare
 
@@ -358,6 +359,7 @@ contains
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
+    if (allocated(self%intact)) deallocate (self%intact)
     call separate_constrained_points(self)
     self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()
