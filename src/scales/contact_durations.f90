@@ -1,5 +1,5 @@
-!> Duration of a contact with a heavy impactor, corrected for what the preliminary elastic impact neglects: the stiffness
-!> of clamped edges and of membrane forces. It affects the number of steps that is foreseen only.
+!> Duration of a contact with a heavy impactor, corrected for what the preliminary elastic impact neglects: the
+!> stiffness of clamped edges and of membrane forces. It affects the number of steps that is foreseen only.
 module contact_durations
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -14,8 +14,8 @@ module contact_durations
   public :: stiffened_duration
 
   !> Membrane stiffness A of circular plates under a central force, P = k w (1 + A (w/h)**2): clamped and simply
-  !> supported edges (columns), fixed and free in the plane (rows). S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates
-  !> and Shells, 1959, art. 100, table 82.
+  !> supported edges (columns), fixed and free in the plane (rows). S. Timoshenko, S. Woinowsky-Krieger, Theory of
+  !> Plates and Shells, 1959, art. 100, table 82.
   real(wp), parameter :: membrane(2, 2) = reshape([0.443_wp, 0.200_wp, 1.430_wp, 0.272_wp], [2, 2])
   !> Central compliance of a clamped isotropic square, 0.00560 a**2/D (ibid., art. 44), over that by one term of Ritz's
   !> method, 0.00513 a**2/D.
@@ -28,9 +28,9 @@ module contact_durations
 
 contains
 
-  !> Duration of contact: the half period of the impactor on the plate is proportional to the root of its compliance, and
-  !> a spring that stiffens by A (w/h)**2 has the frequency of a linear one that is stiffer by 3/4 of that at the largest
-  !> deflection (harmonic balance). That deflection follows from the energy.
+  !> Duration of contact: the half period of the impactor on the plate is proportional to the root of its compliance,
+  !> and a spring that stiffens by A (w/h)**2 has the frequency of a linear one that is stiffer by 3/4 of that at the
+  !> largest deflection (harmonic balance). That deflection follows from the energy.
   pure real(wp) function stiffened_duration(setup, scales, duration, deflection) result(stiffened)
     !> The setup
     type(setup_t), intent(in) :: setup
@@ -53,8 +53,8 @@ contains
     stiffened = duration*sqrt(share/(1 + 0.75_wp*a*square))
   end function stiffened_duration
 
-  !> Compliance of a plate clamped at all edges over that of the shorter, simply supported plate of the elastic impact; 1
-  !> for other edges. Both are those of thin plates; shear adds the same to both.
+  !> Compliance of a plate clamped at all edges over that of the shorter, simply supported plate of the elastic impact;
+  !> 1 for other edges. Both are those of thin plates; shear adds the same to both.
   pure real(wp) function clamped_share(setup, scales) result(share)
     !> The setup
     type(setup_t), intent(in) :: setup
