@@ -20,7 +20,7 @@ module initial_state_deck
       &Checkpoint NAME_restart.h5 of the other run; the path is relative to the working directory.', &
     'initial_state | motion | choice | 1 | - | ''rest'' | rest kept | &
       &Whether the plate starts at rest, or with the velocities of the checkpoint.', &
-    'initial_state | cut_at | real | 2 | length | 0, 0 | any | &
+    'initial_state | cut_at | real | 2 | length | = its centre | any | &
       &Centre of a smaller plate in the coordinates of the plate from which it is cut.']
 
 contains
@@ -35,6 +35,7 @@ contains
     if (.not. settings%is_known(initial_state_group, key_from)) return
     initial%from = settings%text_of(initial_state_group, key_from)
     initial%motion = code_of(settings%text_of(initial_state_group, 'motion'), 'rest kept', [motion_rest, motion_kept])
-    initial%cut_at = settings%reals_of(initial_state_group, key_cut_at)
+    if (settings%is_given(initial_state_group, key_cut_at)) &
+      initial%cut_at = settings%reals_of(initial_state_group, key_cut_at)
   end subroutine fill_initial_state
 end module initial_state_deck
