@@ -129,7 +129,8 @@ contains
            both(self%plies(1, :))//', of the matrix '//both(self%plies(2, :))//', energy '//both(self%plies(3, :))//'.'
   end function line
 
-  !> One line for the log of a plate cut from a larger one: the damage that is cut away.
+  !> One line for the log of a plate cut from a larger one: the damage that is cut away; interfaces without are left
+  !> out.
   pure function cut_line(self, below_plies) result(line)
     !> The quantities
     class(mapped_figures_t), intent(in) :: self
@@ -141,6 +142,7 @@ contains
 
     line = ''
     do i = 1, size(below_plies)
+      if (.not. (cut_away(self%area(i, :)) > 0 .or. cut_away(self%energy(i, :)) > 0)) cycle
       line = line//'below ply '//to_text(below_plies(i))//' area '//rounded_text(cut_away(self%area(i, :)))// &
              ', energy '//rounded_text(cut_away(self%energy(i, :)))//'; '
     end do
