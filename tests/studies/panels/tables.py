@@ -90,6 +90,8 @@ def panel_lines(name, panel, rows):
 
 def cost_of(rows):
     """Return the number of runs and their cost."""
+    if not rows:
+        return "No run of these decks yet."
     hours = number(sum(float(row["minutes"]) for row in rows) / 60, 2)
     return f"Runs: {len(rows)}, {hours} hours of one core."
 
@@ -97,7 +99,7 @@ def cost_of(rows):
 def variant_lines(name, panel, rows):
     """Return the differences of the variants of a panel from the deck as it is, over pairs of equal seeds."""
     base = {row["seed"]: row for row in rows if row["panel"] == name and not row["variant"]}
-    quantities = [entry["of"] for entry in panel["measured"]]
+    quantities = [*(entry["of"] for entry in panel["measured"]), *panel.get("shown", [])]
     lines = []
     for variant in panel.get("variants", {}):
         own = [row for row in rows if row["panel"] == name and row["variant"] == variant and row["seed"] in base]
