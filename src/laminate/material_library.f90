@@ -25,6 +25,7 @@ module material_library
   character(len=*), parameter :: rows(*) = [character(len=150) :: &
     'material | density | kg/m^3 | 1600e0 c | 1600e0 c | 1580e0 c | 1560e0 h | 1600e0 i | 2000e0 k', &
     'material | E1 | Pa | 130e9 a | 130e9 b | 171.42e9 d | 126e9 g | 135.1e9 i | 45.6e9 g', &
+    'material | E1c | Pa | 100e9 n | 100e9 n | - | - | - | -', &
     'material | E2 | Pa | 7.7e9 a | 7.7e9 b | 9.08e9 d | 11e9 g | 9.24e9 i | 16.2e9 g', &
     'material | G12 | Pa | 4.8e9 a | 4.8e9 b | 5.29e9 d | 6.6e9 g | 6.27e9 i | 5.83e9 g', &
     'material | G13 | Pa | 4.8e9 a | 4.8e9 b | 5.29e9 j | 6.6e9 j | 6.27e9 j | 5.83e9 j', &
@@ -62,7 +63,9 @@ module material_library
     'j | from isotropy across the fibres: G13 = G12, G23 = E2/(2 (1 + nu23))', &
     'k | of 60 % of glass with 2540 kg/m^3 in a resin of 1200 kg/m^3', &
     'l | assumed, that of AS4/3501-6', &
-    'm | that of T300/913 (B below), which the papers a and b take; not measured on T700/M21']
+    'm | that of T300/913 (B below), which the papers a and b take; not measured on T700/M21', &
+    'n | from memory, C. Bouvet, S. Rivallant, J. J. Barrau, Composites Science and Technology 72 (2012) 1977; '// &
+    'the bending stiffnesses there are those of the mean, 115 GPa']
 
 contains
 
