@@ -14,6 +14,7 @@ module summary_file
   use output_clocks, only: shown_time
   use output_deck, only: key_force_filter
   use profiles, only: profile_row_t
+  use projected_areas, only: area_dissipated, area_failed, area_softened, projected_rule
   use run_errors, only: run_errors_t
   use run_figures, only: ending_t, run_figures_t
   use run_provenance, only: provenance_t
@@ -216,7 +217,10 @@ contains
     integer :: zone
 
     call json%put('delaminated_area', sum(figures%interfaces%area))
-    call json%put('projected_area', figures%projected_area)
+    call json%put('projected_area', figures%projected_areas(area_dissipated))
+    call json%put('projected_area_rule', projected_rule)
+    call json%put('projected_area_failed', figures%projected_areas(area_failed))
+    call json%put('projected_area_softened', figures%projected_areas(area_softened))
     if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
     call json%open_list('interfaces')
     do zone = 1, size(figures%interfaces)
@@ -251,6 +255,7 @@ contains
 
     if (.not. event(1) > 0) then
       call json%put_null(name)
+      call json%put(name//'_before_run', event(1) < 0)
       return
     end if
     call json%open_object(name)
