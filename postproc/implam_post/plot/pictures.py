@@ -96,7 +96,7 @@ def plot_overview(fields: Fields, history: History, path: Path, style: PictureSt
     if not interfaces:
         raise FileError(f"{fields.name} has no interface that may delaminate.")
     few = len(interfaces) <= FEW
-    figure = Figure(figsize=(11, max(2.9 * len(interfaces), 5.8) if few else 7.5), layout="constrained")
+    figure = Figure(figsize=(11, max(2.9 * len(interfaces) + 1, 5.8) if few else 7.5), layout="constrained")
     left, right = figure.subfigures(1, 2)
     if few:
         _draw_interfaces(left, fields, style)
