@@ -91,7 +91,7 @@ def _frame(support: Mapping[str, Any], style: PictureStyle) -> list[Row]:
 
 
 def _point(at: list[Any], style: PictureStyle) -> str:
-    """Return a point in the plane."""
+    """Return the coordinates of a point."""
     axis = style.axis("", "length", at)
     unit = style.shown("length", max(map(abs, at))).partition(" ")[2]
     return f"({', '.join(f'{axis.factor * value:.4g}' for value in at)}) {unit}".rstrip()
