@@ -262,8 +262,8 @@ contains
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > max_slope)
   end function is_steep
 
-  !> True: the fibres of every ply have failed over an area as large as the contact, so that the contact force has no
-  !> support. Collective.
+  !> True: the fibres of every ply have failed over an area as large as patch and contact, so that the contact force has
+  !> no support. Collective.
   logical function is_perforated(model, now)
     type(model_t), intent(in) :: model
     !> The step reached
@@ -275,7 +275,8 @@ contains
     counts = now%plies%counts(model)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
-    is_perforated = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounding))
+    is_perforated = all(areas(fibre_failure, :) >= &
+      max(model%setup%mesh%patch**2, now%pressed_area(model))*(1 - rounding))
   end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.

@@ -54,7 +54,7 @@ contains
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
     call self%patch%spread(weights, 0.0_wp)
-    if (self%setup%impactor%spreads) call build_nose(self, area)
+    if (self%setup%impactor%spreads) call build_nose(self)
     if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
@@ -80,19 +80,25 @@ contains
     end associate
   end function patch_elements
 
-  !> Creates the nose that determines the patch.
-  subroutine build_nose(self, area)
-    !> The model, with its patch
+  !> Creates the nose over the struck face. Collective.
+  subroutine build_nose(self)
+    !> The model
     type(model_t), intent(inout) :: self
-    !> Area of the patch's modelled part
-    real(wp), intent(in) :: area
-    integer :: i
+    real(wp) :: local_area(self%halo%points), area(self%mesh%points())
+    integer :: local(self%mesh%points()), i
 
-    associate (mesh => self%mesh, points => self%distribution%points, struck => self%setup%mesh%struck)
-      self%nose = &
-        new_contact_area(self%patch%weights, area, nodal_areas(self, patch_elements(self, .false.)), &
-                         [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), i=1, size(points))], &
-                         self%setup%impactor%radius)
+    local_area = nodal_areas(self, [patch_elements(self, .true.), patch_elements(self, .false.)])
+    area = 0
+    local = 0
+    associate (mesh => self%mesh, partition => self%distribution, struck => self%setup%mesh%struck)
+      do i = 1, partition%owned
+        area(partition%points(i)) = local_area(i)*mesh%multiplicity
+        local(partition%points(i)) = i
+      end do
+      call self%communicator%sum(area)
+      self%nose = new_contact_area(self%setup%impactor%radius, area, &
+                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(i)) - struck), i=1, size(area))], &
+                                   local)
     end associate
   end subroutine build_nose
 

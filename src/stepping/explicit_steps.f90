@@ -78,7 +78,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (allocated(model%nose)) &
-      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), method%impact%patch%offset)
+      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), now%contact%offset)
     call record_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
