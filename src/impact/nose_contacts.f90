@@ -1,9 +1,9 @@
 !> Contact of a spherical nose with a deformed face, point by point, theory (F9).
 !>
-!> Under a force P the face around the contact sinks by half of Hertz's indentation for P; the other half, at the centre
-!> of a flat face, is local, as on an elastic foundation (K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 4.3).
-!> With the pressure (3 k/(2 pi R)) sqrt(2 x) at the local depth x, contact radius, pressure and force on a flat face are
-!> those of Hertz. Pressures are derivatives of one energy, which is convex: no point is pressed that does not touch.
+!> Under a force P the face around the contact sinks by half of Hertz's indentation for P; the other half is local, as
+!> on an elastic foundation (K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 4.3).
+!> With the pressure (3 k/(2 pi R)) sqrt(2 x) at the local depth x, contact radius, pressure and force on a flat face
+!> are those of Hertz. Pressures are derivatives of one convex energy: no point is pressed that does not touch.
 !>
 !> Each point has the part of the nose between two circles whose area is its own, so that its pressure is a mean, and
 !> the force on a flat face is Hertz's for any spacing of points.

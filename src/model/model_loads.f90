@@ -50,7 +50,7 @@ contains
     real(wp), allocatable :: weights(:), mass(:, :)
     real(wp) :: area
 
-    weights = nodal_areas(self, patch_elements(self, .true.))
+    weights = nodal_areas(self, struck_elements(self, self%setup%mesh%patch))
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
     call self%patch%spread(weights, 0.0_wp)
@@ -64,21 +64,21 @@ contains
     end if
   end subroutine build_loads
 
-  !> This rank's elements under the patch, or beside it, of the struck layer only.
-  pure function patch_elements(self, under) result(elements)
+  !> This rank's elements of the struck layer, ascending: those under the patch, or all.
+  pure function struck_elements(self, patch) result(elements)
     type(model_t), intent(in) :: self
-    !> True for those under it
-    logical, intent(in) :: under
+    !> Side of the patch; left out: all elements
+    real(wp), intent(in), optional :: patch
     !> Positions among this rank's elements
     integer, allocatable :: elements(:)
     integer :: i
 
     associate (mesh => self%mesh, mine => self%distribution%elements)
-      elements = pack([(i, i=1, size(mine))], &
-                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%setup%mesh%patch) .eqv. under) &
-                        .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+      elements = pack([(i, i=1, size(mine))], [(mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+      if (present(patch)) elements = pack(elements, [(mesh%in_patch(mesh%element_cell(mine(elements(i))), patch), &
+                                                      i=1, size(elements))])
     end associate
-  end function patch_elements
+  end function struck_elements
 
   !> Creates the nose over the struck face. Collective.
   subroutine build_nose(self)
@@ -87,7 +87,7 @@ contains
     real(wp) :: local_area(self%halo%points), area(self%mesh%points())
     integer :: local(self%mesh%points()), i
 
-    local_area = nodal_areas(self, [patch_elements(self, .true.), patch_elements(self, .false.)])
+    local_area = nodal_areas(self, struck_elements(self))
     area = 0
     local = 0
     associate (mesh => self%mesh, partition => self%distribution, struck => self%setup%mesh%struck)

@@ -71,6 +71,8 @@ module states
     !> Deflection of the plate under the impactor, and contact area on the full plate.
     procedure :: contact_deflection
     procedure :: pressed_area
+    !> Depth of the struck point below the impactor.
+    procedure :: depth_below_impactor
     !> True once plies have failed or delaminations have grown.
     procedure :: has_failures
     !> Counts a step and its iterations.
@@ -167,6 +169,20 @@ contains
                                       self%impactor%displacement)
     area = contact%area
   end function pressed_area
+
+  !> Depth of the struck point below the impactor, both from their position at first contact.
+  pure real(wp) function depth_below_impactor(self, model) result(depth)
+    !> The state
+    class(state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+
+    depth = self%deflection - self%impactor%displacement
+    if (allocated(model%nose)) then
+      depth = depth - self%contact%touched_at
+    else
+      depth = depth + self%contact%offset
+    end if
+  end function depth_below_impactor
 
   !> True once plies have failed or delaminations have grown.
   pure logical function has_failures(self)

@@ -1,8 +1,9 @@
 !> Updates the contact of a nose in implicit steps, theory (F9), as the plate bends around it.
 !>
+!> On the patch the force is uniform, as that of a single point excites motions shorter than the steps resolve.
 !> Distribution and gain of the force are found from the last accepted state and kept constant in the next step, so that
-!> force and deflection under the impactor are work-conjugate. Between steps they approach the contact point by point;
-!> the work of the force on the change of the indentation is recorded as algorithmic.
+!> force and deflection under the impactor are work-conjugate. An offset keeps the indentation continuous when they
+!> change: no energy is created.
 module contact_updates
   use errors, only: error_t
   use kinds, only: wp
@@ -10,7 +11,6 @@ module contact_updates
   use nose_contacts, only: nose_contact_t
   use rank_totals, only: total_of
   use states, only: state_t
-  use tan_sun_indentation, only: commit_indentation, indentation_force
   use tangent_operators, only: tangent_operator_t
   implicit none
   private
@@ -28,7 +28,7 @@ contains
   !> Updates the contact from the state reached. Collective.
   subroutine update_contact_area(model, now, operator, error)
     type(model_t), intent(in) :: model
-    !> The state reached; receives weights, gain and offset of its patch, and the indentation
+    !> The state reached; receives weights, gain and offset of its patch
     type(state_t), intent(inout) :: now
     !> The factored operator; receives its unit-load solution
     type(tangent_operator_t), intent(inout) :: operator
@@ -41,31 +41,26 @@ contains
     associate (w => now%motion%displacement(3, :), contact => now%contact)
       touching = model%nose%find_contact(model%communicator, w - contact%touched_at, now%impactor%displacement)
       if (.not. touching%indentation > 0) return
-      change = relaxation*(model%nose%to_local(touching%weights, size(w)) - contact%weights)
+      change = relaxation*(spread_on_patch(model, model%nose%to_local(touching%weights, size(w))) - contact%weights)
       contact%gain = contact%gain + relaxation*(touching%gain - contact%gain)
-      call move_indentation(model, relaxation*(touching%indentation - now%indentation%alpha), now)
       call contact%spread(contact%weights + change, now%impactor%displacement - now%indentation%alpha/contact%gain - &
                           total_of(model%communicator, (contact%weights + change)*w))
       now%patch_mean = now%contact_deflection(model)
-      now%force = contact%gain*indentation_force(model%setup%indentation, now%indentation, now%indentation%alpha)
-      now%impactor%force = now%force
       if (.not. total_of(model%communicator, abs(change)) > negligible) return
     end associate
     if (operator%ready) call operator%find_response(model, now%contact, error)
   end subroutine update_contact_area
 
-  !> Changes the indentation at a given motion, and records the work of the force as algorithmic.
-  subroutine move_indentation(model, change, now)
+  !> Weights that are uniform on the patch, with their sum. Collective.
+  function spread_on_patch(model, weights) result(spread)
     type(model_t), intent(in) :: model
-    !> Change of the indentation
-    real(wp), intent(in) :: change
-    !> The state
-    type(state_t), intent(inout) :: now
-    real(wp) :: before
+    !> Weights of the points, (local points)
+    real(wp), intent(in) :: weights(:)
+    !> (local points)
+    real(wp), allocatable :: spread(:)
 
-    before = now%indentation%work
-    call commit_indentation(model%setup%indentation, now%indentation, now%indentation%alpha + change)
-    now%ledger%indentation = now%indentation%work
-    now%ledger%algorithmic = now%ledger%algorithmic - (now%indentation%work - before)
-  end subroutine move_indentation
+    associate (patch => model%patch%weights)
+      spread = merge(total_of(model%communicator, merge(weights, 0.0_wp, patch > 0))*patch, weights, patch > 0)
+    end associate
+  end function spread_on_patch
 end module contact_updates
