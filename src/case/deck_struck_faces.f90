@@ -56,12 +56,12 @@ contains
     if (.not. are_clear(deck%settings, problems, indentation_group, key_face)) return
     associate (s => deck%settings, used => deck%laminate%material)
       if (.not. (is_complete(deck) .or. s%is_given(indentation_group, key_k))) then
-        call report(s, problems, indentation_group, key_face, '= ''laminate'' needs nu23 of every fibre-reinforced '// &
-                    'ply; give nu23 in &material, or E3 and face = ''ply''.')
+        call report(s, problems, indentation_group, key_face, 'needs nu23 of every fibre-reinforced ply; give it '// &
+                    'in &material, or E3 and face = ''ply''.')
       else if (deck%indentation%law == law_thornton .and. .not. all(deck%materials(used)%yc > 0) .and. .not. &
                (s%is_given(indentation_group, key_yield) .or. s%is_given(indentation_group, key_alpha_critical))) then
-        call report(s, problems, indentation_group, key_face, '= ''laminate'' needs YC of every ply for the yield '// &
-                    'pressure; give YC in &material, or yield_pressure.')
+        call report(s, problems, indentation_group, key_face, 'needs YC of every ply for the yield pressure; give '// &
+                    'it in &material, or yield_pressure.')
       end if
     end associate
   end subroutine check_struck_face

@@ -111,8 +111,8 @@ contains
     call settings%derive(indentation_group, key_k, to_text(law%k), .false.)
   end subroutine fill_stiffness
 
-  !> Indentation at which the pressure at the centre of a Hertzian contact, (3/2) k sqrt(alpha)/(pi R), reaches the yield
-  !> pressure.
+  !> Indentation at which the pressure at the centre of a Hertzian contact, (3/2) k sqrt(alpha)/(pi R), reaches the
+  !> yield pressure.
   subroutine fill_yield(settings, radius, face, law)
     !> Keys in effect; receives the yield pressure and the indentation
     type(settings_t), intent(inout) :: settings
@@ -123,7 +123,8 @@ contains
     !> Receives the indentation
     type(indentation_law_t), intent(inout) :: law
 
-    if (settings%is_given(indentation_group, key_alpha_critical) .or. .not. (radius > 0 .and. law%k > 0)) return
+    if (settings%is_given(indentation_group, key_alpha_critical)) return
+    if (.not. (radius > 0 .and. law%k > 0)) return
     if (takes_laminate(settings) .and. face%strength > 0 .and. .not. &
         settings%is_given(indentation_group, key_yield)) &
       call settings%derive_numbers(indentation_group, key_yield, [face%strength])
@@ -166,7 +167,8 @@ contains
     if (law%law == law_hertz) then
       call idle('q reload beta alpha_cr dent', 'has no effect with law = ''hertz''.')
     else
-      if (.not. (law%alpha_critical > 0 .or. problems%concern(indentation_group, key_alpha_critical))) &
+      if (.not. (law%alpha_critical > 0 .or. problems%concern(indentation_group, key_alpha_critical) .or. &
+                 problems%concern(indentation_group, key_face))) &
         call report(settings, problems, indentation_group, key_alpha_critical, 'is missing; law = '''// &
                   settings%text_of(indentation_group, 'law')//''' needs the indentation above which a dent remains'// &
                   trim(merge(', or a yield_pressure', '                     ', law%law == law_thornton))// &

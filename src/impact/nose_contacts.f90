@@ -1,4 +1,4 @@
-!> Contact of a spherical nose with a deformed face, point by point, theory (F9).
+!> Contact of a spherical nose with a deformed face, point by point, theory (F12).
 !>
 !> Under a force P the face around the contact sinks by half of Hertz's indentation for P; the other half is local, as
 !> on an elastic foundation (K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 4.3).

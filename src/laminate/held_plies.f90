@@ -1,4 +1,4 @@
-!> Stiffness and strength of a laminate through its thickness under a local pressure, theory (F12) to (F14): fibres in
+!> Stiffness and strength of a laminate through its thickness under a local pressure, theory (F9) to (F11): fibres in
 !> several directions, and the face around the pressure, hold the strains in the plane at zero.
 module held_plies
   use kinds, only: wp

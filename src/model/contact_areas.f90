@@ -1,4 +1,4 @@
-!> Points of the struck face within reach of a spherical nose, theory (F9). They are listed in the order of the mesh on
+!> Points of the struck face within reach of a spherical nose, theory (F12). They are listed in the order of the mesh on
 !> every rank, so that the contact is identical on any number of ranks.
 module contact_areas
   use communicators, only: communicator_t

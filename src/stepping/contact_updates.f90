@@ -1,4 +1,4 @@
-!> Updates the contact of a nose in implicit steps, theory (F9), as the plate bends around it.
+!> Updates the contact of a nose in implicit steps, theory (F12), as the plate bends around it.
 !>
 !> On the patch the force is uniform, as that of a single point excites motions shorter than the steps resolve.
 !> Distribution and gain of the force are found from the last accepted state and kept constant in the next step, so that
