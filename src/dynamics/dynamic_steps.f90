@@ -299,8 +299,7 @@ contains
         new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
                                self%coupling%force_end)
         new%force = self%coupling%force_end
-        call commit_indentation(model%setup%indentation, new%indentation, &
-                                new%contact%gain*(new%impactor%displacement - new%patch_mean))
+        call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
       end if
       call model%profile%enter('energy ledger')
       call record_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)

@@ -26,8 +26,6 @@ module impact_coupling
     real(wp) :: share = 0, inherited = 0
     !> Force at the start of the step, and alpha_f of the equation of motion
     real(wp) :: start_force = 0, alpha_f = 0
-    !> Force relative to that of a flat face with the same indentation
-    real(wp) :: gain = 1
   contains
     !> Force on the plate in its equation of motion.
     procedure :: load
@@ -64,7 +62,6 @@ contains
     coupling%unknown = old%force
     coupling%force_end = old%force
     coupling%start_force = old%force
-    coupling%gain = old%contact%gain
     coupling%alpha_f = integrator%alpha_f
     coupling%share = 1
     if (coupling%mean) return
@@ -161,11 +158,9 @@ contains
 
     compliance = self%share*patch_compliance
     step = contact_step_t(law, indentation, start=indentation%alpha, &
-                          free=self%gain*(self%free_displacement - patch_mean + self%unknown*compliance), &
-                          compliance=self%gain**2*(self%compliance + compliance), is_mean=self%mean)
+                          free=self%free_displacement - patch_mean + self%unknown*compliance, &
+                          compliance=self%compliance + compliance, is_mean=self%mean)
     call solve_impact_force(step, self%unknown, alpha_end, self%force_end, iterations, error)
-    self%unknown = self%gain*self%unknown
-    self%force_end = self%gain*self%force_end
     ! The equation of motion requires the force at 1 - alpha_f of the step, which is the mean force for alpha_f = 1/2
     ! only.
     if (self%mean) self%inherited = (0.5_wp - self%alpha_f)*(self%force_end - self%start_force)

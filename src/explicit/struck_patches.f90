@@ -18,8 +18,8 @@ module struck_patches
     integer, allocatable :: local(:)
     !> Weights of the force distribution, their increase with the local depth, and inverse inertia of w, (reached)
     real(wp), allocatable :: weights(:), slopes(:), inverse(:)
-    !> Force relative to that of a flat face with the same indentation
-    real(wp) :: gain = 1
+    !> Force relative to that of a flat face with the same indentation, and area under pressure
+    real(wp) :: gain = 1, area = 0
     !> Offset of the deflection under the impactor: minus that at first contact
     real(wp) :: offset = 0
     !> The nose; unallocated: the patch
@@ -127,6 +127,7 @@ contains
       self%weights = contact%weights
       self%slopes = contact%slopes
       self%gain = contact%gain
+      self%area = contact%area
       indentation = contact%indentation
     else
       indentation = position - (dot_product(self%weights, w) + self%offset)
@@ -176,6 +177,7 @@ contains
     call archive%item('explicit/patch_weights', self%weights)
     call archive%item('explicit/patch_slopes', self%slopes)
     call archive%item('explicit/patch_gain', self%gain)
+    call archive%item('explicit/patch_area', self%area)
     call archive%item('explicit/patch_offset', self%offset)
   end subroutine visit
 end module struck_patches

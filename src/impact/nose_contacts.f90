@@ -31,6 +31,8 @@ module nose_contacts
     procedure :: first_contact
     !> Contact at a position of the nose.
     procedure :: press
+    !> Forces of points as on an elastic foundation.
+    procedure :: foundation
   end type nose_t
 
   !> Contact of the nose at one position.
@@ -124,6 +126,22 @@ contains
     contact%weights = contact%weights/force
     contact%slopes = contact%slopes/force
   end subroutine press
+
+  !> Forces of the points, up to a factor, as on an elastic foundation with the depth of half the indentation.
+  pure function foundation(self, w, indentation) result(forces)
+    !> The nose
+    class(nose_t), intent(in) :: self
+    !> Deflections of the points
+    real(wp), intent(in) :: w(:)
+    !> The indentation
+    real(wp), intent(in) :: indentation
+    !> (points)
+    real(wp) :: forces(size(w))
+
+    associate (height => w + (self%inner + self%outer)/2)
+      forces = self%area*max(0.0_wp, indentation/2 + minval(height, mask=self%area > 0) - height)
+    end associate
+  end function foundation
 
   !> Settlement of the face, half of Hertz's indentation for the force of the local depths, by Newton's method with a
   !> bracket. Forces and energies are divided by the contact stiffness k.

@@ -6,6 +6,9 @@ module contact_areas
   use nose_contacts, only: nose_contact_t, nose_t, new_nose
   implicit none
   private
+  !> Weight relative to the largest from which a point counts as in contact: at the end of contact the weights decrease
+  !> to zero. It only affects the area reported.
+  real(wp), parameter :: min_weight = 1.0e-3_wp
   public :: contact_area_t, new_contact_area
 
   !> Struck face and nose.
@@ -23,6 +26,8 @@ module contact_areas
     procedure :: first_contact
     !> Values of the points at this rank's points.
     procedure :: to_local
+    !> Area of the points with a weight.
+    procedure :: area_of
   end type contact_area_t
 
 contains
@@ -108,4 +113,18 @@ contains
       if (self%local(i) > 0) field(self%local(i)) = values(i)
     end do
   end function to_local
+
+  !> Area of the points with a weight, on the full plate. Collective.
+  real(wp) function area_of(self, communicator, weights) result(area)
+    !> The points
+    class(contact_area_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> (local points)
+    real(wp), intent(in) :: weights(:)
+    real(wp), allocatable :: listed(:)
+
+    listed = self%deflections(communicator, weights)
+    area = sum(self%nose%area, mask=listed > min_weight*maxval(listed))
+  end function area_of
 end module contact_areas

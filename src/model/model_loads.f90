@@ -54,6 +54,7 @@ contains
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
     call self%patch%spread(weights, 0.0_wp)
+    self%patch%area = self%setup%mesh%patch**2
     if (self%setup%impactor%spreads) call build_nose(self)
     if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then

@@ -10,7 +10,6 @@ module states
   use load_paths, only: load_path_t
   use motions, only: motion_t
   use models, only: model_t
-  use nose_contacts, only: nose_contact_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use interface_states, only: interface_state_t, new_interface_state
   implicit none
@@ -156,18 +155,14 @@ contains
     contact_deflection = self%contact%deflection(model%communicator, self%motion%displacement)
   end function contact_deflection
 
-  !> Contact area on the full plate, the same on every rank. Collective.
-  real(wp) function pressed_area(self, model) result(area)
+  !> Contact area on the full plate, the same on every rank.
+  pure real(wp) function pressed_area(self, model) result(area)
     !> The state
     class(state_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    type(nose_contact_t) :: contact
 
     area = model%setup%mesh%patch**2
-    if (.not. allocated(model%nose)) return
-    contact = model%nose%find_contact(model%communicator, self%motion%displacement(3, :) - self%contact%touched_at, &
-                                      self%impactor%displacement)
-    area = contact%area
+    if (allocated(model%nose)) area = self%contact%area
   end function pressed_area
 
   !> Depth of the struck point below the impactor, both from their position at first contact.
@@ -269,7 +264,7 @@ contains
     call archive%item('contact/offset', self%contact%offset)
     if (.not. allocated(model%nose)) return
     call archive%item('contact/touched_at', self%contact%touched_at)
-    call archive%item('contact/gain', self%contact%gain)
+    call archive%item('contact/area', self%contact%area)
     weights = reshape(self%contact%weights, [1, size(self%contact%weights)])
     associate (partition => model%distribution)
       call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)

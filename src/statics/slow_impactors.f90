@@ -57,13 +57,10 @@ contains
     compliance = new%contact%mean(model%communicator, response)
     mean = new%contact_deflection(model) + new%contact%mean(model%communicator, correction)
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
-    associate (gain => new%contact%gain)
-      step = contact_step_t(model%setup%indentation, new%indentation, start=new%indentation%alpha, &
-                            free=gain*(new%load_factor*model%setup%impactor%travel - mean + new%force*compliance), &
-                            compliance=gain**2*compliance, is_mean=.false.)
-      call solve_impact_force(step, force, alpha, force_end, iterations, error)
-      force = gain*force
-    end associate
+    step = contact_step_t(model%setup%indentation, new%indentation, start=new%indentation%alpha, &
+                          free=new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, &
+                          compliance=compliance, is_mean=.false.)
+    call solve_impact_force(step, force, alpha, force_end, iterations, error)
     if (allocated(error)) return
     new%force_iterations = new%force_iterations + iterations
     correction = correction + (force - new%force)*response
@@ -77,10 +74,8 @@ contains
     type(state_t), intent(in) :: new
     real(wp) :: force
 
-    associate (gain => new%contact%gain)
-      force = gain*indentation_force(model%setup%indentation, new%indentation, gain* &
-        (new%load_factor*model%setup%impactor%travel - new%contact_deflection(model)))
-    end associate
+    force = indentation_force(model%setup%indentation, new%indentation, new%load_factor*model%setup%impactor%travel - &
+                              new%contact_deflection(model))
     mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
   end function force_mismatch
 
@@ -90,8 +85,8 @@ contains
     !> The state
     type(state_t), intent(in) :: new
 
-    travel = indentation_of(model%setup%indentation, new%indentation, new%force/new%contact%gain)/new%contact%gain &
-             + new%contact_deflection(model)
+    travel = indentation_of(model%setup%indentation, new%indentation, new%force) + &
+             new%contact_deflection(model)
   end function travel_for
 
   !> Completes an accepted load step: position of the impactor, indentation, and work of the force that drives it.
@@ -103,8 +98,7 @@ contains
     type(state_t), intent(inout) :: new
 
     new%impactor%displacement = new%load_factor*model%setup%impactor%travel
-    call commit_indentation(model%setup%indentation, new%indentation, &
-                            new%contact%gain*(new%impactor%displacement - new%patch_mean))
+    call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
     new%ledger%indentation = new%indentation%work
     new%ledger%external_work = new%ledger%external_work + new%indentation%work - old%indentation%work + &
                                (old%force + new%force)/2*(new%patch_mean - old%patch_mean)
