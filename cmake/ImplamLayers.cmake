@@ -39,6 +39,13 @@ function(implam_add_layers)
   # It hands on optional arrays, whose extents gfortran 12 subtracts from each other even where they are absent.
   set_property(SOURCE src/model/models.f90 APPEND PROPERTY COMPILE_OPTIONS
     $<$<CONFIG:Sanitize>:-fno-sanitize=signed-integer-overflow>)
+  # Arrays of the size of one node's stack, in the loop over nodes: GNU allocates and frees them in each call otherwise.
+  # Larger arrays would exceed the limit of the stack.
+  if(CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+    foreach(module IN ITEMS damaged_stacks jump_motions layer_motions stack_motions stack_solutions tridiagonal_systems)
+      set_property(SOURCE src/explicit/${module}.f90 APPEND PROPERTY COMPILE_OPTIONS -fstack-arrays)
+    endforeach()
+  endif()
   implam_give_library(parallel MPI::MPI_Fortran)
   implam_give_library(linalg PkgConfig::PETSC MPI::MPI_Fortran)
   implam_give_library(results hdf5::hdf5_fortran MPI::MPI_Fortran)

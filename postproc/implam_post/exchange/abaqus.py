@@ -13,7 +13,8 @@ def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
     """Return the lines of the input: shells S8R with composite sections, and a static step under the pressure."""
     mesh, sections = shell_mesh(panel, with_middles=False), panel.sections()
     yield from (f"** {panel.name}: panel from {source}", "** z points from the struck face to the back; the first "
-                "layer of each section is the one nearest to the struck face.", "*HEADING", panel.name)
+                "layer of each section is the one nearest to the struck face.",
+                *(f"** {note}." for note in panel.unwritten), "*HEADING", panel.name)
     yield "*NODE, NSET=PANEL"
     yield from (f"{number}, {x:.12g}, {y:.12g}, {real(float(z), 20)}"
                 for number, (x, y, z) in enumerate(mesh.coordinates, 1))
@@ -31,8 +32,10 @@ def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
     yield "*BOUNDARY"
     yield from (f"HELD_{components}, {component}, {component}" for components in mesh.supports
                 for component in components)
-    if panel.pressure is not None:
-        yield from _step(panel.pressure, mesh)
+    if panel.expands:
+        yield from ("*INITIAL CONDITIONS, TYPE=TEMPERATURE", "PANEL, 0.")
+    if panel.pressure is not None or panel.expands:
+        yield from _step(panel.pressure, panel.temperature if panel.expands else None, mesh)
 
 
 def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Iterator[str]:
@@ -59,8 +62,12 @@ def _material(name: str, state: MaterialState, material: Material) -> Iterator[s
     constants = [material.e1, material.e2, material.e2, material.nu12, 0.0, 0.0, material.g12, material.g13]
     yield ", ".join(f"{value:.12g}" for value in constants)
     yield f"{material.g23:.12g}"
+    if any(material.expansion):
+        along, across = material.expansion
+        yield from ("*EXPANSION, TYPE=ORTHO", f"{along:.12g}, {across:.12g}, {across:.12g}")
     if material.density > 0:
         yield from ("*DENSITY", f"{material.density:.12g}")
+    yield from (f"** {key} = {value!r} has no keyword" for key, value in material.strengths)
 
 
 def _orientation_name(angle: float) -> str:
@@ -85,12 +92,15 @@ def _section(number: int, section: Section, names: dict[MaterialState, str]) -> 
                 for layer in section.layers)
 
 
-def _step(pressure: float, mesh: ShellMesh) -> Iterator[str]:
-    """Return a static step with the pressure on the struck face, positive downwards, and the displacements."""
-    yield "*ELSET, ELSET=STRUCK, GENERATE"
-    yield f"1, {mesh.struck}, 1"
-    yield from ("*STEP", "*STATIC", "*DLOAD", f"STRUCK, P, {pressure:.12g}", "*NODE PRINT, NSET=PANEL", "U",
-                "*NODE FILE", "U", "*END STEP")
+def _step(pressure: float | None, temperature: float | None, mesh: ShellMesh) -> Iterator[str]:
+    """Return a static step and the displacements: pressure on the struck face, positive towards the back, temperature.
+    """
+    yield from ("*ELSET, ELSET=STRUCK, GENERATE", f"1, {mesh.struck}, 1", "*STEP", "*STATIC")
+    if pressure is not None:
+        yield from ("*DLOAD", f"STRUCK, P, {pressure:.12g}")
+    if temperature is not None:
+        yield from ("*TEMPERATURE", f"PANEL, {temperature:.12g}")
+    yield from ("*NODE PRINT, NSET=PANEL", "U", "*NODE FILE", "U", "*END STEP")
 
 
 def _rows(numbers: Sequence[int]) -> Iterator[str]:

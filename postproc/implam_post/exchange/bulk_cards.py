@@ -40,9 +40,12 @@ class BulkCard:
             card = BDFCard([field.strip() for field in to_fields(self.lines, self.name)])
         except READING_ERRORS as error:
             raise self.unread(error) from None
-        for text in filter(None, card.card[1:]):
-            if _is_infinite(text):
+        for number, text in enumerate(card.card[1:], 1):
+            if text and _is_infinite(text):
                 raise self.error(f"{text} is not a finite number.")
+            if self.name in KNOWN and text and len(text.split()) > 1:
+                raise self.error(f"field {number}, '{text}', has blanks inside: is it one value that is written apart, "
+                                 f"or two in the {_FIELD} or {2 * _FIELD} columns of one field?")
         return card
 
     def error(self, sentence: str) -> DeckError:
@@ -147,6 +150,9 @@ def read_cards(lines: Sequence[str], first: int, file: str) -> list[BulkCard]:
             continue
         if re.match(r"\s*ENDDATA\b", bare_line, re.I):
             break
+        if is_begin(bare_line):
+            check_begin(bare_line, number, file)
+            raise DeckError(f"{file}:{number}: BEGIN BULK: there is another one above: give one part in each file.")
         line = _name_first(bare_line, number, file)
         name = re.split(r"[,*\s]", line.expandtabs()[:8 if "," not in line else None], maxsplit=1)[0].upper()
         if line[0] in "+*" or not name:
@@ -155,6 +161,19 @@ def read_cards(lines: Sequence[str], first: int, file: str) -> list[BulkCard]:
             found.begin(name, number, line)
     found.carry_on_early()
     return found.cards
+
+
+def is_begin(line: str) -> bool:
+    """Return whether a part of the bulk data begins at a line."""
+    return re.match(r"\s*BEGIN\b", line, re.I) is not None
+
+
+def check_begin(line: str, number: int, file: str) -> None:
+    """Refuse the bulk data of a superelement, a module or an auxiliary model: cards of equal names are independent."""
+    words = " ".join(line.split("$")[0].upper().split())
+    if not re.fullmatch(r"BEGIN( ?, ?| )BULK", words):
+        raise DeckError(f"{file}:{number}: {words}: files of several superelements or parts are not supported: give "
+                        "the part with the panel, its materials and supports as BEGIN BULK of its own file.")
 
 
 def _named_continuation(line: str) -> str:

@@ -9,16 +9,10 @@ from typing import Any
 import numpy as np
 
 from implam_post.exchange.bulk_cards import BulkCard
-from implam_post.exchange.bulk_data import BulkData, ranges
+from implam_post.exchange.bulk_data import BulkData
+from implam_post.exchange.bulk_elements import NEAR, Quadrilateral, check_cover, read_quadrilaterals
 from implam_post.exchange.remarks import Remarks
 from implam_post.io.errors import DeckError
-
-_NEAR = 1e-6
-_IGNORED = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
-            "CQUAD8": {16: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"}}
-
-# Shell and solid elements that may model a part of a panel.
-_OTHERS = ("CTRIA3", "CTRIA6", "CTRIAR", "CQUADR", "CQUAD", "CSHEAR", "CHEXA", "CPENTA", "CTETRA")
 
 
 @dataclass(frozen=True)
@@ -35,7 +29,7 @@ class Shape:
     places: dict[int, np.ndarray]
     elements: tuple[int, int]
     turn: int
-    quads: Sequence["_Quadrilateral"]
+    quads: Sequence[Quadrilateral]
 
     @property
     def properties(self) -> set[int]:
@@ -43,28 +37,18 @@ class Shape:
         return {quad.read.pid for quad in self.quads}
 
 
-@dataclass(frozen=True)
-class _Quadrilateral:
-    """An element: card, object of pyNastran, corners (4, 3), normal."""
-
-    card: BulkCard
-    read: Any
-    corners: np.ndarray
-    normal: np.ndarray
-
-
 def read_shape(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, tuple[BulkCard, Any]],
                struck_last: bool, remarks: Remarks) -> Shape:
     """Return the rectangle; `struck_last` if the last ply is at the struck face."""
     points = {number: _position(bulk, systems, *grid) for number, grid in grids.items()}
-    quads = _quadrilaterals(bulk, points, remarks)
+    quads = read_quadrilaterals(bulk, points, remarks)
     normal = quads[0].normal
     for quad in quads:
-        if quad.normal @ normal < _NEAR - 1:
+        if quad.normal @ normal < NEAR - 1:
             raise bulk.error(quad.card, "its corners are numbered in the opposite sense to those of the element in "
                                         f"line {quads[0].card.line}, so that the order of plies is reversed: number "
                                         "all in the same sense.")
-        if quad.normal @ normal < 1 - _NEAR:
+        if quad.normal @ normal < 1 - NEAR:
             raise bulk.error(quad.card, f"its normal differs from that of the element in line {quads[0].card.line}: "
                                         "the panel is not flat.")
     axes = _axes(quads[0], struck_last)
@@ -72,51 +56,13 @@ def read_shape(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, t
     local = {number: axes @ points[number] for number in used}
     low, high = (limit(list(local.values()), axis=0) for limit in (np.min, np.max))
     lengths = high - low
-    if lengths[2] > _NEAR * max(lengths):
+    if lengths[2] > NEAR * max(lengths):
         raise bulk.missing("the grids of the panel do not lie in one plane.")
-    area = sum(np.linalg.norm(np.cross(quad.corners[2] - quad.corners[0], quad.corners[3] - quad.corners[1])) / 2
-               for quad in quads)
-    if abs(area - lengths[0] * lengths[1]) > _NEAR * area:
-        raise _no_rectangle(bulk, quads, axes, area, lengths)
-    _refuse_cuts(bulk, local, max(lengths))
+    check_cover(bulk, quads, axes, local)
     middle = (low + high) / 2
     return Shape((_plain(lengths[0]), _plain(lengths[1])), axes.T @ middle, axes,
                  {number: (place - middle)[:2] for number, place in local.items()}, _elements(quads, axes, lengths),
                  -1 if struck_last else 1, quads)
-
-
-def _no_rectangle(bulk: BulkData, quads: Sequence[_Quadrilateral], axes: np.ndarray, area: float, lengths: np.ndarray
-                  ) -> DeckError:
-    """Return an error about elements that cover no rectangle along the axes, or one along other axes."""
-    side = axes @ (quads[0].corners[1] - quads[0].corners[0])
-    turned = np.array([side[:2], [-side[1], side[0]]]) / max(np.linalg.norm(side), np.finfo(float).tiny)
-    places = np.concatenate([quad.corners for quad in quads]) @ axes[:2].T @ turned.T
-    if abs(area - np.prod(np.ptp(places, axis=0))) < _NEAR * area:
-        return bulk.error(quads[0].card, f"its first side is at {_plain(np.degrees(np.arctan2(side[1], side[0]))):.6g} "
-                                         "degrees to the basic system, to which the panel's edges must be parallel: "
-                                         "give the grids in the axes of the edges.")
-    others = _other_elements(bulk) or " A panel has no holes, notches or skew edges."
-    return bulk.missing(f"the CQUAD4 and CQUAD8 do not form a rectangle: they cover {area:.6g} of the "
-                        f"{lengths[0]:.6g} by {lengths[1]:.6g} around them.{others}")
-
-
-def _other_elements(bulk: BulkData) -> str:
-    """Return a sentence on elements that are not supported; empty if there are none."""
-    cards = list(bulk.named(*_OTHERS))
-    if not cards:
-        return ""
-    names = " and ".join(dict.fromkeys(card.name for card in cards))
-    lines = ranges((card.line for card in cards), [card.line for card in bulk.cards])
-    return f" {names}, {lines}, cannot be used: mesh the panel with CQUAD4 or CQUAD8 only."
-
-
-def _refuse_cuts(bulk: BulkData, places: Mapping[int, np.ndarray], size: float) -> None:
-    """Refuse coincident grids: elements that share no grid are not connected."""
-    first_at: dict[tuple[int, int], int] = {}
-    for number, place in sorted(places.items()):
-        first = first_at.setdefault(tuple(np.round(place[:2] / (1e-5 * size)).astype(int)), number)
-        if first != number:
-            raise bulk.missing(f"the grids {first} and {number} coincide: the elements are not connected there.")
 
 
 def read_grids(bulk: BulkData) -> dict[int, tuple[BulkCard, Any]]:
@@ -209,34 +155,11 @@ def _position(bulk: BulkData, systems: Mapping[int, Any], card: BulkCard, grid: 
     return np.array(systems[grid.cp].transform_node_to_global(grid.xyz))
 
 
-def _quadrilaterals(bulk: BulkData, points: Mapping[int, np.ndarray], remarks: Remarks) -> list[_Quadrilateral]:
-    """Return the elements."""
-    from pyNastran.bdf.cards.elements.shell import CQUAD4, CQUAD8
-    quads: list[_Quadrilateral] = []
-    first: dict[int, BulkCard] = {}
-    for card in bulk.named("CQUAD4", "CQUAD8"):
-        read = bulk.read(card, CQUAD4 if card.name == "CQUAD4" else CQUAD8)
-        if (other := first.setdefault(read.eid, card)) is not card:
-            raise bulk.error(card, f"number {read.eid} is used by the {other.name} in line {other.line}.")
-        for place, number in enumerate(read.nodes):
-            if number not in points and (number or place < 4):
-                raise bulk.error(card, f"grid {number or 0} does not exist.")
-        corners = np.array([points[number] for number in read.nodes[:4]])
-        normal = np.cross(corners[2] - corners[0], corners[3] - corners[1])
-        if not np.linalg.norm(normal) > 0:
-            raise bulk.error(card, "its area is zero.")
-        remarks.ignored(card, _IGNORED[card.name])
-        quads.append(_Quadrilateral(card, read, corners, normal / np.linalg.norm(normal)))
-    if not quads:
-        raise bulk.missing(f"there is no CQUAD4 and no CQUAD8.{_other_elements(bulk)}")
-    return quads
-
-
-def _axes(quad: _Quadrilateral, struck_last: bool) -> np.ndarray:
+def _axes(quad: Quadrilateral, struck_last: bool) -> np.ndarray:
     """Return the axes of the panel: z from struck face to back, x the first in-plane axis of the basic system."""
     normal = quad.normal
     along = int(np.argmax(np.abs(normal)))
-    if abs(normal[along]) < 1 - _NEAR:
+    if abs(normal[along]) < 1 - NEAR:
         raise quad.card.error("the panel is not parallel to a plane of the basic coordinate system: give the grids in "
                               "axes of the panel.")
     z = np.zeros(3)
@@ -245,10 +168,10 @@ def _axes(quad: _Quadrilateral, struck_last: bool) -> np.ndarray:
     return np.array([x, np.cross(z, x), z])
 
 
-def _elements(quads: Sequence[_Quadrilateral], axes: np.ndarray, lengths: np.ndarray) -> tuple[int, int]:
+def _elements(quads: Sequence[Quadrilateral], axes: np.ndarray, lengths: np.ndarray) -> tuple[int, int]:
     """Return the number of nine-node elements along x and y that gives about as many nodes as these elements have."""
     corners = np.concatenate([quad.corners for quad in quads]) @ axes.T
-    cells = [np.count_nonzero(np.diff(np.sort(corners[:, axis])) > _NEAR * lengths[axis]) for axis in (0, 1)]
+    cells = [np.count_nonzero(np.diff(np.sort(corners[:, axis])) > NEAR * lengths[axis]) for axis in (0, 1)]
     if cells[0] * cells[1] != len(quads):
         cells = [round(np.sqrt(len(quads) * lengths[axis] / lengths[1 - axis])) for axis in (0, 1)]
     share = 1 if quads[0].card.name == "CQUAD8" else 2
@@ -265,7 +188,7 @@ def material_angle(bulk: BulkData, systems: Mapping[int, Any], shape: Shape) -> 
     return _plain(angles[0])
 
 
-def _angle(bulk: BulkData, quad: _Quadrilateral, axes: np.ndarray, systems: Mapping[int, Any]) -> float:
+def _angle(bulk: BulkData, quad: Quadrilateral, axes: np.ndarray, systems: Mapping[int, Any]) -> float:
     """Return the angle of the material axis: x of MCID, or the first side rotated by THETA about the normal."""
     given = quad.read.theta_mcid
     if isinstance(given, float):
@@ -277,7 +200,7 @@ def _angle(bulk: BulkData, quad: _Quadrilateral, axes: np.ndarray, systems: Mapp
     else:
         raise _no_system(bulk, quad.card, given)
     x, y, _ = axes @ direction
-    if np.hypot(x, y) < _NEAR * np.linalg.norm(direction):
+    if np.hypot(x, y) < NEAR * np.linalg.norm(direction):
         raise bulk.error(quad.card, f"the x axis of coordinate system {given} is normal to the panel.")
     return float(np.degrees(np.arctan2(y, x)))
 

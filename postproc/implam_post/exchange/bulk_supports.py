@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from implam_post.exchange.bulk_cards import BulkCard
+from implam_post.exchange.bulk_connections import remark_connections
 from implam_post.exchange.bulk_data import BulkData
 from implam_post.exchange.bulk_shape import Shape
 from implam_post.exchange.remarks import Remarks
@@ -48,6 +49,9 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
                                    "which is not the support of an entire edge.")
     for card, _ in pins:
         remarks.add(card, "part of it suppresses in-plane rigid-body motion, which Implam does by itself")
+    remark_connections(bulk, on_edges, EDGES, kinds, remarks)
+    if not any(kind != "free" for kind in kinds):
+        remarks.note("nothing supports the panel: all its edges are free in the deck", in_deck=True)
     for number in sorted({edge for edge, _ in lines}):
         remarks.edge(EDGES[number], "in-plane constraints are written as &line, since edges or components differ")
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
@@ -57,9 +61,11 @@ def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shap
           remarks: Remarks) -> Held:
     """Return for each grid of the panel the cards that constrain each component, in the axes of the panel."""
     held: Held = {}
-    for card, numbers, components in _constraints(bulk, _sets(bulk, chosen)):
-        if any(number not in shape.places for number in numbers):
-            remarks.add(card, "some of its grids do not belong to the panel")
+    constraints = list(_constraints(bulk, _sets(bulk, chosen)))
+    for card, numbers, components in [*constraints, *_rigid(bulk, grids, constraints, shape, remarks)]:
+        if outside := sum(number not in shape.places for number in numbers):
+            remarks.add(card, "some of its grids do not belong to the panel" if outside < len(numbers) else
+                        "none of its grids belongs to the panel")
         _hold(bulk, held, card, numbers, components, grids, shape)
     for number in shape.places:
         card, grid = grids[number]
@@ -74,7 +80,7 @@ def _sets(bulk: BulkData, chosen: int | None) -> set[int]:
     for card in bulk.named("SPCADD"):
         sets = {bulk.integer(card, number) for number in range(2, len(card.fields))}
         added.setdefault(bulk.integer(card, 1), set()).update(sets)
-    wanted = bulk.support_set if chosen is None else chosen
+    wanted = bulk.case_control.selected("SPC") if chosen is None else chosen
     if wanted is None:
         if len(there) > 1 or added:
             raise bulk.missing(f"there are the support sets {', '.join(map(str, sorted(there | set(added))))}: "
@@ -103,6 +109,25 @@ def _constraints(bulk: BulkData, sets: set[int]) -> Iterable[tuple[BulkCard, lis
             raise bulk.error(card, "prescribed displacements are not supported.")
         for number, components in zip(read.nodes, read.components, strict=True):
             yield card, [number], components
+
+
+def _rigid(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]],
+           constraints: Iterable[tuple[BulkCard, list[int], str]], shape: Shape, remarks: Remarks
+           ) -> Iterable[tuple[BulkCard, list[int], str]]:
+    """Return the constraints of RBE2 whose independent grid is constrained in all components, as their other grids are.
+    """
+    fixed: dict[int, set[str]] = {number: set(grid.ps) for number, (_, grid) in grids.items()}
+    for _, numbers, components in constraints:
+        for number in numbers:
+            fixed.setdefault(number, set()).update(components)
+    for card in bulk.named("RBE2"):
+        # A real number after the grids is a thermal expansion coefficient.
+        independent, *dependent = (int(text or 0) for text in (card.fields.field(2), *card.fields.card[4:])
+                                   if (text or "0").isdigit())
+        if set("123456") <= fixed.get(independent, set()) and any(number in shape.places for number in dependent):
+            bulk.also_read.add(card)
+            remarks.add(card, f"read as a support, since grid {independent} is constrained in all components")
+            yield card, [number for number in dependent if number], card.fields.field(3) or ""
 
 
 def _check_ranges(bulk: BulkData, card: BulkCard) -> None:

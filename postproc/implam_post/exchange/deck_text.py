@@ -25,10 +25,12 @@ class Impact(NamedTuple):
 
 
 def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: Sequence[Ply], impact: Impact,
-              thermal: Thermal | None = None) -> str:
-    """Return the deck; groups of the impact are comments unless `impact` gives their values."""
-    return "\n".join([*_header(source, shape), *_plate(name, shape, supports, impact), *_laminate(plies),
-                      *_thermal(thermal), *_impact(impact)]) + "\n"
+              thermal: Thermal | None = None, remarks: Sequence[str] = ()) -> str:
+    """Return the deck with `remarks` as comments; groups of the impact are comments unless `impact` gives their values.
+    """
+    return "\n".join([*_header(source, shape), *(f"! {remark}" for remark in remarks),
+                      *_plate(name, shape, supports, impact), *_laminate(plies), *_thermal(thermal),
+                      *_impact(impact)]) + "\n"
 
 
 def number(value: float) -> str:

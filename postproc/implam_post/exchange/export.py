@@ -25,8 +25,11 @@ def summary(panel: Panel) -> Iterator[str]:
         yield f"uniform pressure on the struck face: {panel.pressure:g}"
     if panel.imperfection:
         yield f"initial deflection in the coordinates of the nodes, amplitude {panel.imperfection:g}"
-    for group in panel.unwritten:
-        yield f"note: &{group} is not written: add its supports or loads."
+    if panel.temperature is not None:
+        yield (f"change of temperature: {panel.temperature:g}" if panel.expands else
+               "note: the change of temperature is not written, as no material expands.")
+    for sentence in panel.unwritten:
+        yield f"note: {sentence}."
 
 
 def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]]

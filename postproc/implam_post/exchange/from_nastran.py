@@ -19,8 +19,6 @@ from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamErr
 from implam_post.io.files import printable
 from implam_post.laminate.sections import Ply
 
-TAKEN = KNOWN
-
 
 def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False, supports: int | None = None,
             shear_23: float | None = None) -> tuple[str, Remarks]:
@@ -34,9 +32,9 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
     # Isotropic plies have no material axis, so the first corner of their elements does not matter.
     angle = 0.0 if all(ply.material.isotropic for ply in plies) else material_angle(bulk, systems, shape)
     plies = _turned(plies, angle, shape.turn)
-    thermal = read_thermal(bulk, shape.properties, plies, remarks)
+    thermal = read_thermal(bulk, shape, plies, remarks)
     held = read_supports(bulk, grids, shape, supports, remarks)
-    return deck_text(name, printable(bulk.path.name), shape, held, plies, impact, thermal), remarks
+    return deck_text(name, printable(bulk.path.name), shape, held, plies, impact, thermal, remarks.for_deck), remarks
 
 
 def _turned(plies: list[Ply], angle: float, turn: int) -> list[Ply]:
@@ -60,8 +58,8 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
     if bulk.first_line > 1:
         yield f"lines 1-{bulk.first_line - 1}: executive and case control; SPC, TEMP and WTMASS are read"
     yield "read:"
-    for name in TAKEN:
-        if there := [card.line for card in bulk.named(name)]:
+    for name in (*KNOWN, *sorted({card.name for card in bulk.also_read})):
+        if there := [card.line for card in bulk.named(name) if name in KNOWN or card in bulk.also_read]:
             yield f"  {name:<8} {len(there)}, {ranges(there, lines)}"
     mass_cards = bulk.mass_cards()
     if mass_cards:
@@ -70,7 +68,8 @@ def report(bulk: BulkData, remarks: Remarks) -> Iterator[str]:
         yield f"  WTMASS   {bulk.mass_factor:g}, in the case control: times RHO"
     texts = remarks.texts(bulk)
     yield from ["read in part or with changes:", *(f"  {text}" for text in texts)] if texts else []
-    left = [card for card in bulk.cards if card.name not in TAKEN and card not in mass_cards]
+    taken = {*mass_cards, *bulk.also_read}
+    left = [card for card in bulk.cards if card.name not in KNOWN and card not in taken]
     others = list(dict.fromkeys(card.name for card in left))
     yield "ignored:" if others else "ignored: none"
     for name in others:
@@ -90,7 +89,7 @@ def _command(options: argparse.Namespace) -> int:
         raise FileError(f"{output} already exists: give another deck by -o, or this one to replace it.")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # messages of pyNastran besides the error that it raises
-        bulk = read_bulk_data(options.bulk)
+        bulk = read_bulk_data(options.bulk, options.subcase)
         text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
                                 options.struck == "last", options.spc, options.g2z)
     try:
@@ -109,6 +108,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("-o", "--output", type=Path, metavar="DECK.nml", help="the deck (default: FILE.nml)")
     parser.add_argument("--struck", choices=("first", "last"), default="first",
                         help="ply at the struck face, in the order of the property (default: first)")
+    parser.add_argument("--subcase", type=int, metavar="NUMBER", help="subcase whose supports and temperature are used "
+                        "(default: any, if they do not differ)")
     parser.add_argument("--spc", type=int, metavar="SET", help="support set (default: that of the case control)")
     parser.add_argument("--g2z", type=positive, metavar="NUMBER",
                         help="transverse shear modulus of the plies whose G2Z is blank")

@@ -8,7 +8,10 @@ from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
 from implam_post.laminate.sections import Material
 
 Field = int | float | str | None
-_SUPPORTS, _LOAD = 1, 1
+_SUPPORTS, _LOAD, _TEMPERATURE = 1, 1, 2
+# Fields of MAT8 and MAT1 for strengths of the deck.
+_MAT8_STRENGTHS = ("XT", "XC", "YT", "YC", "S12")
+_MAT1_STRENGTHS = ("XT", "XC", "S12")
 
 
 def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[str]:
@@ -18,22 +21,27 @@ def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[s
     """
     mesh, sections = shell_mesh(panel, with_middles=True), panel.sections()
     yield from (f"$ {panel.name}: panel from {source}", "$ z points from the struck face to the back; the first ply of "
-                "each PCOMP is the one", "$ nearest to the struck face.", "SOL 101", "CEND", f"TITLE = {panel.name}",
+                "each PCOMP is the one", "$ nearest to the struck face.", *(f"$ {note}." for note in panel.unwritten),
+                "SOL 101", "CEND", f"TITLE = {panel.name}",
                 f"SPC = {_SUPPORTS}")
     if panel.pressure is not None:
         yield f"LOAD = {_LOAD}"
+    if panel.expands:
+        yield f"TEMPERATURE(LOAD) = {_TEMPERATURE}"
     yield from ("DISPLACEMENT = ALL", "BEGIN BULK")
     for grid, place in enumerate(mesh.coordinates, 1):
         yield from card("GRID", grid, None, *map(float, place))
     yield from _elements(panel, mesh, sections, with_z0)
     numbers = {state: number for number, state in enumerate(panel.materials(), 1)}
     for number, section in enumerate(sections, 1):
-        yield from _property(number, section, numbers, with_z0)
+        yield from _property(number, section, numbers, with_z0, 0.0 if panel.expands else None)
     for state, material in panel.materials().items():
         yield from _material(numbers[state], state, material)
     yield from _supports(mesh)
     if panel.pressure is not None:
         yield from card("PLOAD2", _LOAD, panel.pressure, 1, "THRU", 4 * mesh.struck)
+    if panel.expands:
+        yield from card("TEMPD", _TEMPERATURE, panel.temperature)
     yield "ENDDATA"
 
 
@@ -49,29 +57,32 @@ def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section], with_z
             yield from card("CQUAD4", number, properties[section], *corners, 0, offset)
 
 
-def _property(number: int, section: Section, materials: dict[MaterialState, int], with_z0: bool) -> Iterator[str]:
-    """Return a PCOMP about its own mid-plane, or with the z of its bottom surface if `with_z0`."""
+def _property(number: int, section: Section, materials: dict[MaterialState, int], with_z0: bool,
+              reference: float | None) -> Iterator[str]:
+    """Return a PCOMP about its own mid-plane, or with the z of its bottom surface if `with_z0`; `reference` is TREF."""
     yield f"$ {section.title}"
     plies = [field for layer in section.layers
              for field in (materials[layer.material], layer.thickness, layer.angle, "YES")]
     face = section.first_face if with_z0 and section.middle else None
-    yield from card("PCOMP", number, face, *6 * (None,), *plies)
+    yield from card("PCOMP", number, face, None, None, None, reference, None, None, *plies)
 
 
 def _material(number: int, state: MaterialState, material: Material) -> Iterator[str]:
     """Return a MAT8, or a MAT1 of an undamaged material with E and nu; strengths are written if it is undamaged."""
     yield f"$ {state.name} {state.failed}".rstrip()
     strengths = dict(material.strengths)
-    for key in ("Sf", "Sm23"):
-        if key in strengths:
-            yield f"$ {key} = {strengths[key]!r} has no field"
+    along, across = material.expansion
+    is_mat1 = material.isotropic and along == across
+    fields = _MAT1_STRENGTHS if is_mat1 else _MAT8_STRENGTHS
+    yield from (f"$ {key} = {value!r} has no field" for key, value in strengths.items() if key not in fields)
+    limits = [strengths.get(key) for key in fields]
     density = material.density or None
-    if material.isotropic:
-        yield from card("MAT1", number, material.e1, None, material.nu12, density)
+    if is_mat1:
+        yield from card("MAT1", number, material.e1, None, material.nu12, density, along or None, None, None, *limits)
         return
-    limits = [strengths.get(key) for key in ("XT", "XC", "YT", "YC", "S12")]
+    expansion = (along, across) if along or across else (None, None)
     yield from card("MAT8", number, material.e1, material.e2, material.nu12, material.g12, material.g13, material.g23,
-                    density, None, None, None, *limits)
+                    density, *expansion, None, *limits)
 
 
 def _supports(mesh: ShellMesh) -> Iterator[str]:

@@ -77,8 +77,9 @@ def _plain(place: float, thickness: float) -> float:
 class Panel:
     """A rectangular panel, centred at the origin, in cells; `x` and `y` are the lines between cells, ascending.
 
-    `unwritten` names groups of the deck with supports or loads that are not exported. The stress-free panel has an
-    initial deflection in half waves along x and y, with the amplitude `imperfection`.
+    `temperature` is the change from the stress-free temperature; `unwritten` has notes on what the deck has beyond the
+    export. The stress-free panel has an initial deflection in half waves along x and y, with the amplitude
+    `imperfection`.
     """
 
     name: str
@@ -90,6 +91,7 @@ class Panel:
     in_plane_fixed: bool
     degradation: Degradation
     pressure: float | None = None
+    temperature: float | None = None
     unwritten: tuple[str, ...] = ()
     imperfection: float = 0.0
     half_waves: tuple[int, int] = (1, 1)
@@ -135,6 +137,11 @@ class Panel:
     def delaminated(self, cell: Cell) -> frozenset[int]:
         """Return the delaminated interfaces of a cell, as numbers of the ply above."""
         return frozenset(stack.last for stack in self.stacks[cell][:-1])
+
+    @property
+    def expands(self) -> bool:
+        """Whether the change of temperature is a load of the panel."""
+        return bool(self.temperature) and any(any(ply.material.expansion) for ply in self.plies)
 
     def with_pressure(self, pressure: float | None) -> "Panel":
         """Return the panel under another pressure; None keeps the pressure."""

@@ -1,5 +1,6 @@
 """Read panels from results (NAME.h5, which holds the deck) and from decks."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from implam_post.laminate.sections import Ply
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
 # Groups with supports or loads that are not exported.
 _UNWRITTEN = ("support", "line")
+_STATE = "&initial_state is not written: export the results of the run, NAME.h5, which have its damage"
+_BY_OTHERS = "the shear correction of &laminate is not written: each program has its own"
 
 
 def read_panel(path: Path, time: float | None = None) -> Panel:
@@ -116,10 +119,20 @@ def _from_deck(deck: Deck) -> Panel:
             ends = [*sorted({ply for ply, cells in starters if cells[i, j]}), len(plies)]
             stacks[i, j] = tuple(Stack(above + 1, end, (end - above) * (0,))
                                  for above, end in zip([0, *ends], ends, strict=False))
-    return _panel(deck, plies, x, y, stacks)
+    return _panel(deck, plies, x, y, stacks, *([_STATE] if deck.has("initial_state") else []))
 
 
-def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]]) -> Panel:
+def _unwritten(deck: Deck) -> Iterator[str]:
+    """Return notes on loads, supports and section of the deck that are not exported."""
+    yield from (f"&{group} is not written: add its supports or loads" for group in filter(deck.has, _UNWRITTEN))
+    if deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "sine":
+        yield "the pressure is not written, as its distribution is a sine: add a load, or give a uniform --pressure"
+    if deck.values("laminate", "shear_correction") == ["energy"]:
+        yield _BY_OTHERS
+
+
+def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]],
+           *notes: str) -> Panel:
     """Combine the panel with supports and load of the deck."""
     if "elastic" in deck.edges():
         raise deck.error("plate", "edges = 'elastic' cannot be exported: give other edges, and add springs there.")
@@ -133,5 +146,6 @@ def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: d
     is_deep = deck.choice("case", "kinematics", ("von_karman", "linear")) == "von_karman"
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
     return Panel(deck.name, plies, x, y, stacks, deck.edges(), fixed, degradation_of(deck),
-                 deck.number("pressure", "value") if uniform else None, tuple(filter(deck.has, _UNWRITTEN)),
+                 deck.number("pressure", "value") if uniform else None,
+                 deck.number("thermal", "delta_T") if deck.has("thermal") else None, (*_unwritten(deck), *notes),
                  deck.number("plate", "imperfection", 0.0) if is_deep else 0.0, tuple(map(int, half_waves)))

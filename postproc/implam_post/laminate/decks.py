@@ -74,14 +74,16 @@ def _material(deck: Deck, group: Group) -> Material:
     density = number("density", None if moves else 0.0)
     name = str(deck.single(group.get("name", []), "material", "name", ""))
     strengths = tuple((key, number(key)) for key in STRENGTHS if key.lower() in group)
+    expansion = number("alpha1", 0.0), number("alpha2", 0.0)
     if "e" in group:
         modulus, ratio = number("E"), number("nu")
         shear = modulus / (2 * (1 + ratio))
-        material = Material(density, modulus, modulus, shear, shear, shear, ratio, name, strengths, isotropic=True)
+        material = Material(density, modulus, modulus, shear, shear, shear, ratio, name, strengths, isotropic=True,
+                            expansion=expansion)
     else:
         shear = number("G12")
         material = Material(density, number("E1"), number("E2"), shear, number("G13", shear), number("G23"),
-                            number("nu12"), name, strengths)
+                            number("nu12"), name, strengths, expansion=expansion)
     if min(material.e1, material.e2, material.g12, material.g13, material.g23) <= 0 or (
             density < 0 or (moves and density == 0)):
         raise deck.error("material", "density and moduli must be greater than zero.")

@@ -206,6 +206,18 @@ class DefaultsTest(ImportTest):
         self.assertEqual(plies_of(self.deck(Bulk(), "--g2z", "3.1e9"))[0].material.g23, 2.98e9)
         self.assertEqual(self.run_command(bulk.text(), "--g2z", "0")[0], 1)
 
+    def test_no_transverse_shear_deformation(self) -> None:
+        """Moduli that stand for it are 100 times E1 in the deck, which is said; smaller ones are those of the file."""
+        carbon = MATERIALS[0]
+        for given, expected in (((1e15, 1e15), (139e11, 139e11)), ((4.6e9, 1e20), (4.6e9, 139e11)),
+                                ((1e16, None), (139e11, 3.1e9)), ((139e10, 2.98e9), (139e10, 2.98e9))):
+            bulk = Bulk(materials=[(*carbon[:6], *given, *carbon[8:]), MATERIALS[1]])
+            material = plies_of(self.deck(bulk, "--g2z", "3.1e9"))[0].material
+            self.assertEqual((material.g13, material.g23), expected)
+            text = self.run_command(bulk.text(), "--g2z", "3.1e9")[1]
+            self.assertEqual(text.count("is taken as no transverse shear deformation: 1.39e+13, 100 times E1"),
+                             expected.count(139e11))
+
     def test_elements_beside_a_patch(self) -> None:
         """At least three elements per direction, two without an impact."""
         impact = ("--mass", "1", "--velocity", "1", "--radius", "0.01")

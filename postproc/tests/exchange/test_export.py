@@ -3,6 +3,7 @@
 import contextlib
 import importlib.util
 import io
+import itertools
 import re
 import tempfile
 import unittest
@@ -310,6 +311,55 @@ class NastranTest(ExportTest):
         places = [line[16:24].strip() for line in with_z0 if line.startswith("PCOMP")]
         self.assertEqual(places, ["", "", "-0.3", "0.0", "0.0"])
 
+    def test_temperature(self) -> None:
+        """A change of temperature, expansion and TREF; notes on what is not written."""
+        cured = DECK.replace("nu=0.33", "nu=0.33 alpha1=23e-6 alpha2=23e-6").replace("nu12=0.309",
+                                                                                   "nu12=0.309 alpha2=28e-6")
+        self.keep_deck(cured + "&thermal delta_T=-145 /")
+        lines = list(nastran_deck(self.panel(), "damaged.h5"))
+        self.assertEqual(lines.index("TEMPERATURE(LOAD) = 2"), lines.index("LOAD = 1") + 1)
+        self.assertEqual(lines[-2], "TEMPD   2       -145.0")
+        for name, field in (("PCOMP", (48, 56)), ("MAT1", (48, 56))):
+            found = {line[slice(*field)].strip() for line in lines if line.startswith(name)}
+            self.assertEqual(found, {"0.0"} if name == "PCOMP" else {"2.3-5"})
+        # A1 and A2 of the undamaged and a failed ply, both in small fields.
+        texts = [after[8:24].split() for line, after in itertools.pairwise(lines) if line.startswith("MAT8 ")]
+        self.assertEqual(texts, 2 * [["0.0", "2.8-5"]])
+        self.assertIn("change of temperature: -145", self.run_command(to_nastran, self.results)[1])
+        text = "\n".join(abaqus_input(self.panel(), "damaged.h5"))
+        self.assertEqual(text.count("*EXPANSION, TYPE=ORTHO\n0, 2.8e-05, 2.8e-05"), 3)
+        self.assertIn("*INITIAL CONDITIONS, TYPE=TEMPERATURE\nPANEL, 0.\n", text)
+        self.assertIn("*TEMPERATURE\nPANEL, -145\n", text)
+        self.keep_deck(cured)
+        text = "\n".join(nastran_deck(self.panel(), ""))
+        self.assertIn("2.8-5", text)
+        self.assertNotIn("TEMP", text)
+        self.keep_deck(DECK + "&thermal delta_T=-145 /")
+        self.assertIn("note: the change of temperature is not written, as no material", self.run_command(
+            to_abaqus, self.results)[1])
+
+    def test_temperature_alone(self) -> None:
+        """A deck whose only load is the cooling has a step in Abaqus and no PLOAD2."""
+        self.keep_deck(DECK.replace("&pressure value=0.25 /", "&thermal delta_T=-80 /").replace(
+            "nu12=0.309", "nu12=0.309 alpha1=1e-6"))
+        text = "\n".join(abaqus_input(self.panel(), ""))
+        self.assertIn("*STATIC\n*TEMPERATURE\nPANEL, -80\n", text)
+        self.assertNotIn("DLOAD", text)
+        self.assertNotIn("LOAD = 1", "\n".join(nastran_deck(self.panel(), "")))
+
+    def test_notes(self) -> None:
+        """What a deck has beyond the export is reported, and at the top of the file."""
+        deck = DECK.replace("thicknesses", "shear_correction='energy' thicknesses").replace(
+            "value=0.25", "value=0.25 distribution='sine'")
+        self.keep_deck(deck + "&initial_state from='x_restart.h5' /")
+        for source, notes in ((self.folder / "damaged.nml", 3), (self.results, 2)):
+            code, text = self.run_command(to_nastran, source)
+            self.assertEqual((code, text.count("note: ")), (0, notes), text)
+            self.assertIn("the pressure is not written, as its distribution is a sine", text)
+            self.assertIn("the shear correction of &laminate is not written", text)
+            written = (self.folder / "damaged_panel.bdf").read_text().split("SOL 101")[0]
+            self.assertEqual(written.count("is not written"), notes)
+
     def test_without_a_pressure(self) -> None:
         """No load unless it is requested."""
         self.keep_deck(DECK.replace("&pressure value=0.25 /", ""))
@@ -343,7 +393,9 @@ class NastranTest(ExportTest):
         from tests.bulk import MATERIALS, Bulk, large
         laminate = ("PCOMP", 1, *7 * (None,), 1, 0.1333333e-3, 22.5, None, 2, 0.2e-3, -67.25, None, 1, 0.127e-3, 90.0)
         bulk = Bulk(cells=(12, 8), lengths=(0.3, 0.2), write=large, laminate=[laminate],
-                    edges=("12345", "1234", "1235", ""), materials=MATERIALS)
+                    edges=("12345", "1234", "1235", ""), more=[("TEMPD", 3, 20.0)],
+                    materials=[(*MATERIALS[0][:9], -1e-7, 28e-6, 170.0, *MATERIALS[0][12:]),
+                               (*MATERIALS[1], 23e-6, 170.0)])
         first, deck, last = (self.folder / name for name in ("first.bdf", "panel.nml", "last.bdf"))
         first.write_text(bulk.text())
         self.assertEqual(self.run_command(from_nastran.main, first, "-o", deck)[0], 0)
@@ -353,8 +405,11 @@ class NastranTest(ExportTest):
         again = self.folder / "again.nml"
         self.assertEqual(self.run_command(from_nastran.main, last, "-o", again)[0], 0)
         (before, after) = (read_deck(path) for path in (deck, again))
-        self.assertEqual((before.lengths(), before.edges(), plies_of(before)),
-                         (after.lengths(), after.edges(), plies_of(after)))
+        for deck in (before, after):
+            self.assertEqual([ply.material.expansion for ply in plies_of(deck)],
+                             [(-1e-7, 28e-6), (23e-6, 23e-6), (-1e-7, 28e-6)])
+        self.assertEqual((before.lengths(), before.edges(), plies_of(before), before.number("thermal", "delta_T")),
+                         (after.lengths(), after.edges(), plies_of(after), after.number("thermal", "delta_T")))
 
 
 def _section(panel: Panel, stack: Stack) -> object:
