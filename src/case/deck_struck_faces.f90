@@ -7,7 +7,8 @@ module deck_struck_faces
   use impact_parameters, only: law_thornton
   use indentation_deck, only: indentation_group, key_face, key_k, key_yield, key_alpha_critical, struck_face_t, &
                               takes_laminate
-  use material_deck, only: material_group, normal_compliance
+  use material_deck, only: normal_compliance
+  use roundings, only: rounding
   implicit none
   private
   public :: struck_face_of, check_struck_face
@@ -33,15 +34,19 @@ contains
     end associate
   end function struck_face_of
 
-  !> True: all plies have the constants of a fibre-reinforced ply in three dimensions.
+  !> True: all plies have the constants of a fibre-reinforced ply in three dimensions. The compliance of an isotropic
+  !> one is not that of its modulus alone.
   logical function is_complete(deck)
     !> The deck, with its laminate
     type(deck_t), intent(in) :: deck
     integer :: ply
 
     associate (materials => deck%materials, used => deck%laminate%material)
-      is_complete = all(materials(used)%e1 > 0 .and. materials(used)%e2 > 0 .and. materials(used)%nu23 > 0) .and. &
-        .not. any([(deck%settings%is_given(material_group, 'E', used(ply)), ply=1, size(used))])
+      is_complete = all(materials(used)%e1 > 0 .and. materials(used)%e2 > 0 .and. materials(used)%nu23 > 0)
+      do ply = 1, size(used)
+        is_complete = is_complete .and. &
+          .not. normal_compliance(deck%settings, used(ply), materials(used(ply)))*materials(used(ply))%e2 < 1 - rounding
+      end do
     end associate
   end function is_complete
 
