@@ -50,7 +50,7 @@ MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
           "permanent": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "ply_damage%permanent_shear=.true.",
                                                      "material%shear_failure_strain=0.05"]),
-          "long_cells": ("../which_interfaces.nml", [EXPLICIT, "time%end=700e-6", "mesh%elements=10,20",
+          "long_cells": ("../which_interfaces.nml", [EXPLICIT, "time%end=800e-6", "mesh%elements=10,20",
                                                      "mesh%cell=4e-3"]),
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT]),
           "cooled": ("../small/cohesive.nml", [EXPLICIT, "time%end=20e-6", "plate%edges='simple'",
