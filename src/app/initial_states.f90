@@ -58,13 +58,12 @@ contains
 
     if (present(lacks)) lacks = .false.
     if (.not. deck%initial%is_inherited) return
+    call refuse_own_end(deck, communicator, error)
+    if (allocated(error)) return
     if (present(lacks)) then
       if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
       call communicator%broadcast(lacks)
       if (lacks) return
-    else
-      call refuse_own_end(deck, communicator, error)
-      if (allocated(error)) return
     end if
     call open_checkpoint(deck%initial%from, communicator, archive, old, error)
     if (allocated(error)) return
@@ -75,7 +74,7 @@ contains
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
-      call refuse(deck, 'that run has another plate, '//objection, error)
+      call refuse(deck, 'the deck does not fit that run, '//objection, error)
       return
     end if
     if (is_mapped(deck, old) .and. force > 0) then
@@ -102,11 +101,15 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Set (deck) if it is that checkpoint
     type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: own
     logical :: is_own
 
+    own = deck%output%directory//'/'//deck%name//checkpoint_ending
     is_own = .false.
+    ! The file need not exist yet.
     if (communicator%is_root()) &
-      is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name//checkpoint_ending)
+      is_own = is_same_file(deck%initial%from, own) .or. any(own == [character(len=len(own) + 2) :: deck%initial%from, &
+                                                                     './'//deck%initial%from])
     call communicator%broadcast(is_own)
     if (is_own) call refuse(deck, 'is the checkpoint that this run writes at its own end, from which the next run '// &
                             'would start; allowed: another &case name or &output directory', error)

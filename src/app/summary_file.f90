@@ -384,8 +384,7 @@ contains
     if (file%is_open()) call file%synchronise()
     call file%close()
     if (file%failed) then
-      call fail(error, exit_files, "Cannot write "//path//': does the folder exist, is the disk full or the quota '// &
-                'used up?')
+      call fail(error, exit_files, "Cannot write "//path//': '//file%reason//'.')
     else
       call rename_file(path//'.tmp', path, error)
     end if
