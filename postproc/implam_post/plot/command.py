@@ -54,7 +54,10 @@ def _draw_all(options: argparse.Namespace, style: PictureStyle) -> int:
     # All files are read before the first picture is drawn, so that a damaged file does not leave some pictures only.
     curves = _read_curves(paths, options)
     for path, fields in [(path, read_fields(path)) for path in results]:
-        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, style)
+        beside = options.history or _beside(path)
+        history = next((one for one, file in zip(curves.histories, paths, strict=True) if file == beside), None)
+        drawn = plot_fields(fields, (options.output or path.parent) / path.stem, options.times, style, history,
+                            options.sections)
         print(*drawn or [f"{path} has no interfaces and no ply failures."], sep="\n")
     return _plot_histories(curves, options, style) if paths else EXIT_DONE
 
@@ -116,8 +119,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = CommandParser("implam-plot", description="Plot force, indentation, deflection and energies of histories "
                            "(several in one picture), stress and gauges of compressions, and from NAME.h5 the "
                            "delamination of each interface and the projected one, the energy release "
-                           "rate along fronts and the failures of each ply, all over the full plate, with the "
-                           "history of the run.")
+                           "rate along fronts, the failures of each ply, all over the full plate, and sections "
+                           "through the plate, with the history of the run.")
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT",
                         help="histories (.csv) and fields (.h5) written by implam")
     parser.add_argument("--output", type=Path, metavar="DIR", help="folder of the plots (default: that of each result)")
@@ -125,6 +128,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
                         help="history of the run of NAME.h5 (default: NAME_history.csv in its folder)")
     parser.add_argument("--times", nargs="+", type=finite, metavar="TIME",
                         help="times at which fronts are drawn (default: up to eight of those written)")
+    parser.add_argument("--sections", nargs="+", type=finite, metavar="ANGLE", help="angles from x, in degrees, of the "
+                        "sections through the struck point (default: along and across the fibres of ply 1)")
     parser.add_argument("--save", type=Path, metavar="FILE",
                         help="write only one picture, with delamination, force and energies of NAME.h5")
     parser.add_argument("--measured", type=Path, metavar="CSV", help="measured curve, drawn as dots: columns time and "

@@ -23,6 +23,7 @@ from implam_post.plot.plan import (
     projected_figure,
 )
 from implam_post.plot.plan_frame import caption, reach_of
+from implam_post.plot.section import section_figure
 from implam_post.plot.style import STYLES, PictureStyle, lay_out
 
 RESPONSES = {"force": ("contact force", "force"), "indentation": ("indentation", "length"),
@@ -94,8 +95,9 @@ def plot_overview(fields: Fields, history: History, path: Path, style: PictureSt
 
 
 def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None,
-                style: PictureStyle = _PLAIN) -> list[Path]:
-    """Draw the interfaces, their fronts (at some times) and the plies of the fields, one picture each."""
+                style: PictureStyle = _PLAIN, history: History | None = None,
+                angles: Sequence[float] | None = None) -> list[Path]:
+    """Draw the interfaces, their fronts (at some times), the plies and sections at angles, one picture each."""
     figures = {}
     if fields.snapshots[-1].mesh.interfaces:
         figures["delamination"] = delamination_figure(fields, style)
@@ -105,6 +107,9 @@ def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None
     if fields.snapshots[-1].failures:
         figures["matrix"] = failures_figure(fields, ("matrix cracking", "matrix crushing"), style)
         figures["fibres"] = failures_figure(fields, ("fibre failure",), style)
+    section = section_figure(fields, style, history, angles) if figures or angles else None
+    if section is not None:
+        figures["section"] = section
     return [_save(figure, base.with_name(f"{base.name}_{name}.{style.kind}"), style)
             for name, figure in figures.items()]
 

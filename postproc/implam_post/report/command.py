@@ -68,7 +68,7 @@ def report(run: Run, undamaged: float | None = None) -> str:
     axis = style.axis("energy", "energy", [*energies.values()])
     remark = remark_of(summary, style, undamaged)
     curves = [] if run.columns is None else history_pictures(run.columns, style, mark, (remark, undamaged))
-    maps = [] if run.fields is None else map_pictures(run.fields, style)
+    maps = [] if run.fields is None else map_pictures(run.fields, style, run.columns)
     return render(
         "run.html", title=summary["title"] or summary["case"], summary=summary, base=run.name,
         reached=_reached(summary, style), has_units=bool(style.system),

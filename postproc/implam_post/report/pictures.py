@@ -19,6 +19,7 @@ from implam_post.plot.compression import compression_figure, is_compressed
 from implam_post.plot.curves import axis_of_column, in_contact
 from implam_post.plot.plan import delamination_figure, failures_figure, projected_figure
 from implam_post.plot.plan_frame import draw_plate
+from implam_post.plot.section import section_figure
 from implam_post.plot.style import PictureStyle
 
 _SPACE = 0.12  # part of the picture width to the right of the plies
@@ -150,9 +151,12 @@ def _curves(history: History, columns: Mapping[str, str], label: str, dimension:
     return figure
 
 
-def map_pictures(fields: Fields, style: PictureStyle) -> Iterator[tuple[str, Figure]]:
-    """Yield the maps of interfaces and plies in plan."""
+def map_pictures(fields: Fields, style: PictureStyle, history: History | None) -> Iterator[tuple[str, Figure]]:
+    """Yield sections through the plate, and the maps of interfaces and plies in plan."""
     last = fields.snapshots[-1]
+    section = section_figure(fields, style, history) if last.mesh.interfaces or last.failures else None
+    if section is not None:
+        yield "sections through the plate", section
     if last.mesh.interfaces:
         yield "delamination of each interface", delamination_figure(fields, style)
         yield "projected delamination of all interfaces", projected_figure(fields, style)

@@ -21,7 +21,7 @@ from tests.io.test_fields import write_fields
 from tests.plot.test_pictures import DECK, history
 
 KEPT = Path(__file__).parent / "pictures"
-NAMES = ("delamination", "projected", "front", "matrix", "fibres", "history_response", "history_energies")
+NAMES = ("delamination", "projected", "front", "matrix", "fibres", "section", "history_response", "history_energies")
 # Root of the mean square, of 255, over blocks of 4 x 4 dots, so that a line drawn a little otherwise by another version
 # of the library does not count. Pictures are kept in 64 colours, which makes up to 1.0; the faults below make 15 and
 # more.

@@ -124,7 +124,8 @@ class ReportTest(unittest.TestCase):
             "plate in plan", "lay-up from the struck face", "contact force against time",
             "contact force against displacement of the impactor", "contact force against deflection",
             "deflection against time", "delaminated area against time", "energies against time",
-            "delamination of each interface", "projected delamination of all interfaces", "failures of each ply"})
+            "sections through the plate", "delamination of each interface", "projected delamination of all interfaces",
+            "failures of each ply"})
         self.assertEqual([cell for cell in page.cells if cell in ("90.0", "90")], ["90"])
 
     def test_warnings_and_static_runs(self) -> None:
