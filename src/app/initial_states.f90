@@ -34,7 +34,7 @@ module initial_states
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: fit_initial_state, take_initial_state, visit_incomplete_start
+  public :: fit_initial_state, missing_start, take_initial_state, visit_incomplete_start
 
 contains
 
@@ -92,6 +92,18 @@ contains
     call remark_stopped(deck, remark)
     if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
+
+  !> Warning of the check on an initial state that does not exist yet.
+  function missing_start(deck) result(sentence)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The warning, with file and line
+    character(len=:), allocatable :: sentence
+
+    sentence = deck%source//':'//to_text(deck%settings%line_of_group(initial_state_group))//': warning: &'// &
+               initial_state_group//' from = '''//deck%initial%from//''': there is no such file yet. The run needs it, '// &
+               'and the deck has not been compared with it.'
+  end function missing_start
 
   !> Refuses the checkpoint that the run itself will write.
   subroutine refuse_own_end(deck, communicator, error)

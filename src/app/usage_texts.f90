@@ -4,7 +4,7 @@ module usage_texts
   use text, only: line_t, append, words_of
   implicit none
   private
-  public :: usage_lines
+  public :: usage_lines, command_help
 
   !> Characters of a term and of an explanation; columns of explanations and of the page.
   integer, parameter, public :: text_length = 400
@@ -19,14 +19,14 @@ module usage_texts
     'explain [GROUP [KEY]]', 'groups and keys of a deck: units, defaults, meaning; GROUP.KEY and GROUP%KEY are &
       &accepted too', &
     'explain history|fields', 'contents of the results: names, units, meaning', &
-    'explain materials', 'published materials for decks, with the source of each value', &
+    'explain materials [NAME]', 'published materials for decks, with the source of each value', &
     'restart [FILE]', 'resume from a checkpoint (NAME_restart.h5), or from the newest one of a folder: that named, &
       &that of --output, or the current one; the deck is that of the checkpoint, and its file is not read again', &
     'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory estimated from the deck; with --chain '// &
     'the job is submitted again until the run is complete; array.txt of a sweep makes a job array', &
     'completion bash|zsh', 'print a script for the completion of commands, groups and keys in the shell', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
-    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 11])
+    'help [COMMAND|GROUP [KEY]]', 'this page, its part on a command, or the same as explain'], [2, 11])
   !> Options.
   character(len=text_length), parameter, public :: option_rows(2, 12) = reshape([character(len=text_length) :: &
     '--rig d7136', 'with new: the deck of a drop-weight test after ASTM D7136', &
@@ -73,6 +73,28 @@ contains
       call append_wrapped(lines, '', trim(notes(i)), 2)
     end do
   end subroutine usage_lines
+
+  !> The part of the help on one command.
+  pure function command_help(command) result(lines)
+    !> Its first word
+    character(len=*), intent(in) :: command
+    !> Lines for the terminal; none: there is no such command
+    type(line_t), allocatable :: lines(:)
+    logical :: on_it(size(command_rows, 2)), with_it(size(option_rows, 2))
+    integer :: i
+
+    allocate (lines(0))
+    do i = 1, size(on_it)
+      on_it(i) = index(command_rows(1, i)//' ', command//' ') == 1 .or. index(command_rows(1, i), '['//command//']') == 1
+    end do
+    if (.not. any(on_it)) return
+    do i = 1, size(with_it)
+      with_it(i) = index(option_rows(2, i), 'with '//command//':') == 1
+    end do
+    call append_rows(lines, 'Usage:', 'implam ', command_rows(:, pack([(i, i=1, size(on_it))], on_it)))
+    if (any(with_it)) call append_rows(lines, 'Options:', '', option_rows(:, pack([(i, i=1, size(with_it))], with_it)))
+    call append(lines, 'implam help lists all commands, options and exit codes.')
+  end function command_help
 
   !> A heading and its rows.
   pure subroutine append_rows(lines, heading, prefix, rows)

@@ -8,7 +8,7 @@ from typing import Any
 
 from implam_post.io.compression import strength_of
 from implam_post.io.counts import counted
-from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
+from implam_post.io.damage_resistance import DIRECTIONS, Extent, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import refuse_equal_names, write_text
 from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES
@@ -47,6 +47,8 @@ _DENT = (("dent depth", "dent_depth", "at the end of the run; meaningful for a p
 # Words before a time, and texts for missing figures.
 _WHEN = {"contact_duration": "until"}
 _UNKNOWN = {"energy_absorbed": "contact has not ended"}
+# Half the range of directions, degrees, from which on the damage is called round.
+_ROUND = 45
 _PROVENANCE = ("version", "commit", "compiler", "petsc_version", "ranks", "started")
 
 
@@ -125,13 +127,21 @@ def _frequency(style: PictureStyle, corner: float) -> str:
     return f"{corner / style.seconds / 1e3:.4g} kHz" if style.system else rounded(corner)
 
 
+def _direction(size: Extent) -> str:
+    """Return the direction of the largest diameter, to the degrees to which it is known."""
+    error = math.ceil(size.direction_error)
+    if error >= _ROUND:
+        return "in no certain direction: the damage is round to within an element"
+    return f"along {size.direction:.0f}°" + (f" ± {error}°" if error else "")
+
+
 def _sizes(results: Run, style: PictureStyle) -> list[tuple[str, str, str]]:
     """Return the rows of the size of the projected damage."""
     size = extent(results.fields)
     if size is None:
         return [("projected damage", "none", "")]
     rows = [("largest diameter of the projected damage", shown(style, "length", size.diameter),
-             f"along {size.direction:.0f}°"),
+             _direction(size)),
             ("length of the projected damage along 0° (x)", shown(style, "length", size.length), ""),
             ("width of the projected damage along 90° (y)", shown(style, "length", size.width), "")]
     return rows + [(f"length of the projected damage through the struck point, along {angle}°",
