@@ -101,8 +101,8 @@ contains
     character(len=:), allocatable :: sentence
 
     sentence = deck%source//':'//to_text(deck%settings%line_of_group(initial_state_group))//': warning: &'// &
-               initial_state_group//' from = '''//deck%initial%from//''': there is no such file yet. The run needs it, '// &
-               'and the deck has not been compared with it.'
+               initial_state_group//' from = '''//deck%initial%from//''': there is no such file yet. The run needs '// &
+               'it, and the deck has not been compared with it.'
   end function missing_start
 
   !> Refuses the checkpoint that the run itself will write.

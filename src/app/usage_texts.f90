@@ -85,7 +85,8 @@ contains
 
     allocate (lines(0))
     do i = 1, size(on_it)
-      on_it(i) = index(command_rows(1, i)//' ', command//' ') == 1 .or. index(command_rows(1, i), '['//command//']') == 1
+      on_it(i) = index(command_rows(1, i)//' ', command//' ') == 1 .or. &
+                 index(command_rows(1, i), '['//command//']') == 1
     end do
     if (.not. any(on_it)) return
     do i = 1, size(with_it)

@@ -1,5 +1,5 @@
-!> Warns of elements outside of the core that grow too fast: a smaller cell in an unchanged number of elements refines the
-!> core only, and lengthens all others.
+!> Warns of elements outside of the core that grow too fast: a smaller cell in an unchanged number of elements refines
+!> the core only, and lengthens all others.
 module deck_cell_growth
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
@@ -15,8 +15,8 @@ module deck_cell_growth
   private
   public :: check_cell_growth
 
-  !> Ratio of the lengths of adjacent elements above which a warning is given, and that of the elements recommended. Twice
-  !> is the usual limit of graded meshes. It affects a warning only.
+  !> Ratio of the lengths of adjacent elements above which a warning is given, and that of the elements recommended.
+  !> Twice is the usual limit of graded meshes. It affects a warning only.
   real(wp), parameter :: fastest = 2, recommended = 1.5_wp
 
 contains
@@ -38,7 +38,7 @@ contains
     call remark(deck%settings, problems, mesh_group, key_elements, 'outside of the core each element is up to '// &
                 short_text(maxval(growth))//' times as long as the one before, the longest '// &
                 short_text(maxval(longest))//', with cell = '//short_text(deck%mesh%cell)//'; elements = '// &
-                to_text(enough(1))//', '//to_text(enough(2))//' refine the whole plate with the core.')
+                to_text(enough(1))//', '//to_text(enough(2))//' refine the rest as the core.')
   end subroutine check_cell_growth
 
   !> Growth from the core to the border, the longest element, and the number of elements for the growth recommended.

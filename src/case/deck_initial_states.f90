@@ -346,11 +346,8 @@ contains
     character(len=:), allocatable :: shown
 
     shown = deck%settings%text_of(group, key, place)
-    if (scan(shown, 'abcdfghijklmnopqrstuvwxyz') == 0) then
-      shown = to_text(number)
-    else if (shown(1:1) /= '.') then
-      shown = ''''//shown//''''
-    end if
+    if (scan(shown, 'abcfghijklmnopqrstuvwxyz') == 0) shown = to_text(number)
+    if (scan(shown(1:1), 'abcdefghijklmnopqrstuvwxyz') == 1) shown = ''''//shown//''''
   end function value_in
 
   !> A clause with both values.

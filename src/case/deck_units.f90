@@ -186,8 +186,8 @@ contains
           if (.not. deck%settings%is_given(group, key, place)) cycle
           values = abs(deck%settings%reals_of(group, key, place))
           if (.not. any(values > side) .or. any(values > 1000*side)) cycle
-          call remark(deck%settings, problems, group, key, short_text(maxval(values))//' m is more than the plate''s '// &
-                      'length of '//short_text(side)//' m; it is probably in mm.', place)
+          call remark(deck%settings, problems, group, key, short_text(maxval(values))//' m is more than the '// &
+                      'plate''s length of '//short_text(side)//' m; it is probably in mm.', place)
         end do
       end associate
     end do

@@ -151,8 +151,8 @@ contains
     if (material_objection(material) /= '') then
       call report(settings, problems, material_group, '', material_objection(material)//'.', place)
     else if (contrast(material) > max_contrast) then
-      call report(settings, problems, material_group, '', contrast_text(material)//' differ by more than a factor of '// &
-                  to_text(max_contrast)//', where round-off dominates.', place)
+      call report(settings, problems, material_group, '', contrast_text(material)//' differ by more than a factor '// &
+                  'of '//to_text(max_contrast)//', where round-off dominates.', place)
     end if
     material%shear_beta = shear_coefficient(material%g12, material%s12, &
                                             settings%real_of(material_group, key_shear_strain, place))
@@ -181,8 +181,8 @@ contains
     moduli = [material%e1, material%e2, material%g12, material%g13, material%g23]
     least = minloc(moduli, 1)
     largest = maxloc(moduli, 1)
-    words = 'its moduli '//trim(names(least))//' = '//short_text(moduli(least))//' and '//trim(names(largest))//' = '// &
-            short_text(moduli(largest))
+    words = 'its moduli '//trim(names(least))//' = '//short_text(moduli(least))//' and '//trim(names(largest))// &
+            ' = '//short_text(moduli(largest))
   end function contrast_text
 
   !> Whether the elastic constants are complete and valid; reports missing ones.
