@@ -202,6 +202,7 @@ contains
     if (status /= 0) reason = last_reason()
     ! Another process may have created the folder, so only the result matters.
     if (is_directory(path)) return
+    if (file_exists(path)) reason = 'a file has this name'
     if (.not. allocated(reason)) reason = 'it has disappeared'
     call fail(error, exit_files, "Cannot make the folder "//path//': '//reason//'.')
   end subroutine make_directory

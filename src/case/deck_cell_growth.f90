@@ -17,7 +17,7 @@ module deck_cell_growth
 
   !> Ratio of the lengths of adjacent elements above which a warning is given, and that of the elements recommended.
   !> Twice is the usual limit of graded meshes. It affects a warning only.
-  real(wp), parameter :: fastest = 2, recommended = 1.5_wp
+  real(wp), parameter :: fastest = 3, recommended = 1.5_wp
 
 contains
 

@@ -17,7 +17,7 @@ module deck_units
   use short_numbers, only: short_text
   use time_deck, only: time_group, key_end
   use unit_systems, only: base_units, is_unusual, system_named, unit_that_fits, unit_name, systems, quantities, &
-                          of_length, of_mass, of_radius, of_thickness, of_time
+                          of_length, of_mass, of_pressure, of_radius, of_thickness, of_time
   implicit none
   private
   public :: check_units
@@ -61,6 +61,7 @@ contains
     if (system == 0) return
     do i = 1, size(list)
       if (.not. is_unusual(list(i)%quantity, list(i)%value, system)) cycle
+      if (is_soft(list, i, system)) cycle
       fits = unit_that_fits(list(i)%quantity, list(i)%value)
       if (fits == '') cycle
       call report_unit(deck, problems, list(i), system, trim(merge('of the laminate is unusual', &
@@ -75,6 +76,23 @@ contains
       call check_ball(deck, system, problems)
     end if
   end subroutine check_units
+
+  !> True for a modulus of a material of which some are unusual, but not all, and more than one: those of a honeycomb.
+  pure logical function is_soft(list, place, system)
+    !> Values of the deck
+    type(magnitude_t), intent(in) :: list(:)
+    !> Index of the modulus
+    integer, intent(in) :: place
+    !> Index of the system
+    integer, intent(in) :: system
+    logical :: of_material(size(list))
+    integer :: unusual, i
+
+    of_material = list%quantity == of_pressure .and. list%quantity == list(place)%quantity .and. &
+                  list%place == list(place)%place
+    unusual = count([(of_material(i) .and. is_unusual(of_pressure, list(i)%value, system), i=1, size(list))])
+    is_soft = unusual > 1 .and. unusual < count(of_material)
+  end function is_soft
 
   !> Adds a warning.
   subroutine report_unit(deck, problems, item, system, finding, fits)
@@ -175,21 +193,22 @@ contains
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: values(:)
+    character(len=:), allocatable :: group, key
     real(wp) :: side
     integer :: i, place
 
     side = maxval(deck%plate%length)
     if (unit_name(of_length, system) /= 'm' .or. is_unusual(of_length, side, system)) return
     do i = 1, size(keys_of_lengths)
-      associate (group => trim(groups_of_lengths(i)), key => trim(keys_of_lengths(i)))
-        do place = 1, deck%settings%groups_named(group)
-          if (.not. deck%settings%is_given(group, key, place)) cycle
-          values = abs(deck%settings%reals_of(group, key, place))
-          if (.not. any(values > side) .or. any(values > 1000*side)) cycle
-          call remark(deck%settings, problems, group, key, short_text(maxval(values))//' m is more than the '// &
-                      'plate''s length of '//short_text(side)//' m; it is probably in mm.', place)
-        end do
-      end associate
+      group = trim(groups_of_lengths(i))
+      key = trim(keys_of_lengths(i))
+      do place = 1, deck%settings%groups_named(group)
+        if (.not. deck%settings%is_given(group, key, place)) cycle
+        values = abs(deck%settings%reals_of(group, key, place))
+        if (.not. any(values > side) .or. any(values > 1000*side)) cycle
+        call remark(deck%settings, problems, group, key, short_text(maxval(values))//' m is more than the '// &
+                    'plate''s length of '//short_text(side)//' m; it is probably in mm.', place)
+      end do
     end do
   end subroutine check_lengths
 

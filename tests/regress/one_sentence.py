@@ -36,8 +36,7 @@ def check_reasons(implam, folder):
     for command, code, words in (
             ([implam, deck, "--output", folder], EXIT_FILES, "the log " + str(folder / "ply_damage.log: is a directory.")),
             ([implam, "restart", folder / "none_restart.h5"], EXIT_FILES, "there is no such file."),
-            ([implam, "restart", deck], EXIT_FILES, "is not a checkpoint"),
-            ([implam, deck, "--output", deck], EXIT_FILES, ": not a directory."),
+            ([implam, deck, "--output", deck], EXIT_FILES, "a file has this name."),
             ([implam, "explain", "materials", "im9"], 1, "the materials are t700_m21, ")):
         require(words in say(command, code), f"{command} does not give the reason.")
     (folder / "ply_damage.log").rmdir()
