@@ -1,11 +1,12 @@
 !> The command line of the program.
 module command_lines
+  use applicable_options, only: refuse_inapplicable
   use errors, only: error_t, fail, exit_files, exit_usage
   use folder_listings, only: file_by_age
   use kinds, only: wp
   use rig_decks, only: rig_names
   use text, only: line_t, append, nearest_name, words_of
-  use usage_texts, only: option_rows
+  use usage_texts, only: of_term, option_rows
   implicit none
   private
   public :: command_t, read_command_line
@@ -41,12 +42,16 @@ module command_lines
     character(len=:), allocatable :: petsc_options
     !> True: explain as a Markdown table, for the manual
     logical :: markdown = .false.
+    !> All options given, without values
+    type(line_t), allocatable :: options(:)
   end type command_t
 
   !> The words of the verbs, in the order of their numbers.
   character(len=*), parameter :: verb_words(*) = [character(len=10) :: 'run', 'check', 'explain', 'restart', &
                                                   'version', 'help', 'new', 'completion', 'man', 'queue']
 
+  !> Options that ask for help, and for the version.
+  character(len=*), parameter :: informing(*) = [character(len=9) :: '-h', '--help', '-v', '-V', '--version']
   !> Options that take a value.
   character(len=*), parameter :: valued(*) = [character(len=12) :: '--rig', '--ranks', '--time', &
                                                                       '--output', '--wall-limit']
@@ -66,6 +71,7 @@ contains
     command%target = ''
     command%rig = ''
     command%petsc_options = ''
+    allocate (command%options(0))
     verb_given = .false.
     i = 1
     do while (i <= command_argument_count())
@@ -74,6 +80,7 @@ contains
         call read_option(command, word, i, error)
       else if (index(word, '-') == 1) then
         command%petsc_options = command%petsc_options//' '//word
+        call append(command%options, word)
         if (takes_value(i + 1)) then
           i = i + 1
           command%petsc_options = command%petsc_options//' '//argument(i)
@@ -96,15 +103,29 @@ contains
       if (allocated(error)) return
       i = i + 1
     end do
+    if (any([(any(command%options(i)%text == informing), i=1, size(command%options))])) then
+      call inform(command, verb_given)
+      return
+    end if
     if (.not. verb_given) call refuse_misspelt_verb(command%target, error)
     if (.not. allocated(error)) call require_target(command, error)
-    if (command%verify .and. command%verb /= verb_run .and. .not. allocated(error)) &
-      call fail(error, exit_usage, '--verify takes a deck to run.')
-    if (command%rig /= '' .and. command%verb /= verb_new .and. .not. allocated(error)) &
-      call fail(error, exit_usage, '--rig is an option of new.')
-    if (command%profile .and. all(command%verb /= [verb_run, verb_restart]) .and. .not. allocated(error)) &
-      call fail(error, exit_usage, '--profile takes a deck to run, or a checkpoint.')
+    if (.not. allocated(error)) call refuse_inapplicable(trim(verb_words(command%verb)), command%options, error)
   end subroutine read_command_line
+
+  !> Turns the command into help or version, whatever else is given: the first option of these decides.
+  subroutine inform(command, verb_given)
+    !> The parsed command line
+    type(command_t), intent(inout) :: command
+    !> True: a command was given; the topic of help is then not its file
+    logical, intent(in) :: verb_given
+    integer :: i
+
+    if (verb_given .and. all(command%verb /= [verb_help, verb_explain])) command%target = ''
+    do i = size(command%options), 1, -1
+      if (any(command%options(i)%text == informing(:2))) command%verb = verb_help
+      if (any(command%options(i)%text == informing(3:))) command%verb = verb_version
+    end do
+  end subroutine inform
 
   !> Reads an option that begins with two dashes.
   subroutine read_option(command, word, i, error)
@@ -121,6 +142,7 @@ contains
 
     equals = index(word, '=')
     value = word(merge(equals, len(word), equals > 0) + 1:)
+    call append(command%options, word(:merge(equals - 1, len(word), equals > 0)))
     if (equals > 0) then
       call read_value(command, word(:equals - 1), value, error)
     else if (any(word == valued)) then
@@ -142,10 +164,8 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     select case (word)
-    case ('--version', '-v', '-V')
-      command%verb = verb_version
-    case ('--help', '-h')
-      command%verb = verb_help
+    case ('--version', '-v', '-V', '--help', '-h')
+      continue
     case ('--markdown')
       command%markdown = .true.
     case ('--verify')
@@ -205,7 +225,7 @@ contains
     if (index(word, '--') == 1) verb = meant_verb(word(3:))
     allocate (known(0))
     do i = 1, size(option_rows, 2)
-      terms = words_of(trim(option_rows(1, i)), ' ')
+      terms = words_of(trim(option_rows(of_term, i)), ' ')
       do j = 1, size(terms)
         if (index(terms(j)%text, '--') == 1) call append(known, terms(j)%text)
       end do
@@ -306,6 +326,9 @@ contains
         index(command%target, '.nml', back=.true.) == len(command%target) - 3) &
       call fail(error, exit_files, 'restart takes a checkpoint or its folder and not the deck '//command%target// &
                 ', as the checkpoint holds the deck: implam restart FOLDER/NAME_restart.h5, or implam restart FOLDER.')
+    if (any(command%verb == [verb_version, verb_man]) .and. command%target /= '') &
+      call fail(error, exit_usage, 'Unexpected argument "'//command%target//'": implam '// &
+                trim(verb_words(command%verb))//' takes none.')
     if (command%target /= '') return
     select case (command%verb)
     case (verb_run, verb_check)

@@ -217,13 +217,18 @@ contains
     !> Its errors and warnings
     type(problems_t), intent(out) :: problems
     character(len=:), allocatable :: text
+    logical :: lacks
 
+    lacks = .false.
     if (communicator%is_root()) then
       call read_deck(path, deck, problems)
       text = deck%text
+      lacks = problems%exit_code() == exit_files
     end if
     call communicator%broadcast_text(text)
+    call communicator%broadcast(lacks)
     if (.not. communicator%is_root()) call read_deck_text(text, path, deck, problems)
+    if (lacks .and. .not. communicator%is_root()) call problems%cannot_read('')
   end subroutine read_deck_everywhere
 
   !> The checkpoint to continue from: the given file, or else the newest valid one of a folder.

@@ -2,7 +2,8 @@
 module new_files
   use errors, only: error_t, fail, exit_files
   use files, only: file_exists
-  use text, only: line_t
+  use text, only: joined, line_t
+  use whole_files, only: write_whole_file
   implicit none
   private
   public :: write_new_file
@@ -17,17 +18,11 @@ contains
     type(line_t), intent(in) :: lines(:)
     !> Set if the file exists or cannot be written
     type(error_t), allocatable, intent(inout) :: error
-    integer :: unit, status, i
 
     if (file_exists(path)) then
       call fail(error, exit_files, path//' exists and is not overwritten; give another name or remove it.')
-      return
+    else
+      call write_whole_file(path, joined(lines, new_line('a'))//new_line('a'), error)
     end if
-    open (newunit=unit, file=path, status='new', action='write', iostat=status)
-    do i = 1, size(lines)
-      if (status == 0) write (unit, '(a)', iostat=status) lines(i)%text
-    end do
-    if (status == 0) close (unit, iostat=status)
-    if (status /= 0) call fail(error, exit_files, 'Cannot write '//path//'.')
   end subroutine write_new_file
 end module new_files

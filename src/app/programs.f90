@@ -163,6 +163,7 @@ contains
     job%ranks = command%ranks
     job%seconds = command%seconds
     job%chain = command%chain
+    if (allocated(command%output)) job%output = command%output
     call write_queue_script(job, lines, error)
     call print_lines(communicator, lines)
   end subroutine queue_deck

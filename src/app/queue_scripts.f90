@@ -4,7 +4,7 @@ module queue_scripts
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck
-  use errors, only: error_t, fail, exit_usage, exit_files, exit_deck
+  use errors, only: error_t, fail, exit_usage, exit_files
   use new_files, only: write_new_file
   use kinds, only: wp
   use model_sizes, only: model_size_t, size_of_model
@@ -36,6 +36,8 @@ module queue_scripts
     integer :: seconds = 0
     !> True: a job stopped by its limit is repeated until the run is complete
     logical :: chain = .false.
+    !> Folder of the results; unallocated: that of the deck
+    character(len=:), allocatable :: output
     !> Name of the job, and checkpoint of the run
     character(len=:), allocatable, private :: name, checkpoint
     !> Memory per rank
@@ -68,6 +70,8 @@ contains
     else
       call size_deck(job, error)
     end if
+    if (allocated(job%output) .and. job%tasks > 0) call fail(error, exit_usage, &
+      'The cases of a sweep have their own folders: give --output to implam-sweep and not to implam queue.')
     if (job%chain .and. job%tasks > 0 .and. job%queue == 'pbs') call fail(error, exit_usage, &
       'An array of PBS cannot be a chain; list the remaining runs with implam-sweep --array and submit that list.')
     if (allocated(error)) return
@@ -99,6 +103,7 @@ contains
     if (allocated(error)) return
     found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
     job%name = deck%name
+    if (allocated(job%output)) deck%output%directory = job%output
     job%checkpoint = deck%output%directory//'/'//deck%name//'_restart.h5'
     if (job%ranks == 0) job%ranks = found%ranks
     job%megabytes = ceiling(spare_memory*found%megabytes_a_rank(job%ranks))
@@ -149,7 +154,7 @@ contains
     if (problems%errors() == 0) return
     faults = problems%lines()
     if (problems%errors() > 1) faults(1)%text = faults(1)%text//' `implam check` lists all faults.'
-    call fail(error, exit_deck, faults(1)%text)
+    call fail(error, problems%exit_code(), faults(1)%text)
   end subroutine read_valid_deck
 
   !> Resources requested from Slurm. It may send the signal up to a minute early.
@@ -205,7 +210,7 @@ contains
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
-    character(len=:), allocatable :: launcher
+    character(len=:), allocatable :: launcher, run
 
     call append(script, '# Written by implam queue '//job%queue//' for '//job%target//'; the lines above may be '// &
                 'changed.')
@@ -222,7 +227,9 @@ contains
       call append(script, 'if [[ -e $checkpoint && $parts -gt 0 ]]; then')
       call append(script, '  command+=(restart "$checkpoint")')
       call append(script, 'else')
-      call append(script, '  command+=('//quoted(job%target)//')')
+      run = quoted(job%target)
+      if (allocated(job%output)) run = run//' --output '//quoted(job%output)
+      call append(script, '  command+=('//run//')')
       call append(script, 'fi')
     end if
     call append(script, 'signalled= run=')

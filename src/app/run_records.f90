@@ -43,6 +43,8 @@ module run_records
     integer :: contacts = 0
     !> Total duration of contacts, and end of the last one so far
     real(wp) :: contact_duration = 0, contact_end = 0
+    !> Velocity of the impactor at the end of the last contact, positive away from the plate
+    real(wp) :: rebound = 0
     !> Time and force of the last observed step
     real(wp) :: time = 0, force = 0
     !> Stage of failure of each interface, (zones)
@@ -67,6 +69,10 @@ module run_records
     procedure :: inherit
     !> Updates the record with an accepted step.
     procedure :: observe
+    !> True once the impactor has left the plate.
+    procedure :: has_rebounded
+    !> The earliest of the events of all interfaces.
+    procedure, nopass :: earliest
     !> Updates the record with a complete state.
     procedure :: observe_reactions
     !> Updates the energy of motions with scaled inertia.
@@ -134,7 +140,7 @@ contains
       self%deflection = now%deflection
       self%deflection_time = now%time
     end if
-    call count_contacts(self, now%time, now%force)
+    call count_contacts(self, now%time, now%force, now%impactor%velocity)
     self%time = now%time
     self%force = now%force
     if (all(self%stage == stage_grown) .or. modulo(now%step, between_stages) > 0) return
@@ -179,13 +185,32 @@ contains
     figures_at = [shown_time(now%time), now%force, now%deflection]
   end function figures_at
 
+  !> True once the impactor has left the plate, away from it.
+  pure logical function has_rebounded(self)
+    !> The record
+    class(run_record_t), intent(in) :: self
+
+    has_rebounded = self%contacts > 0 .and. .not. self%force > 0 .and. self%rebound > 0
+  end function has_rebounded
+
+  !> The earliest of the events of all interfaces.
+  pure function earliest(events) result(event)
+    !> Time, contact force and deflection, (3, zones); time 0: never, negative: before the run
+    real(wp), intent(in) :: events(:, :)
+    !> The same of the first one in the run; 0: none
+    real(wp) :: event(3)
+
+    event = 0
+    if (any(events(1, :) > 0)) event = events(:, minloc(events(1, :), dim=1, mask=events(1, :) > 0))
+  end function earliest
+
   !> Counts contacts and their duration. A contact starts or ends at mid-step; one at the start of the run starts with
-  !> it.
-  pure subroutine count_contacts(self, time, force)
+  !> it. The velocity is that of the first step without contact: later gravity changes it.
+  pure subroutine count_contacts(self, time, force, velocity)
     !> The record of the previous step
     type(run_record_t), intent(inout) :: self
-    !> Time and contact force at the end of the step
-    real(wp), intent(in) :: time, force
+    !> Time, contact force and velocity of the impactor at the end of the step
+    real(wp), intent(in) :: time, force, velocity
     real(wp) :: from, to
 
     if (.not. (self%force > 0 .or. force > 0)) return
@@ -195,7 +220,10 @@ contains
       self%contacts = self%contacts + 1
       if (self%time > 0) from = (self%time + time)/2
     end if
-    if (.not. force > 0) to = (self%time + time)/2
+    if (.not. force > 0) then
+      to = (self%time + time)/2
+      self%rebound = -velocity
+    end if
     self%contact_duration = self%contact_duration + (to - from)
     self%contact_end = to
   end subroutine count_contacts
@@ -265,6 +293,7 @@ contains
     call archive%item('record/contacts', self%contacts)
     call archive%item('record/contact_duration', self%contact_duration)
     call archive%item('record/contact_end', self%contact_end)
+    call archive%item('record/rebound', self%rebound)
     call archive%item('record/time', self%time)
     call archive%item('record/force', self%force)
     call archive%item('record/stage', self%stage)

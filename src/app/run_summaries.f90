@@ -11,10 +11,11 @@ module run_summaries
   use run_figures, only: run_figures_t, ending_of, find_figures
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
-  use summary_file, only: summary_text, write_summary
+  use summary_file, only: summary_text
   use summary_lines, only: lines_of_summary
   use text, only: line_t
   use time_stepping, only: time_stepper_t
+  use whole_files, only: write_whole_file
   implicit none
   private
   public :: summarise
@@ -75,7 +76,7 @@ contains
       call log%note(lines(i)%text)
     end do
     if (model%communicator%is_root()) &
-      call write_summary(path, summary_text(deck, stepper, record, figures, errors, ending_of(error), provenance, &
+      call write_whole_file(path, summary_text(deck, stepper, record, figures, errors, ending_of(error), provenance, &
                                             seconds), fault)
     call model%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault

@@ -6,7 +6,7 @@ module shell_pages
   use material_explain, only: material_topic
   use result_explain, only: result_topics
   use text, only: line_t, append
-  use usage_texts, only: command_rows, option_rows, code_rows, notes
+  use usage_texts, only: command_rows, explained_options, of_term, option_rows, code_rows, notes
   implicit none
   private
   public :: manual_page, completion
@@ -28,7 +28,7 @@ contains
     call append(lines, '.SH NAME')
     call append(lines, 'implam \- low-velocity impact on composite laminates and the damage it causes')
     call append_terms('SYNOPSIS', '.B implam ', command_rows)
-    call append_terms('OPTIONS', '.B ', option_rows)
+    call append_terms('OPTIONS', '.B ', explained_options())
     call append_terms('EXIT STATUS', '.B ', code_rows)
     call append(lines, '.SH RANKS AND SIGNALS')
     do i = 1, size(notes)
@@ -157,7 +157,7 @@ contains
     end do
     options = '-h --help'
     do i = 1, size(option_rows, 2)
-      if (index(option_rows(1, i), '--') == 1) options = options//' '//first_word(option_rows(1, i))
+      if (index(option_rows(of_term, i), '--') == 1) options = options//' '//first_word(option_rows(of_term, i))
     end do
     call append(lines, '_implam() {')
     call append(lines, '  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=')

@@ -3,14 +3,12 @@ module summary_file
   use compression_summary, only: put_collapse, put_compression
   use summary_provenance, only: put_provenance
   use deck_contents, only: deck_t
-  use delamination_parameters, only: law_cohesive
   use errors, only: error_t, exit_files, fail
-  use files, only: rename_file
   use force_filters, only: filter_kind
   use json_text, only: json_t
   use impactors, only: impactor_energy, new_impactor
+  use interface_summary, only: put_interfaces
   use kinds, only: wp
-  use output_streams, only: output_stream_t
   use output_clocks, only: shown_time
   use output_deck, only: key_force_filter
   use profiles, only: profile_row_t
@@ -24,7 +22,7 @@ module summary_file
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: summary_text, write_summary
+  public :: summary_text
 
   !> Ending of its name.
   character(len=*), parameter, public :: summary_ending = '_summary.json'
@@ -117,10 +115,10 @@ contains
     call json%put('dent_indentation', figures%dent(2))
     call json%put('impactor_displacement', now%impactor%displacement)
     call json%put('impactor_velocity', now%impactor%velocity)
-    if (now%force > 0 .or. now%impactor%velocity >= 0) then
-      call json%put_null('rebound_velocity')
+    if (record%has_rebounded()) then
+      call json%put('rebound_velocity', record%rebound)
     else
-      call json%put('rebound_velocity', -now%impactor%velocity)
+      call json%put_null('rebound_velocity')
     end if
   end subroutine put_impact
 
@@ -200,65 +198,6 @@ contains
     end if
     call json%put('energy_impactor', now%ledger%impactor)
   end subroutine put_impact_energies
-
-  !> Results of the interfaces.
-  subroutine put_interfaces(json, deck, now, record, figures)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> The state reached
-    type(state_t), intent(in) :: now
-    !> Record of the run
-    type(run_record_t), intent(in) :: record
-    !> Figures of the state
-    type(run_figures_t), intent(in) :: figures
-    integer :: zone
-
-    call json%put('delaminated_area', sum(figures%interfaces%area))
-    call json%put('projected_area', figures%projected_area)
-    if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
-    call json%open_list('interfaces')
-    do zone = 1, size(figures%interfaces)
-      associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
-        call json%open_object('')
-        call json%put('ply_above', interface%below_ply)
-        call json%put('is_cohesive', interface%law == law_cohesive)
-        call json%put('area', figure%area)
-        call json%put('energy', figure%energy)
-        call json%put('x', figure%bounds(:, 1))
-        call json%put('y', figure%bounds(:, 2))
-        call put_event(json, 'onset', record%onset(:, zone), deck)
-        call put_event(json, 'first_growth', record%growth(:, zone), deck)
-        call json%put('threshold_force', figures%threshold(zone))
-        call json%put('border_reached', now%interfaces%border_reached(zone))
-        call json%close()
-      end associate
-    end do
-    call json%close()
-  end subroutine put_interfaces
-
-  !> Time, force and deflection of an event.
-  subroutine put_event(json, name, event, deck)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> Its name
-    character(len=*), intent(in) :: name
-    !> Time, contact force, deflection; time 0: never, negative: before the run
-    real(wp), intent(in) :: event(3)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-
-    if (.not. event(1) > 0) then
-      call json%put_null(name)
-      return
-    end if
-    call json%open_object(name)
-    call json%put('at', event(1))
-    if (deck%has_impactor) call json%put('force', event(2))
-    call json%put('deflection', event(3))
-    call json%close()
-  end subroutine put_event
 
   !> Failures of the plies.
   subroutine put_failures(json, figures)
@@ -368,25 +307,4 @@ contains
     end do
     call json%close()
   end subroutine put_profile
-
-  !> Writes the summary to a temporary file and renames it.
-  subroutine write_summary(path, content, error)
-    !> Path of the file
-    character(len=*), intent(in) :: path
-    !> The text
-    character(len=*), intent(in) :: content
-    !> Set if it cannot be written
-    type(error_t), allocatable, intent(inout) :: error
-    type(output_stream_t) :: file
-
-    call file%open(path//'.tmp', 'w')
-    call file%put(content)
-    if (file%is_open()) call file%synchronise()
-    call file%close()
-    if (file%failed) then
-      call fail(error, exit_files, "Cannot write "//path//': '//file%reason//'.')
-    else
-      call rename_file(path//'.tmp', path, error)
-    end if
-  end subroutine write_summary
 end module summary_file

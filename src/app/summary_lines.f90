@@ -107,8 +107,8 @@ contains
     end if
     if (now%force > 0) then
       call add_figure(lines, 'velocity at the end', rounded_text(now%impactor%velocity)//within(errors%velocity))
-    else if (now%impactor%velocity < 0) then
-      call add_figure(lines, 'rebound velocity', rounded_text(-now%impactor%velocity)//within(errors%velocity))
+    else if (record%has_rebounded()) then
+      call add_figure(lines, 'rebound velocity', rounded_text(record%rebound)//within(errors%velocity))
     end if
   end subroutine add_impact
 

@@ -1,10 +1,10 @@
 !> Usage of the program: one table of commands, options and exit codes, for --help, the manual page and the completions
 !> of shells.
 module usage_texts
-  use text, only: line_t, append, words_of
+  use text, only: line_t, append, joined, words_of
   implicit none
   private
-  public :: usage_lines, command_help
+  public :: usage_lines, command_help, explained_options
 
   !> Characters of a term and of an explanation; columns of explanations and of the page.
   integer, parameter, public :: text_length = 400
@@ -27,21 +27,24 @@ module usage_texts
     'completion bash|zsh', 'print a script for the completion of commands, groups and keys in the shell', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
     'help [COMMAND|GROUP [KEY]]', 'this page, its part on a command, or the same as explain'], [2, 11])
-  !> Options.
-  character(len=text_length), parameter, public :: option_rows(2, 12) = reshape([character(len=text_length) :: &
-    '--rig d7136', 'with new: the deck of a drop-weight test after ASTM D7136', &
-    '--output DIR', 'folder of the results, instead of the deck''s', &
-    '--wall-limit SECONDS', 'end with a checkpoint before this wall-clock time has passed', &
-    '--verify', 'run the deck, then again with elements and time steps half as long, and report the changes of &
+  !> Options: term, commands that take it (empty: all), explanation. The last row is of PETSc.
+  integer, parameter, public :: of_term = 1, of_commands = 2, of_meaning = 3
+  character(len=*), parameter :: runs = 'run restart'
+  character(len=text_length), parameter, public :: option_rows(3, 12) = reshape([character(len=text_length) :: &
+    '--rig d7136', 'new', 'the deck of a drop-weight test after ASTM D7136', &
+    '--output DIR', runs//' queue', 'folder of the results, instead of the deck''s; for restart the folder of the &
+      &checkpoint', &
+    '--wall-limit SECONDS', runs, 'end with a checkpoint before this wall-clock time has passed', &
+    '--verify', 'run', 'run the deck, then again with elements and time steps half as long, and report the changes of &
       &the figures; the same command resumes where it was stopped', &
-    '--profile', 'print in log and summary the time and memory of each part of the run', &
-    '--ranks N', 'with queue: ranks of the job; default: by the number of unknowns', &
-    '--time H:MM:SS', 'with queue: wall-clock limit of the job; default: one day', &
-    '--chain', 'with queue: submit the job again, from its checkpoint, until the run is complete', &
-    '--markdown', 'with explain: print a Markdown table', &
-    '-v, --version', 'version, commit, compiler and PETSc, and how to cite', &
-    '-h, --help', 'this page', &
-    '-mat_..., -ksp_..., -log_view', 'these and other options with one dash are passed to PETSc'], [2, 12])
+    '--profile', runs, 'print in log and summary the time and memory of each part of the run', &
+    '--ranks N', 'queue', 'ranks of the job; default: by the number of unknowns', &
+    '--time H:MM:SS', 'queue', 'wall-clock limit of the job; default: one day', &
+    '--chain', 'queue', 'submit the job again, from its checkpoint, until the run is complete', &
+    '--markdown', 'explain help', 'print a Markdown table', &
+    '-v, --version', '', 'version, commit, compiler and PETSc, and how to cite', &
+    '-h, --help', '', 'this page', &
+    '-mat_..., -ksp_..., -log_view', runs, 'these and other options with one dash are passed to PETSc'], [3, 12])
   !> Exit codes.
   character(len=text_length), parameter, public :: code_rows(2, 7) = reshape([character(len=text_length) :: &
     '0', 'completed', '1', 'wrong use of the command line', '2', 'error in the deck', &
@@ -66,7 +69,7 @@ contains
 
     allocate (lines(0))
     call append_rows(lines, 'Usage:', 'implam ', command_rows)
-    call append_rows(lines, 'Options:', '', option_rows)
+    call append_rows(lines, 'Options:', '', explained_options())
     call append_rows(lines, 'Exit codes:', '', code_rows)
     call append(lines, 'Ranks and signals:')
     do i = 1, size(notes)
@@ -80,6 +83,7 @@ contains
     character(len=*), intent(in) :: command
     !> Lines for the terminal; none: there is no such command
     type(line_t), allocatable :: lines(:)
+    character(len=text_length) :: options(2, size(option_rows, 2))
     logical :: on_it(size(command_rows, 2)), with_it(size(option_rows, 2))
     integer :: i
 
@@ -90,12 +94,28 @@ contains
     end do
     if (.not. any(on_it)) return
     do i = 1, size(with_it)
-      with_it(i) = index(option_rows(2, i), 'with '//command//':') == 1
+      with_it(i) = index(' '//trim(option_rows(of_commands, i))//' ', ' '//command//' ') > 0
     end do
     call append_rows(lines, 'Usage:', 'implam ', command_rows(:, pack([(i, i=1, size(on_it))], on_it)))
-    if (any(with_it)) call append_rows(lines, 'Options:', '', option_rows(:, pack([(i, i=1, size(with_it))], with_it)))
+    options(1, :) = option_rows(of_term, :)
+    options(2, :) = option_rows(of_meaning, :)
+    if (any(with_it)) call append_rows(lines, 'Options:', '', options(:, pack([(i, i=1, size(with_it))], with_it)))
     call append(lines, 'implam help lists all commands, options and exit codes.')
   end function command_help
+
+  !> Options and their explanations, which begin with the commands that take them.
+  pure function explained_options() result(rows)
+    !> (2, options)
+    character(len=text_length) :: rows(2, size(option_rows, 2))
+    integer :: i
+
+    rows(1, :) = option_rows(of_term, :)
+    rows(2, :) = option_rows(of_meaning, :)
+    do i = 1, size(rows, 2)
+      if (option_rows(of_commands, i) /= '') &
+        rows(2, i) = 'with '//joined(words_of(trim(option_rows(of_commands, i)), ' '), ', ')//': '//rows(2, i)
+    end do
+  end function explained_options
 
   !> A heading and its rows.
   pure subroutine append_rows(lines, heading, prefix, rows)

@@ -8,8 +8,9 @@ module verifications
   use json_text, only: json_t
   use kinds, only: wp
   use root_output, only: print_lines
-  use summary_file, only: summary_ending, write_summary
+  use summary_file, only: summary_ending
   use text, only: line_t, append, rounded_text
+  use whole_files, only: write_whole_file
   implicit none
   private
   public :: stage_of, print_changes
@@ -102,7 +103,7 @@ contains
     if (communicator%is_root()) then
       call compare_summaries(deck, finer, lines, content)
       call print_lines(communicator, lines)
-      call write_summary(deck%output%directory//'/'//deck%name//verification_ending, content, error)
+      call write_whole_file(deck%output%directory//'/'//deck%name//verification_ending, content, error)
     end if
     call communicator%agree(error)
   end subroutine print_changes

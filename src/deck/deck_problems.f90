@@ -1,6 +1,6 @@
 !> The faults of a deck: collected, so that all are reported at once, and each in one line.
 module deck_problems
-  use errors, only: exit_done, exit_deck
+  use errors, only: exit_done, exit_deck, exit_files
   use grouped_messages, only: merged, skeleton
   use text, only: line_t, append, to_text, lower_case
   implicit none
@@ -177,6 +177,7 @@ contains
 
     exit_code = exit_done
     if (self%errors() > 0) exit_code = exit_deck
+    if (self%unreadable) exit_code = exit_files
   end function exit_code
 
   !> The errors, then the warnings, each in order of the deck's lines.

@@ -68,7 +68,7 @@ def made_decks(folder):
     yield "machine_code", bytes(range(256)) * 40, 2, [(1, "code 0, which is not printable")], []
     yield "old_mac_lines", good.replace(b"\n", b"\r"), 2, [(1, "code 13, which is not printable")], []
     yield "one_long_line", good + b"! " + b"x" * 900000, 2, [(length + 1, "longer than 4000 characters")], []
-    yield "ten_megabytes", b"&plate" + b" " * 10000000, 2, [(0, "has more than 1000000 bytes")], []
+    yield "ten_megabytes", b"&plate" + b" " * 10000000, 4, [(0, "has more than 1000000 bytes")], []
     yield "many_values", good + b"&output history_every=9999*1 9999*2 /\n", 2, [(length + 1, "more than 10000")], []
     yield "many_faults", b"&plate " + b"a=1 " * 500, 2, None, []
     yield "windows_lines", good.replace(b"\n", b"\r\n"), 0, [], []
@@ -91,8 +91,8 @@ def check_made_decks(program):
             else:
                 wrong[name] = complaints(program, path, code, errors, warnings)
         missing = os.path.join(folder, "missing.nml")
-        wrong["missing"] = complaints(program, missing, 2, [(0, "there is no such file")], [])
-        wrong["folder"] = complaints(program, folder, 2, [(0, "is a folder, not a file")], [])
+        wrong["missing"] = complaints(program, missing, 4, [(0, "there is no such file")], [])
+        wrong["folder"] = complaints(program, folder, 4, [(0, "is a folder, not a file")], [])
     return wrong
 
 

@@ -4,6 +4,7 @@ Usage: command_line.py IMPLAM FOLDER"""
 import os
 import pty
 import re
+import resource
 import select
 import shutil
 import signal
@@ -84,10 +85,33 @@ def check_slips(implam, folder):
         printed = output_of(implam, "check", str(deck), code=EXIT_DECK)
         require(f"did you mean {meant}?" in printed, printed)
     deck.write_text(text, encoding="utf-8")
-    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_DECK), "A missing file passes.")
+    require("no such file" in output_of(implam, "no_deck", cwd=folder, code=EXIT_FILES), "A missing file passes.")
     output_of(implam, str(deck), f"--output={folder / 'equals'}")
     require((folder / "equals" / "cohesive_summary.json").exists(), "--output=DIR has no effect.")
     print("slips: done")
+
+
+def check_options(implam, folder):
+    """Each command refuses all options of others, in one sentence, and does nothing."""
+    page = output_of(implam, "help").partition("Options:")[2].partition("Exit codes:")[0]
+    takers = {found[1]: found[2].split(", ")
+              for found in re.finditer(r"^  (--[\w-]+).*?with ([\w, ]+):", page, re.MULTILINE)}
+    takers["-log_view"] = ["run", "restart"]
+    require(len(takers) == 10, f"The help names the commands of {takers}.")
+    values = {"--rig": "=d7136", "--output": "=away", "--wall-limit": "=9", "--ranks": "=2", "--time": "=1:00:00"}
+    deck = "small.nml"
+    for verb, files in (("run", [deck]), ("check", [deck]), ("new", ["fresh.nml"]), ("explain", ["plate"]),
+                        ("restart", ["away"]), ("queue", ["slurm", deck]), ("completion", ["bash"]), ("man", []),
+                        ("version", []), ("help", ["plate"])):
+        others = [name for name, verbs in takers.items() if verb not in verbs]
+        printed = output_of(implam, verb, *files, *(name + values.get(name, "") for name in others), cwd=folder,
+                            code=EXIT_USAGE)
+        require(printed.count("\n") == 1 and printed.startswith(f"implam: implam {verb} does not take "), printed)
+        for name in others:
+            require(f"{name} (an option of {', '.join(takers[name])})" in printed, printed)
+    require(not [*folder.glob("away*"), *folder.glob("fresh*"), *folder.glob("*.slurm")], "A file was written.")
+    require(output_of(implam, "man", "--chain", "--help") == output_of(implam, "help"), "Options hinder the help.")
+    print("options: done")
 
 
 def check_interrupt(implam, folder):
@@ -210,6 +234,20 @@ def check_new(implam, folder):
     require(area[0] == 0 and area[-1] > 1e-4 and history["force"][-1] == 0, "No growth, or the impact has not ended.")
 
 
+def check_full_disk(implam, folder):
+    """Files that cannot be completed are reported, and nothing is left of them."""
+    folder.mkdir()
+    deck = HERE.parents[1] / "input" / "small" / "cohesive.nml"
+    for words in (["new", "full.nml"], ["queue", "slurm", str(deck)]):
+        # A limit of the size of files fails as a full disk does.
+        done = subprocess.run([implam, *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=60, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
+        require(done.returncode == EXIT_FILES and "Cannot write" in done.stderr and not done.stdout, f"{words}: {done}")
+    require(not [*folder.iterdir()], f"There are {[*folder.iterdir()]}.")
+    print("full disk: done")
+
+
 def run_coarse(implam, folder):
     """Run the starter deck with cells of twice the size, for an eighth of the processor time; only these are warned
     of."""
@@ -232,11 +270,13 @@ def main():
     check_help(implam)
     check_explain(implam)
     check_slips(implam, folder)
+    check_options(implam, folder)
     check_interrupt(implam, folder)
     check_cut_step(implam, folder)
     check_pages(implam, folder)
     check_zsh(implam, folder)
     check_new(implam, folder)
+    check_full_disk(implam, folder / "full")
 
 
 if __name__ == "__main__":

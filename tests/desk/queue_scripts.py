@@ -38,12 +38,17 @@ def check_requests(implam, folder):
     run([implam, "queue", "pbs", "deck.nml", "--ranks", "8"], folder=folder)
     script = (folder / "deck.pbs").read_text(encoding="utf-8")
     require("ncpus=8:mpiprocs=8" in script and "mpirun -n 8" in script, "The script does not request eight ranks.")
-    for words, code in ((["lsf", "deck.nml"], EXIT_USAGE), (["slurm", "none.nml"], EXIT_DECK), ([], EXIT_USAGE),
+    for words, code in ((["lsf", "deck.nml"], EXIT_USAGE), (["slurm", "none.nml"], EXIT_FILES), ([], EXIT_USAGE),
                         (["slurm", "deck.nml", "--time", "90"], EXIT_USAGE),
                         (["slurm", "deck.nml", "--ranks", "0"], EXIT_USAGE), (["slurm", "array.txt"], EXIT_FILES)):
         run([implam, "queue", *words], code, folder)
-    printed = run([implam, "queue", "slurm", "none.nml"], EXIT_DECK, folder)
+    printed = run([implam, "queue", "slurm", "none.nml"], EXIT_FILES, folder)
     require("none.nml: there is no such file." in printed, printed)
+    (folder / "deck.slurm").unlink()
+    run([implam, "queue", "slurm", "deck.nml", "--output", "other folder"], folder=folder)
+    script = (folder / "deck.slurm").read_text(encoding="utf-8")
+    require("checkpoint='other folder/deck_restart.h5'" in script, "The script looks for another checkpoint.")
+    require("'deck.nml' --output 'other folder')" in script, "The script has no --output.")
     print("requests: done")
 
 

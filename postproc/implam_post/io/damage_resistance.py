@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from implam_post.io.contours import outline
+from implam_post.io.counts import listed
 from implam_post.io.fields import Fields, struck_point
 from implam_post.io.history import History
 from implam_post.io.quantities import impact_energy, peak
@@ -169,22 +170,10 @@ def kinds_of_damage(summary: Mapping[str, Any]) -> list[str]:
     kinds = []
     grown = [entry["ply_above"] for entry in summary.get("interfaces", []) if entry["first_growth"]]
     if grown:
-        kinds.append(f"delamination below {_listed(grown)}")
+        kinds.append(f"delamination below {listed(grown)}")
     for name, key in (("matrix cracks", "matrix_crack_area"), ("matrix crushing", "matrix_crushing_area"),
                       ("fibre failure", "fibre_failure_area")):
         plies = [ply["ply"] for ply in summary["plies"] if ply.get(key, 0) > 0]
         if plies:
-            kinds.append(f"{name} in {_listed(plies)}")
+            kinds.append(f"{name} in {listed(plies)}")
     return kinds
-
-
-def _listed(plies: list[int]) -> str:
-    """Return numbers of plies as text, consecutive ones as ranges."""
-    runs: list[list[int]] = []
-    for ply in sorted(plies):
-        if runs and ply == runs[-1][-1] + 1:
-            runs[-1].append(ply)
-        else:
-            runs.append([ply])
-    words = [str(run[0]) if len(run) == 1 else f"{run[0]} to {run[-1]}" for run in runs]
-    return ("ply " if len(plies) == 1 else "plies ") + ", ".join(words)

@@ -15,9 +15,10 @@ from implam_post.io.contours import WEIGHTS, above, area, areas, level_of, outli
 from implam_post.io.deck import Deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 
-__all__ = ["IMAGES", "MODES", "Fields", "Interface", "Mesh", "NoTimeError", "Snapshot", "area", "deck_in", "extents",
-           "opened", "outline", "read_fields", "struck_point"]
+__all__ = ["FIBRES", "IMAGES", "MODES", "Fields", "Interface", "Mesh", "NoTimeError", "Snapshot", "area", "deck_in",
+           "extents", "opened", "outline", "read_fields", "struck_point"]
 MODES = {"fibre failure": 1, "matrix cracking": 2, "matrix crushing": 4}
+FIBRES = ("fibres torn", "fibres crushed")
 # Exceptions of h5py and numpy on damaged files or files of another program.
 _DAMAGED = (KeyError, IndexError, TypeError, ValueError, AttributeError, RuntimeError, OverflowError, MemoryError)
 
@@ -65,7 +66,7 @@ class Interface:
 @dataclass(frozen=True)
 class Snapshot:
     """State at one time, by element: fraction of the toughness dissipated at the nine points of the interface on top,
-    ply failures, G/G_c ahead of fronts; also the figures of the interfaces and the projected area."""
+    ply failures, G/G_c ahead of fronts, plies with crushed fibres; also figures of interfaces and projected area."""
 
     time: float
     mesh: Mesh
@@ -74,6 +75,7 @@ class Snapshot:
     release_ratio: np.ndarray
     interfaces: dict[int, Interface] = field(default_factory=dict)
     projected_area: float | None = None
+    crushed: dict[int, np.ndarray] = field(default_factory=dict)
 
     @property
     def delaminated(self) -> np.ndarray:
@@ -97,10 +99,9 @@ class Snapshot:
         """Return cells in plan and at each of their points the largest share of all interfaces."""
         layered = self.mesh.first_ply > 1
         corners, shares = self.mesh.corners[layered], self.shares[layered]
-        middles = np.round(corners.mean(axis=1) / (np.abs(self.mesh.corners).max() or 1) * 1e7).astype(np.int64)
-        _, first, place = np.unique(middles, axis=0, return_index=True, return_inverse=True)
+        _, first, place = _plan_of(corners)
         largest = np.zeros((len(first), 9))
-        np.maximum.at(largest, place.ravel(), shares)
+        np.maximum.at(largest, place, shares)
         return corners[first], largest
 
     def release(self, below_ply: int) -> tuple[np.ndarray, np.ndarray]:
@@ -108,10 +109,37 @@ class Snapshot:
         loaded = (self.release_ratio > 0) & self.of_interface(below_ply)
         return self.mesh.corners[loaded], self.release_ratio[loaded]
 
-    def failed_cells(self, ply: int, mode: int) -> np.ndarray:
-        """Return the corners of cells in which a ply failed in a mode (1 fibre failure, 2 cracking, 4 crushing)."""
+    def failed(self, ply: int, kind: str) -> np.ndarray:
+        """Return whether a ply of an element failed: in one of MODES, or with fibres torn or fibres crushed."""
         of_ply = (self.mesh.first_ply <= ply) & (ply <= self.mesh.last_ply)
-        return self.mesh.corners[of_ply & (self.failures[ply] & mode > 0)]
+        mode = MODES.get(kind, MODES["fibre failure"])
+        found = of_ply & (self.failures[ply] & mode > 0)
+        return np.asarray(found if kind in MODES else found & (self.crushed[ply] == (kind == FIBRES[1])))
+
+    def failed_cells(self, ply: int, kind: str) -> np.ndarray:
+        """Return the corners of cells in which a ply failed; see `failed`."""
+        return np.asarray(self.mesh.corners[self.failed(ply, kind)])
+
+    @property
+    def kinds_of_fibre_failure(self) -> tuple[str, ...]:
+        """Kinds of fibre failure that the file distinguishes."""
+        return FIBRES if self.crushed else ("fibre failure",)
+
+    def projected_rest(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return `projected`, and for each of its cells the ply above the interface with the largest mean share."""
+        corners, largest = self.projected()
+        layered = np.flatnonzero(self.mesh.first_ply > 1)
+        _, _, place = _plan_of(self.mesh.corners[layered])
+        order = np.lexsort((self.shares[layered] @ WEIGHTS, place))
+        last = np.append(np.flatnonzero(np.diff(place[order])), len(order) - 1)
+        return corners, largest, self.mesh.first_ply[layered[order[last]]] - 1
+
+
+def _plan_of(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the middles of cells in plan, the first element of each, and the cell of each element."""
+    middles = np.round(corners.mean(axis=1) / (np.abs(corners).max(initial=0) or 1) * 1e7).astype(np.int64)
+    found, first, place = np.unique(middles, axis=0, return_index=True, return_inverse=True)
+    return found, first, place.ravel()
 
 
 # Signs of x and y of the mirror images of the modelled part.
@@ -181,6 +209,18 @@ class Fields:
         level = level_of(*snapshot.projected())
         owns = [snapshot.of_interface(below_ply) for below_ply in snapshot.mesh.interfaces]
         return [self.full_plate(above(snapshot.mesh.corners[own], snapshot.shares[own], level)) for own in owns]
+
+    def projected_rest(self, place: int) -> list[np.ndarray]:
+        """Return the projected delamination by the interface with the largest share of each cell.
+
+        The interpolated largest share is not the largest of the interpolated shares, so that `projected_depths` leaves
+        parts of the region out.
+        """
+        snapshot = self.snapshots[place]
+        corners, largest, of = snapshot.projected_rest()
+        level = level_of(corners, largest)
+        return [self.full_plate(above(corners[of == below_ply], largest[of == below_ply], level))
+                for below_ply in snapshot.mesh.interfaces]
 
     def starter(self, below_ply: int) -> np.ndarray:
         """Return the cells of the full plate that were initially delaminated below a ply."""
@@ -310,6 +350,8 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
     names = (name for name in map(re.compile(r"ply_(\d+)_failure").fullmatch, cells) if name)
     found = sorted((int(name[1]), name.string) for name in names)
     failures = {ply: _flags(cells[name][()].ravel(), name, len(nothing)) for ply, name in found if ply in mesh.plies}
+    crushed = {ply: _finite(cells[name][()].ravel(), name, len(nothing)) > 0 for ply in failures
+               if (name := f"ply_{ply}_fibres_crushed") in cells}
     interfaces, projected = _figures(group.get("interfaces", {}))
     shares = np.repeat(delaminated[:, None], 9, axis=1)
     if "points/dissipated_above" in group:
@@ -318,7 +360,8 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
         cohesive = [below_ply + 1 for below_ply, figures in interfaces.items() if figures.is_cohesive]
         shares = np.where(np.isin(mesh.first_ply, cohesive)[:, None], at_points, shares)
     time = float(_finite(group["time"][()], "time"))
-    return Snapshot(time, mesh, np.clip(shares, 0, 1), failures, release_ratio, interfaces, projected)
+    return Snapshot(time, mesh, np.clip(shares, 0, 1), failures, release_ratio, interfaces, projected,
+                    crushed)
 
 
 def _figures(group: h5py.Group | dict[str, Any]) -> tuple[dict[int, Interface], float | None]:

@@ -3,7 +3,7 @@
 import fcntl
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,6 +25,9 @@ def replaced(path: Path) -> Iterator[Path]:
         draft.replace(path)
     except OSError as error:
         raise FileError(f"{path} cannot be written ({reason(error)}).") from None
+    finally:
+        with suppress(OSError):
+            draft.unlink()  # of a failure; a complete one has its name
 
 
 def write_text(path: Path, text: str) -> None:

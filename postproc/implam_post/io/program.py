@@ -5,6 +5,7 @@ import shlex
 import shutil
 import subprocess
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 from implam_post.io.errors import FileError, reason
@@ -51,6 +52,29 @@ def check_deck(program: Sequence[str], deck: Path) -> tuple[bool, list[str]]:
     return ended.returncode == 0, printed
 
 
+@cache
+def _version_of(program: str) -> str:
+    """Return the version of a program and its commit; empty if it does not print them."""
+    try:
+        ended = subprocess.run([program, "--version"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, text=True, errors="replace", timeout=_WAITING, check=False,
+                               env=environment())
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return _version_among(ended.stdout.splitlines()[:1])
+
+
+def version_of(program: Sequence[str]) -> str:
+    """Return version and commit of the program; empty if they are not known."""
+    return _version_of(program[-1])
+
+
+def _version_among(lines: Sequence[str]) -> str:
+    """Return the version in the last line that names it; empty if there is none."""
+    found = [line for line in lines if line.startswith("Implam ")]
+    return found[-1].split(",")[0].removeprefix("Implam ") if found else ""
+
+
 def shell_code(code: int) -> int:
     """Return an exit code as in a shell: 128 plus the signal number for a process ended by a signal."""
     return 128 - code if code < 0 else code
@@ -77,7 +101,5 @@ def checkpoint_in(folder: Path) -> Path | None:
 def version_in(folder: Path) -> str:
     """Return the version that wrote the results, from the last line in the log that names it."""
     for path in sorted(folder.glob("*.log"))[:1]:
-        lines = [line for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
-                 if line.startswith("Implam ")]
-        return lines[-1].split(",")[0].removeprefix("Implam ") if lines else ""
+        return _version_among(path.read_text(encoding="utf-8", errors="replace").splitlines())
     return ""

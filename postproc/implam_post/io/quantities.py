@@ -1,4 +1,8 @@
-"""Single numbers that characterize a history: peaks, contacts, rebound, energy. NaN in the data results in NaN."""
+"""Single numbers that characterize a history: peaks, contacts, rebound, energy. NaN in the data results in NaN.
+
+They compare a history with measured, analytical and other histories, which have no summary, and are more accurate than
+the rows: peaks and ends of contact lie between them. Figures of a run are those of its summary (`run_figures`).
+"""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -22,6 +26,7 @@ class Contact(NamedTuple):
     end: float
 
 
+_GROWN = 2  # stage of an interface
 NO_PEAK, NO_CONTACT = Peak(np.nan, np.nan), Contact(np.nan, np.nan)
 
 
@@ -83,15 +88,15 @@ def second_peak(history: History) -> Peak:
 
 
 def rebound_velocity(history: History) -> float:
-    """Return the impactor's velocity at the end of the last contact."""
+    """Return the impactor's velocity at the end of the last contact, positive away from the plate."""
     found = contacts(history)
-    return history.at("impactor_velocity", found[-1].end) if found else np.nan
+    return -history.at("impactor_velocity", found[-1].end) if found else np.nan
 
 
 def contact_duration(history: History) -> float:
-    """Return the time from the first contact to the end of the last contact."""
+    """Return the total time of all contacts; NaN if the last one has not ended."""
     found = contacts(history)
-    return found[-1].end - found[0].begin if found else np.nan
+    return float(sum(one.end - one.begin for one in found)) if found else np.nan
 
 
 def impact_energy(history: History) -> float:
@@ -132,11 +137,16 @@ def growth_rows(history: History) -> np.ndarray:
 
 
 def first_growth(history: History) -> Peak:
-    """Return the largest force up to the row of first delamination growth, and the time of that row."""
-    rows = growth_rows(history)
+    """Return force and time of the first row in which a delamination has grown, as in the summary.
+
+    Histories without the stages of the interfaces have grown where the delaminated area has.
+    """
+    stages = [values for name, values in history.columns.items() if name.startswith("stage_below_")]
+    rows = (np.flatnonzero(np.any([(values >= _GROWN) & (values[0] < _GROWN) for values in stages], axis=0))
+            if stages else growth_rows(history))
     if not len(rows):
         return NO_PEAK
-    return Peak(float(np.max(history["force"][:rows[0] + 1])), float(history.time[rows[0]]))
+    return Peak(float(history["force"][rows[0]]), float(history.time[rows[0]]))
 
 
 def rms_force_difference(history: History, reference: History) -> float:

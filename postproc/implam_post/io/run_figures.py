@@ -67,7 +67,7 @@ def figures(run: Run) -> dict[str, Measured]:
     """Return all figures of a run by name: those of the summary, of its interfaces, and those of ASTM D7136."""
     dimensions = {"time": ""} if "load_factor_reached" in run.summary else {}
     found = {name: Measured(value, dimensions.get(dimension := dimension_of(name), dimension))
-             for name, value in _numbers(run.summary)}
+             for name, value in numbers_of(run.summary)}
     return found | resistance(run)
 
 
@@ -92,7 +92,7 @@ def compare(first: Run, second: Run) -> "pd.DataFrame":
     return table
 
 
-def _numbers(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
+def numbers_of(summary: Mapping[str, Any]) -> Iterator[tuple[str, float]]:
     """Yield the numbers of a summary by name; names of interfaces include the number of the ply above."""
     for name, value in summary.items():
         if name in _NO_FIGURES:

@@ -69,10 +69,10 @@ def section_at(fields: Fields, angle: float, place: int = -1) -> Section:
     order = np.lexsort((mesh.first_ply[row], along[:, 0]))
     row, along, places = row[order], along[order], places[order]
     deflection, opening = _at_points(fields, place)
-    crushed = _crushed(fields, place, snapshot.failures)
     owns = {below: snapshot.of_interface(below) for below in mesh.interfaces}
     levels = {below: max(level_of(mesh.corners[own], snapshot.shares[own]), 1e-9) for below, own in owns.items()}
-    failed, pressed = ({ply: flags[row] for ply, flags in given.items()} for given in (snapshot.failures, crushed))
+    failed, pressed = ({ply: flags[row] for ply, flags in given.items()} for given in (snapshot.failures,
+                                                                                               snapshot.crushed))
     return Section(angle, snapshot.time, along, _between(deflection[row], places), _between(opening[row], places),
                    _between(snapshot.shares[row], places), mesh.first_ply[row].astype(int),
                    mesh.last_ply[row].astype(int), levels, failed, pressed)
@@ -127,11 +127,3 @@ def _at_points(fields: Fields, place: int) -> tuple[np.ndarray, np.ndarray]:
     if not np.all(np.isfinite(deflection)):
         raise FileError(f"{fields.path} is damaged: its displacement is not finite.")
     return deflection, opening
-
-
-def _crushed(fields: Fields, place: int, failures: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
-    """Return whether fibres failed in compression, by ply and element; empty if it is not written."""
-    with opened(fields.path) as file:
-        group = file["times"][sorted(file["times"])[place]].get("cells", {})
-        names = {ply: f"ply_{ply}_fibres_crushed" for ply in failures}
-        return {ply: group[name][()].ravel() > 0 for ply, name in names.items() if name in group}

@@ -108,7 +108,9 @@ def _plot_histories(curves: _Curves, options: argparse.Namespace, style: Picture
     paths, histories = curves.paths, curves.histories
     folders = [options.output or path.parent for path in paths]
     response = folders[0] / f"{paths[0].stem}_response.{style.kind}"
-    print(plot_response(histories, response, style, curves.measured))
+    drawn = plot_response(histories, response, style, curves.measured)
+    if drawn is not None:
+        print(drawn)
     compressed = plot_compression(histories, folders[0] / f"{paths[0].stem}_compression.{style.kind}", style,
                                   curves.summaries, curves.undamaged)
     if compressed is not None:

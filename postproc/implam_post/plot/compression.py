@@ -63,7 +63,7 @@ def _draw_stress(axes: Axes, histories: Mapping[str, History], style: PictureSty
         label = ": ".join(filter(None, (name, remarks.get(name))))
         axes.plot(along.factor * history["shortening"], up.factor * history[STRESS], label=label or None, **line)
         axes.plot(along.factor * history["shortening"][top], up.factor * history[STRESS][top], "o",
-                  color=line["color"])
+                  color=line["color"], label=None if place else "strength")
     if undamaged:
         axes.axhline(up.factor * undamaged, color="grey", linestyle="--", linewidth=1, label="undamaged plate")
     axes.set(xlabel=along.label, ylabel=up.label)

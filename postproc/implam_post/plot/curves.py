@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from implam_post.io.errors import FileError, reason
 from implam_post.io.history import History, read_columns
 from implam_post.io.measured import check_units
+from implam_post.io.quantities import growth_rows
 from implam_post.io.units import Axis
 from implam_post.plot.style import PictureStyle
 
@@ -19,6 +20,8 @@ AXES = {"time": ("time", "time"), "force": ("contact force", "force"), "indentat
         "patch_deflection": ("deflection of the patch", "length"),
         "impactor_displacement": ("displacement of the impactor", "length"),
         "delaminated_area": ("delaminated area", "area"), "projected_area": ("projected area", "area")}
+
+_GROWN = 2  # stage of an interface in which points have failed
 
 
 def plot_curves(history: History, files: Sequence[Path], path: Path, style: PictureStyle) -> Path:
@@ -56,6 +59,13 @@ def in_contact(history: History) -> History:
     """Return the rows up to the end of the last contact; all rows if there is no contact."""
     touching = np.flatnonzero(history["force"] > 0)
     return history.until(history.time[min(touching[-1] + 1, len(history.time) - 1)]) if len(touching) else history
+
+
+def rows_of_growth(history: History) -> np.ndarray:
+    """Return the rows at which delaminations grow, from first growth on: before it interfaces soften only."""
+    stages = [values for name, values in history.columns.items() if name.startswith("stage_below_")]
+    rows = growth_rows(history)
+    return np.asarray(rows[np.any([values[rows] >= _GROWN for values in stages], axis=0)] if stages else rows)
 
 
 def _columns(curve: History) -> tuple[str, str]:

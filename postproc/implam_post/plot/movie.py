@@ -17,12 +17,15 @@ from implam_post.io.fields import Fields, read_fields
 from implam_post.io.history import History
 from implam_post.io.run import open_run
 from implam_post.plot.compression import is_compressed
-from implam_post.plot.plan_frame import fill, frame, reach_of, state_of
+from implam_post.plot.plan import add_depths, depth_colours, draw_depths
+from implam_post.plot.plan_frame import frame, reach_of, state_of
 from implam_post.plot.style import PictureStyle, add_options, style_of
 
 # Column drawn against time: of an impact, of a compression.
 _LOADS = (("force", "contact force", "force"), (STRESS, "far-field stress", "stress"))
 
+# Up to this many interfaces are named in a legend, more beside a bar of colours.
+_FEW = 6
 # Smallest and largest frame rate: files store durations in hundredths or thousandths of a second.
 _RATES = (0.01, 1000.0)
 
@@ -40,10 +43,13 @@ def _picture(fields: Fields, history: History | None, style: PictureStyle, momen
     plan, *below = np.ravel(figure.subplots(1 if history is None else 2, squeeze=False,
                                             height_ratios=[1] if history is None else [3, 1]))
     interfaces = fields.snapshots[-1].mesh.interfaces
-    for place in reversed(range(len(interfaces))):
-        fill(plan, fields.delaminated(moment, interfaces[place]), facecolor=f"C{place % 10}", linewidth=0)
-    plan.legend(handles=[Patch(color=f"C{place % 10}", label=f"below ply {below_ply}")
-                         for place, below_ply in enumerate(interfaces)], loc="upper right", fontsize="small")
+    draw_depths(plan, [fields.delaminated(moment, below_ply) for below_ply in interfaces])
+    if len(interfaces) > _FEW:
+        add_depths(plan, interfaces, "delaminated interface nearest to the struck face, below ply", "right")
+    else:
+        plan.legend(handles=[Patch(color=colour, label=f"below ply {below_ply}") for below_ply, colour in
+                             zip(interfaces, depth_colours(len(interfaces)), strict=True)],
+                    loc="upper right", fontsize="small")
     plan.set_title(state_of(fields, time, style))
     last = len(fields.snapshots) - 1
     frame(plan, fields, reach_of(np.concatenate([fields.delaminated(last, ply) for ply in interfaces]), fields), style)

@@ -6,20 +6,22 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from implam_post.io.errors import FileError, reason
 from implam_post.io.fields import Fields
 from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES, History
-from implam_post.io.quantities import growth_rows
 from implam_post.plot.compression import compression_figure, is_compressed, remark_of
-from implam_post.plot.curves import AXES, in_contact
+from implam_post.plot.curves import AXES, in_contact, rows_of_growth
+from implam_post.plot.failures import draw_cracks, failures_figure
 from implam_post.plot.front import front_figure
 from implam_post.plot.plan import (
+    FEW,
+    add_times,
     delamination_figure,
-    draw_cracks,
     draw_delamination,
-    failures_figure,
+    draw_projected,
+    draw_sizes,
     projected_figure,
 )
 from implam_post.plot.plan_frame import caption, reach_of
@@ -34,19 +36,27 @@ _PLAIN = PictureStyle()
 def plot_forces(histories: Sequence[History], path: Path) -> Path:
     """Draw the forces of several histories in one picture."""
     figure = Figure(figsize=(8, 4.5), layout="constrained")
-    _draw(figure.subplots(), histories, "force")
+    draw_response(figure.subplots(), histories, "force")
     return _save(figure, path)
 
 
 def plot_response(histories: Sequence[History], path: Path, style: PictureStyle = _PLAIN,
-                  measured: History | None = None) -> Path:
-    """Draw force, indentation, deflection, all with measured values, and force against displacement."""
-    figure = Figure(figsize=(8, 13), layout="constrained")
-    *panels, last = figure.subplots(len(RESPONSES) + 1)
-    for axes, column in zip(panels, RESPONSES, strict=True):
+                  measured: History | None = None) -> Path | None:
+    """Draw force, indentation, deflection, all with measured values, and force against displacement.
+
+    Without contact only the deflection is drawn, of compressions nothing, as `plot_compression` draws them.
+    """
+    struck = [history for history in histories if np.any(history.columns.get("force", 0))]
+    if not struck and all(map(is_compressed, histories)):
+        return None
+    columns = list(RESPONSES) if struck else ["deflection"]
+    figure = Figure(figsize=(7.5, 2.45 * (len(columns) + bool(struck)) + 0.2), layout="constrained")
+    panels = np.ravel(figure.subplots(len(columns) + bool(struck), squeeze=False))
+    for axes, column in zip(panels, columns, strict=False):
         axes.sharex(panels[0])
-        _draw(axes, histories, column, style, measured)
-    _draw_loop(last, histories, style)
+        draw_response(axes, histories if column == "deflection" else struck, column, style, measured)
+    if struck:
+        _draw_loop(panels[-1], struck, style)
     return _save(figure, path, style)
 
 
@@ -75,23 +85,39 @@ def plot_energies(history: History, path: Path, style: PictureStyle = _PLAIN) ->
 
 
 def plot_overview(fields: Fields, history: History, path: Path, style: PictureStyle = _PLAIN) -> Path:
-    """Draw in one picture each interface in plan with the cracks of adjacent plies, the force and the energies."""
+    """Draw in one picture each interface in plan with the cracks of adjacent plies, the force and the energies.
+
+    Many interfaces are drawn in one map, projected as in a C-scan, with their areas.
+    """
     interfaces = fields.snapshots[-1].mesh.interfaces
     if not interfaces:
         raise FileError(f"{fields.name} has no interface that may delaminate.")
-    figure = Figure(figsize=(11, 2.9 * max(len(interfaces), 2)), layout="constrained")
+    few = len(interfaces) <= FEW
+    figure = Figure(figsize=(11, max(2.9 * len(interfaces), 5.8) if few else 7.5), layout="constrained")
     left, right = figure.subfigures(1, 2)
-    last = len(fields.snapshots) - 1
-    reach = np.max([reach_of(fields.delaminated(last, ply), fields) for ply in interfaces], axis=0)
-    for axes, below_ply in zip(left.subplots(len(interfaces), squeeze=False)[:, 0], interfaces, strict=True):
-        draw_delamination(axes, fields, below_ply, style, reach)
-        if fields.snapshots[-1].failures:
-            draw_cracks(axes, fields, below_ply)
+    if few:
+        _draw_interfaces(left, fields, style)
+    else:
+        plan, sizes = left.subplots(2, height_ratios=[3, 2])
+        draw_projected(plan, fields, style)
+        draw_sizes(sizes, fields, style)
     force, energies = right.subplots(2)
-    _draw(force, [history], "force", style)
+    draw_response(force, [history], "force", style)
     _stack(energies, history, style)
     figure.supxlabel(caption(fields, style), fontsize="small")
     return _save(figure, path, style)
+
+
+def _draw_interfaces(figure: SubFigure, fields: Fields, style: PictureStyle) -> None:
+    """Draw each interface in plan with the cracks of adjacent plies."""
+    interfaces = fields.snapshots[-1].mesh.interfaces
+    reach = np.max([reach_of(fields.delaminated(-1, ply), fields) for ply in interfaces], axis=0)
+    grid = figure.subplots(len(interfaces), squeeze=False)[:, 0]
+    for axes, below_ply in zip(grid, interfaces, strict=True):
+        draw_delamination(axes, fields, below_ply, style, reach)
+        if fields.snapshots[-1].failures:
+            draw_cracks(axes, fields, below_ply)
+    add_times(figure, list(grid), fields, style)
 
 
 def plot_fields(fields: Fields, base: Path, times: Sequence[float] | None = None,
@@ -126,13 +152,15 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
         labels = [ENERGY_NAMES[column] for column in shown]
         for parts, names in ((np.maximum, labels), (np.minimum, ())):
             axes.stackplot(time.factor * history.time, [energy.factor * parts(values, 0) for values in shown.values()],
-                           labels=names, colors=colours, alpha=0.8)
+                           labels=names, colors=colours, alpha=0.8, edgecolor="white", linewidth=0.5)
     axes.axhline(energy.factor * start, color="black", linestyle="--", linewidth=1, label="total at the start")
     axes.plot(time.factor * history.time, energy.factor * history["energy_error"], color="black", linewidth=1,
               label=ENERGY_ERROR)
     axes.set(xlabel=time.label, ylabel=energy.label, title=Path(history.name).stem.removesuffix("_history"))
     axes.locator_params(axis="x", nbins=6)
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    # From the top of the stack downwards.
+    handles = axes.get_legend_handles_labels()[0][::-1]
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small")
 
 
 def response_of(history: History, column: str) -> np.ndarray:
@@ -142,8 +170,8 @@ def response_of(history: History, column: str) -> np.ndarray:
     return history[column]
 
 
-def _draw(axes: Axes, histories: Sequence[History], column: str, style: PictureStyle = _PLAIN,
-          measured: History | None = None) -> None:
+def draw_response(axes: Axes, histories: Sequence[History], column: str, style: PictureStyle = _PLAIN,
+                  measured: History | None = None) -> None:
     """Draw a column of several histories, each in its own style, and measured values as dots."""
     words, dimension = RESPONSES[column]
     drawn = [*histories, *([measured] if measured is not None and column in measured.columns else [])]
@@ -155,7 +183,7 @@ def _draw(axes: Axes, histories: Sequence[History], column: str, style: PictureS
         line_style = STYLES[position % len(STYLES)]
         axes.plot(time.factor * history.time, value.factor * response_of(history, column), label=names[position],
                   **line_style)
-        grown = growth_rows(history)
+        grown = rows_of_growth(history)
         if column == "force" and len(grown):
             axes.plot(time.factor * history.time[grown], value.factor * history[column][grown], "o", markersize=3,
                       color=line_style["color"],

@@ -1,4 +1,4 @@
-"""Pictures of the plate in plan: delamination of each interface, projected delamination, failures of each ply."""
+"""Pictures of delaminations in plan: of each interface, and projected as in a C-scan."""
 
 from collections.abc import Sequence
 
@@ -6,42 +6,57 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import BoundaryNorm, Normalize
+from matplotlib.colors import BoundaryNorm, ListedColormap, Normalize
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from implam_post.io.errors import ImplamError
-from implam_post.io.fields import MODES, Fields, deck_in, outline
-from implam_post.laminate.decks import plies_of
-from implam_post.plot.plan_frame import caption, clock_of, fill, frame, height_of, locate, reach_of
-from implam_post.plot.style import PictureStyle
+from implam_post.io.contours import WEIGHTS, areas
+from implam_post.io.fields import Fields
+from implam_post.plot.plan_frame import (
+    arrangement,
+    caption,
+    clock_of,
+    fill,
+    frame,
+    label_outer,
+    locate,
+    reach_of,
+)
+from implam_post.plot.style import DEPTHS, TIMES, PictureStyle
 
-_COLOURS = {"fibre failure": "C3", "matrix cracking": "C0", "matrix crushing": "C1"}
-_COLUMNS = 5
 _PLAIN = PictureStyle()
-# Inches next to a map, above and below it (title, axis, bar), of the text below all maps, and of a legend.
-_BESIDE, _WORDS, _CAPTION, _BAR = 0.9, 2.0, 0.6, 0.6
+# Inches beside and above a map in a column of full titles and in several columns, and below all maps: axis, bar, text.
+_WIDE, _NARROW, _BELOW = (0.3, 0.75), (0.15, 0.35), 1.9
+# Up to this many interfaces a map has a title of two lines and its own row.
+FEW = 3
 # Digits of areas, as in the summary.
 _DIGITS = 4
+# Colour of delaminations written at one time only.
+_ONE_TIME = "#56B4E9"
+# Growth between times written that counts, as a part of the final area.
+_GROWN = 1e-3
+# Largest number of interfaces that are all named below a bar of depths.
+_NAMED = 16
 
 
 def delamination_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
     """Draw each interface of the full plate on one scale of lengths, coloured by the time of delamination."""
     interfaces = fields.snapshots[-1].mesh.interfaces
-    columns = 1 if len(interfaces) < 4 else 3
-    rows = -(-len(interfaces) // columns)
-    reach = np.max([reach_of(_last(fields, below_ply), fields) for below_ply in interfaces], axis=0)
-    width = 7.0 if columns == 1 else 4.2
-    height = height_of(width - _BESIDE, reach) + _WORDS
-    figure = Figure(figsize=(width * columns, height * rows + _CAPTION), layout="constrained")
+    reach = np.max([reach_of(fields.delaminated(-1, below_ply), fields) for below_ply in interfaces], axis=0)
+    few = len(interfaces) <= FEW
+    columns, rows, size = arrangement(len(interfaces), reach, _WIDE if few else _NARROW, _BELOW, 1 if few else None)
+    figure = Figure(figsize=size, layout="constrained")
     grid = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes, below_ply in zip(grid, interfaces, strict=False):
         draw_delamination(axes, fields, below_ply, style, reach)
+        if not few:
+            axes.set_title(short_title_of(fields, below_ply, style), fontsize="x-small")
+            axes.tick_params(labelsize="x-small")
+    label_outer(grid[:len(interfaces)], columns)
     locate(grid[0], fields)
     for axes in grid[len(interfaces):]:
         axes.set_visible(False)
+    add_times(figure, list(grid[:len(interfaces)]), fields, style)
     figure.supxlabel(caption(fields, style), fontsize="small")
     return figure
 
@@ -53,7 +68,7 @@ def draw_delamination(axes: Axes, fields: Fields, below_ply: int, style: Picture
     The initial delamination (starter) is grey. `reach` is the size of the region to be shown.
     """
     regions = [fields.delaminated(place, below_ply) for place in range(len(fields.snapshots))]
-    draw_times(axes, fields, regions, fields.starter(below_ply), style)
+    draw_times(axes, fields, regions, fields.starter(below_ply))
     axes.set_title(title_of(fields, below_ply, style), fontsize="medium")
     frame(axes, fields, reach_of(regions[-1], fields) if reach is None else reach, style)
 
@@ -68,138 +83,105 @@ def title_of(fields: Fields, below_ply: int, style: PictureStyle = _PLAIN) -> st
     return f"below ply {below_ply}: {kind} {style.shown('area', figures.area, _DIGITS)}\n{grown}"
 
 
+def short_title_of(fields: Fields, below_ply: int, style: PictureStyle = _PLAIN) -> str:
+    """Return the area of an interface at the last time, for small maps."""
+    area = fields.interface(len(fields.snapshots) - 1, below_ply).area
+    return f"below ply {below_ply}: {style.shown('area', area, _DIGITS)}"
+
+
 def projected_figure(fields: Fields, style: PictureStyle = _PLAIN) -> Figure:
     """Draw the projected (C-scan) delamination, coloured according to `style.projected`.
 
     The colour is the delaminated interface nearest to the struck face (depth), or the time of first delamination.
     """
-    interfaces, last = fields.snapshots[-1].mesh.interfaces, len(fields.snapshots) - 1
-    final = fields.projected(last)
-    figure = Figure(figsize=(7, height_of(7 - _BESIDE, reach_of(final, fields)) + _WORDS + _CAPTION),
-                    layout="constrained")
+    reach = reach_of(fields.projected(len(fields.snapshots) - 1), fields)
+    figure = Figure(figsize=arrangement(1, reach, _WIDE, _BELOW)[2], layout="constrained")
     axes = figure.subplots()
-    if style.projected == "time":
-        earlier = [fields.projected(place) for place in range(last)]
-        draw_times(axes, fields, [*earlier, final], np.empty((0, 4, 2)), style)
-    else:
-        # Interpolating the largest share is not the largest of the interpolated shares: the difference stays grey.
-        fill(axes, final, facecolor="lightgrey", linewidth=0)
-        draw_depths(axes, fields.projected_depths(last))
-    if style.projected == "depth" and len(interfaces) > 1:
-        scale = ScalarMappable(BoundaryNorm(np.arange(len(interfaces) + 1) - 0.5, 256), "turbo")
-        bar = figure.colorbar(scale, ax=axes, ticks=range(len(interfaces)), location="bottom",
-                              label="delaminated interface nearest to the struck face, below ply")
-        bar.set_ticklabels([str(below_ply) for below_ply in interfaces])
-    fill(axes, final, facecolor="none", edgecolor="black", linewidth=0.8)
-    axes.set_title(f"all interfaces: projected area {style.shown('area', fields.projected_area(last), _DIGITS)}",
-                   fontsize="medium")
-    frame(axes, fields, reach_of(final, fields), style)
+    draw_projected(axes, fields, style)
     locate(axes, fields)
     figure.supxlabel(caption(fields, style), fontsize="small")
     return figure
 
 
-def draw_depths(axes: Axes, regions: Sequence[np.ndarray], cmap: str = "turbo") -> None:
+def draw_projected(axes: Axes, fields: Fields, style: PictureStyle) -> None:
+    """Draw the projected delamination with its bar of colours."""
+    last = len(fields.snapshots) - 1
+    final = fields.projected(last)
+    if style.projected == "time":
+        draw_times(axes, fields, [fields.projected(place) for place in range(len(fields.snapshots))],
+                   np.empty((0, 4, 2)))
+        add_times(axes.figure, [axes], fields, style)
+    else:
+        draw_depths(axes, fields.projected_rest(last))
+        draw_depths(axes, fields.projected_depths(last))
+        add_depths(axes, fields.snapshots[-1].mesh.interfaces,
+                   "delaminated interface nearest to the struck face, below ply")
+    fill(axes, final, facecolor="none", edgecolor="black", linewidth=0.8)
+    axes.set_title(f"all interfaces: projected area {style.shown('area', fields.projected_area(last), _DIGITS)}",
+                   fontsize="medium")
+    frame(axes, fields, reach_of(final, fields), style)
+
+
+def depth_colours(count: int) -> list[tuple[float, ...]]:
+    """Return the colours of interfaces from the struck face on."""
+    return [colormaps[DEPTHS](value) for value in np.linspace(0, 0.93, count)]
+
+
+def draw_depths(axes: Axes, regions: Sequence[np.ndarray]) -> None:
     """Draw all interfaces in one map, the interface nearest to the struck face on top."""
-    norm = BoundaryNorm(np.arange(len(regions) + 1) - 0.5, 256)
-    for place in reversed(range(len(regions))):
-        fill(axes, regions[place], facecolor=colormaps[cmap](norm(place)), linewidth=0)
+    for cells, colour in reversed(list(zip(regions, depth_colours(len(regions)), strict=True))):
+        fill(axes, cells, facecolor=colour, linewidth=0)
 
 
-def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starter: np.ndarray,
-               style: PictureStyle) -> None:
-    """Draw a growing region coloured by the time of delamination, the starter in grey, with a colour bar."""
-    times = [snapshot.time for snapshot in fields.snapshots]
-    scale = ScalarMappable(Normalize(0, times[-1] if times[-1] > 0 else 1), "viridis_r")
-    several = len(times) > 1
-    for time, cells in reversed(list(zip(times, regions, strict=True))):
-        fill(axes, cells, facecolor=scale.to_rgba(time) if several else "C0", edgecolor="black", linewidth=0.5)
+def add_depths(axes: Axes, interfaces: Sequence[int], label: str, location: str = "bottom") -> None:
+    """Add the bar of colours of interfaces, by the ply above; every second or third one is named if there are many."""
+    count = len(interfaces)
+    scale = ScalarMappable(BoundaryNorm(np.arange(count + 1) - 0.5, count), ListedColormap(depth_colours(count)))
+    ticks = range(0, count, -(-count // _NAMED))
+    bar = axes.figure.colorbar(scale, ax=axes, ticks=ticks, location=location, label=label)
+    bar.set_ticklabels([str(interfaces[place]) for place in ticks])
+    bar.ax.minorticks_off()
+
+
+def draw_sizes(axes: Axes, fields: Fields, style: PictureStyle) -> None:
+    """Draw the area of each interface at the last time as bars, from the struck face downwards."""
+    interfaces = fields.snapshots[-1].mesh.interfaces
+    sizes = [fields.interface(len(fields.snapshots) - 1, below_ply).area for below_ply in interfaces]
+    size = style.axis("area of the interface", "area", sizes)
+    axes.barh(range(len(interfaces)), size.factor * np.array(sizes), color=depth_colours(len(interfaces)),
+              edgecolor="black", linewidth=0.3)
+    step = -(-len(interfaces) // _NAMED)
+    axes.set_yticks(range(0, len(interfaces), step), [str(below_ply) for below_ply in interfaces[::step]])
+    axes.set(xlabel=size.label, ylabel="interface below ply")
+    axes.invert_yaxis()
+
+
+def draw_times(axes: Axes, fields: Fields, regions: Sequence[np.ndarray], starter: np.ndarray) -> None:
+    """Draw a growing region coloured by the time of delamination, the starter in grey."""
+    scale = _scale(fields) if len(regions) > 1 else None
+    for snapshot, cells in reversed(list(zip(fields.snapshots, regions, strict=True))):
+        colour = _ONE_TIME if scale is None else scale.to_rgba(snapshot.time)
+        fill(axes, cells, facecolor=colour, edgecolor="black", linewidth=0.5)
     patch = fill(axes, starter, facecolor="lightgrey", edgecolor="black", linewidth=0.5, label="starter")
     if patch is not None:
         axes.legend(handles=[patch], loc="upper right", fontsize="small")
-    if several and any(map(len, regions)):
-        clock = clock_of(fields, style)
-        bar = axes.figure.colorbar(scale, ax=axes, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
-                                   label=f"{clock.label}, first written with delamination there")
-        bar.formatter = FuncFormatter(lambda value, _: f"{clock.factor * value:.3g}")
 
 
-def _last(fields: Fields, below_ply: int) -> np.ndarray:
-    """Return the delamination below a ply at the last time."""
-    return fields.delaminated(len(fields.snapshots) - 1, below_ply)
+def _scale(fields: Fields) -> ScalarMappable:
+    """Return the colours of times, from the first time with delamination to the last with growth."""
+    sizes = np.array([np.sum(areas(snapshot.mesh.corners) * (snapshot.shares @ WEIGHTS))
+                      for snapshot in fields.snapshots])
+    times = np.array([snapshot.time for snapshot in fields.snapshots])
+    grown = np.flatnonzero(np.diff(sizes, prepend=0) > _GROWN * np.max(sizes))
+    first, last = (times[grown[0]], times[grown[-1]]) if len(grown) else (times[0], times[-1])
+    return ScalarMappable(Normalize(first if first < last else 0, last if last > 0 else 1), TIMES)
 
 
-def draw_cracks(axes: Axes, fields: Fields, below_ply: int) -> None:
-    """Draw the matrix cracks of the ply at the back and of the ply above it onto a delamination."""
-    last = fields.snapshots[-1]
-    for ply, line_style in ((last.mesh.plies[-1], "-"), (below_ply, ":")):
-        edges = outline(fields.full_plate(last.failed_cells(ply, MODES["matrix cracking"])))
-        if len(edges):
-            axes.add_collection(LineCollection(edges, colors="C3", linestyles=line_style, label=f"cracks of ply {ply}"))
-            axes.legend(loc="upper right", fontsize="small")
-
-
-def failures_figure(fields: Fields, modes: Sequence[str] = tuple(MODES), style: PictureStyle = _PLAIN) -> Figure:
-    """Draw the failures of each ply of the full plate at the last time on one scale; cracks are along the fibres."""
-    last = fields.snapshots[-1]
-    plies = sorted(last.failures)
-    columns = min(_COLUMNS, len(plies))
-    rows = -(-len(plies) // columns)
-    along, across = _reach(fields)
-    height = 2.6 * min(max(across / along, 1 / 3), 3) if along > 0 else 2.6
-    figure = Figure(figsize=(2.6 * columns, (height + 0.3) * rows + _BAR + _CAPTION), layout="constrained")
-    grid = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).ravel()
-    angles = _angles(fields)
-    for axes, ply in zip(grid, plies, strict=False):
-        draw_failures(axes, fields, ply, modes, angles.get(ply), style)
-        axes.label_outer()
-    for axes in grid[len(plies):]:
-        axes.set_visible(False)
-    figure.legend(handles=[Patch(color=_COLOURS[name], label=name) for name in modes], loc="outside lower center",
-                  ncols=len(modes))
-    if plies:
-        locate(grid[0], fields)
-    figure.suptitle(caption(fields, style, outlined=False), fontsize="small")
-    return figure
-
-
-def draw_failures(axes: Axes, fields: Fields, ply: int, modes: Sequence[str], angle: float | None,
-                  style: PictureStyle = _PLAIN) -> None:
-    """Draw the failures of a ply, later modes on top of others; cracks are lines if the fibre angle is known."""
-    for name in reversed(modes):
-        cells = fields.full_plate(fields.snapshots[-1].failed_cells(ply, MODES[name]))
-        if name == "matrix cracking" and angle is not None:
-            axes.add_collection(LineCollection(along_fibres(cells, angle), colors=_COLOURS[name], linewidths=1))
-        else:
-            axes.add_collection(PolyCollection(cells, facecolors=_COLOURS[name], linewidths=0))
-    axes.set_title(f"ply {ply}" + ("" if angle is None else f", {angle:g}°"), fontsize="medium")
-    frame(axes, fields, _reach(fields), style)
-
-
-def along_fibres(cells: np.ndarray, angle: float) -> np.ndarray:
-    """Return a line through the centre of each cell at an angle in degrees, to its border, (cells, 2 ends, 2)."""
-    middles, halves = cells.mean(axis=1), np.ptp(cells, axis=1) / 2
-    direction = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
-    lengths = np.min(halves / np.maximum(np.abs(direction), 1e-12), axis=1, initial=np.inf)
-    steps = lengths[:, None] * direction
-    return np.stack([middles - steps, middles + steps], axis=1)
-
-
-def _angles(fields: Fields) -> dict[int, float]:
-    """Return the fibre angle of each ply; empty if the deck of the run is not known.
-
-    Mirror images of a quarter keep angles of 0 and 90 degrees only, and only such laminates may be modelled so.
-    """
-    deck = deck_in(fields.path)
-    try:
-        return {} if deck is None else {place: ply.angle for place, ply in enumerate(plies_of(deck), start=1)}
-    except ImplamError:
-        return {}
-
-
-def _reach(fields: Fields) -> tuple[float, float]:
-    """Return the size of the region of failures around the struck point at the last time."""
-    last = fields.snapshots[-1]
-    reached = [reach_of(fields.full_plate(last.failed_cells(ply, mode)), fields)
-               for ply in last.failures for mode in MODES.values()]
-    return max(along for along, _ in reached), max(across for _, across in reached)
+def add_times(figure: Figure, grid: Sequence[Axes], fields: Fields, style: PictureStyle) -> None:
+    """Add one bar of times for maps, unless there is only one time or no delamination."""
+    if len(fields.snapshots) < 2 or not any(np.any(snapshot.shares) for snapshot in fields.snapshots):
+        return
+    clock = clock_of(fields, style)
+    bar = figure.colorbar(_scale(fields), ax=grid, location="bottom", ticks=MaxNLocator(5), shrink=0.8,
+                          label=f"{clock.label}, first written with delamination there")
+    bar.formatter = FuncFormatter(lambda value, _: f"{clock.factor * value:.3g}")

@@ -16,6 +16,10 @@ from implam_post.io.units import Axis
 from implam_post.plot.style import PictureStyle
 
 _PLAIN = PictureStyle()
+# Size of a page in inches, the part of its width for labels, and the largest number of maps side by side.
+PAGE, _LABELS, _MAX_COLUMNS = (7.5, 10.0), 0.7, 6
+# Width for the title of a small map, inches.
+_TITLE = 1.35
 # Margin of a map as a fraction of the region shown, with space for the small plate in its corner.
 _MARGIN = 0.15
 
@@ -90,7 +94,8 @@ def locate(axes: Axes, fields: Fields) -> None:
         return
     small = axes.inset_axes((0.01, 0.01, _MARGIN, _MARGIN))
     draw_plate(small, deck, along, across)
-    small.add_patch(Rectangle((left, low), right - left, high - low, facecolor="none", edgecolor="C3", linewidth=0.8))
+    small.add_patch(Rectangle((left, low), right - left, high - low, facecolor="none", edgecolor="#D55E00",
+                              linewidth=1.2))
     small.set(xlim=(-0.55 * along, 0.55 * along), ylim=(-0.55 * across, 0.55 * across), aspect="equal", anchor="SW")
     small.axis("off")
 
@@ -116,6 +121,33 @@ def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
     return float(along), float(across)
 
 
+def arrangement(count: int, reach: Sequence[float], words: Sequence[float], rest: float,
+                 columns: int | None = None) -> tuple[int, int, tuple[float, float]]:
+    """Return columns, rows and size of a figure, in inches, in which maps are as large as possible on a page.
+
+    `words` are the inches beside the maps of a column and above those of a row, `rest` those below all of them.
+    """
+    slope, best = height_of(1.0, reach), (0.0, 1, 1)
+    for number in [columns] if columns else range(1, min(count, _MAX_COLUMNS) + 1):
+        rows = -(-count // number)
+        width = min((PAGE[0] - _LABELS) / number - words[0], ((PAGE[1] - rest) / rows - words[1]) / slope)
+        best = max(best, (width, number, rows))
+    width, number, rows = max(best[0], 0.5), *best[1:]
+    across = min(number * max(width + words[0], _TITLE) + _LABELS, PAGE[0])
+    return number, rows, (across, rows * (width * slope + words[1]) + rest)
+
+
+def label_outer(grid: Sequence[Axes], columns: int) -> None:
+    """Keep the labels and ticks of the maps at the left of each row and at the lower end of each column."""
+    for place, axes in enumerate(grid):
+        if place % columns:
+            axes.set_ylabel("")
+            axes.tick_params(labelleft=False)
+        if place + columns < len(grid):
+            axes.set_xlabel("")
+            axes.tick_params(labelbottom=False)
+
+
 def height_of(width: float, reach: Sequence[float]) -> float:
     """Return the height of a map of a given width, without text."""
     along, across = np.maximum(reach, max(reach) / 3)
@@ -133,4 +165,5 @@ def frame(axes: Axes, fields: Fields, reach: Sequence[float], style: PictureStyl
         side.set_label_text(length.label)
         side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
         side.set_major_locator(MaxNLocator(5))
-    axes.plot(*middle, "+", color="red", markersize=6)
+    axes.plot(*middle, "+", color="white", markersize=6.5, markeredgewidth=2.2, zorder=10)
+    axes.plot(*middle, "+", color="black", markersize=5, markeredgewidth=0.9, zorder=11)

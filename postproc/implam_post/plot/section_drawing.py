@@ -10,19 +10,18 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from implam_post.io.section import Section
-from implam_post.plot.style import PictureStyle
+from implam_post.plot.style import FAILURES, HATCHES, PictureStyle
 
-# Colours by Okabe and Ito, which colour-blind readers can distinguish; plies are light grey (fibres along the section)
-# to grey (across it).
-_OPEN, _CLOSED, _CRACK = "black", "#0072B2", "#D55E00"
-_FILLS = {"matrix crushing": ("#F0E442", ""), "fibres torn": ("#CC79A7", "xxxx"), "fibres crushed": ("#009E73", "////"),
-          "fibre failure": ("#CC79A7", "xxxx")}
+# Plies are light grey (fibres along the section) to grey (across it).
+_OPEN, _CLOSED = "black", "#0072B2"
 _LIGHT, _DARK = 0.94, 0.70
+# Failures that fill a ply.
+_FILLED = ("matrix crushing", "fibres torn", "fibres crushed", "fibre failure")
 # Entries of the legend, in their order.
 _ALONG, _ACROSS, _FACE = "ply, fibres along the section", "ply, fibres across the section", "struck face"
 _THROUGH, _IN_DRAWING = "matrix crack (a line for each element)", "matrix crack in the plane of the section"
 _GAPS = {"open": "delamination, open", "closed": "delamination, closed", "": "delamination, gap not written"}
-ORDER = (_ALONG, _ACROSS, _FACE, _THROUGH, _IN_DRAWING, *_FILLS, *_GAPS.values())
+ORDER = (_ALONG, _ACROSS, _FACE, _THROUGH, _IN_DRAWING, *_FILLED, *_GAPS.values())
 # An interface is open where the gap exceeds this part of the thinnest ply.
 _GAP = 0.01
 # A crack lies in the plane of the drawing if the fibres run within this angle of the section, degrees.
@@ -150,7 +149,7 @@ class Drawing:
 
     def _failures(self, axes: Axes) -> dict[str, Patch | Line2D]:
         """Draw crushed matrix and failed fibres as filled parts of plies."""
-        bands: dict[str, list[np.ndarray]] = {name: [] for name in _FILLS}
+        bands: dict[str, list[np.ndarray]] = {name: [] for name in _FILLED}
         for ply in self.section.failures:
             shown = self.plate.heights[ply - 1:ply + 1]
             for row in np.intersect1d(self.section.failed(ply, "matrix crushing"), self.rows):
@@ -162,9 +161,10 @@ class Drawing:
         handles = {}
         for name, found in bands.items():
             if found:
-                look = {"facecolor": _FILLS[name][0], "hatch": _FILLS[name][1], "edgecolor": "black", "linewidth": 0.3}
-                axes.add_collection(PolyCollection(found, zorder=2, **look))
-                handles[name] = Patch(label=name, **look)
+                drawn = {"facecolor": FAILURES[name], "hatch": HATCHES.get(name, ""), "edgecolor": "black",
+                         "linewidth": 0.3}
+                axes.add_collection(PolyCollection(found, zorder=2, **drawn))
+                handles[name] = Patch(label=name, **drawn)
         return handles
 
     def _cracks(self, axes: Axes) -> dict[str, Patch | Line2D]:
@@ -182,11 +182,11 @@ class Drawing:
                     across.append([(places[middle], self.height(row, top)[middle]),
                                    (places[middle], self.height(row, bottom)[middle])])
         handles = {}
-        for name, lines, look in ((_THROUGH, across, "-"), (_IN_DRAWING, along, ":")):
+        for name, lines, line_style in ((_THROUGH, across, "-"), (_IN_DRAWING, along, ":")):
             if lines:
-                axes.add_collection(LineCollection(lines, colors=_CRACK, linestyles=look, zorder=3,
-                                                    linewidths=0.7 * self.width))
-                handles[name] = Line2D([], [], color=_CRACK, linestyle=look, linewidth=1.3, label=name)
+                drawn = {"color": FAILURES["matrix cracking"], "linestyle": line_style}
+                axes.add_collection(LineCollection(lines, linewidths=0.7 * self.width, zorder=3, **drawn))
+                handles[name] = Line2D([], [], linewidth=1.3, label=name, **drawn)
         return handles
 
     def _delaminations(self, axes: Axes) -> dict[str, Patch | Line2D]:

@@ -12,10 +12,22 @@ from implam_post.io.units import SYSTEMS, Axis, axis_of
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# Space around axes, inches.
+_PAD = 0.08
+
 FORMATS = ("png", "pdf", "svg")
 # Line styles of several runs, which can be distinguished without colours.
 STYLES = [{"color": f"C{place}", "linestyle": line_style} for place, line_style in
           enumerate(("-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 3))))]
+
+
+# Colours of failures, by Okabe and Ito: colour-blind readers can distinguish them.
+FAILURES = {"matrix cracking": "#D55E00", "matrix crushing": "#F0E442", "fibres torn": "#CC79A7",
+            "fibres crushed": "#009E73", "fibre failure": "#CC79A7"}
+# Hatches of failures that fill an area.
+HATCHES = {"fibres torn": "xxxx", "fibres crushed": "////", "fibre failure": "xxxx"}
+# Maps of colours of times, and of interfaces from the struck face on.
+TIMES, DEPTHS = "viridis_r", "plasma"
 
 
 @dataclass(frozen=True)
@@ -77,8 +89,11 @@ def style_of(options: argparse.Namespace, results: Iterable[Path]) -> PictureSty
 
 
 def lay_out(figure: "Figure") -> None:
-    """Compute the layout of a figure before it is drawn, as ticks depend on the sizes of axes and vice versa.
+    """Set margins, and compute the layout of a figure before it is drawn.
 
-    Otherwise titles and labels of axes with equal scales would be cut off.
+    Ticks depend on the sizes of axes and vice versa; titles and labels of axes with equal scales would be cut off.
     """
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.set(w_pad=_PAD, h_pad=_PAD)
     figure.draw_without_rendering()

@@ -13,8 +13,8 @@ from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, find_program
 from implam_post.plot.style import FORMATS
 from implam_post.study.plan import ERRORS, FORMAT, Study, read_study
-from implam_post.sweep.case_run import remove_results
-from implam_post.sweep.command import check_decks, print_outcomes
+from implam_post.sweep.case_run import remove_failed
+from implam_post.sweep.command import check_decks, print_outcomes, print_outdated
 from implam_post.sweep.runs import Sweep, run_cases
 
 _TABLE_EVERY = 10.0  # seconds between intermediate tables
@@ -65,7 +65,8 @@ def _work(sweep: Sweep, study: Study, options: argparse.Namespace) -> int:
     """Write and check the decks, run those that have not ended, and write tables and plot."""
     sweep.write_decks()
     for case in study.cases if options.retry else ():
-        remove_results(sweep.folder(case))
+        remove_failed(sweep.folder(case))
+    print_outdated(sweep, options)
     runs, tables, finished = sweep.open_cases(), _Tables(sweep, study, options.format), True
     if not options.table:
         check_decks(sweep, list({case.deck: case for case in reversed(runs)}.values()), options.jobs)

@@ -17,14 +17,14 @@ from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.files import write_table
 from implam_post.io.history import History, read_history
 from implam_post.io.program import history_in, version_in
-from implam_post.io.quantities import COLUMN_QUANTITIES
+from implam_post.io.quantities import COLUMN_QUANTITIES, QUANTITIES
 from implam_post.io.run import read_summary
 from implam_post.study.plan import ERRORS, Study, Trial
 from implam_post.study.references import References
 from implam_post.sweep.case_run import read_record
 from implam_post.sweep.plan import Case
 from implam_post.sweep.runs import Sweep
-from implam_post.sweep.table import FIGURES
+from implam_post.sweep.table import FIGURES, figures_in
 
 LEAST = 1e-6  # smaller errors count as this one
 _FIGURES = tuple(name for name in ERRORS if name != "force_history")
@@ -117,12 +117,13 @@ def _row(sweep: Sweep, study: Study, trial: Trial, references: References) -> Ro
     try:
         row.costs = _costs(sweep, trial.runs, folder)
         history = read_history(history_in(folder) or folder / "history.csv")
-        row.figures = _figures(history)
+        found = figures_in(folder)
+        row.figures = {name: _number(found.get(FIGURES[name].member)) for name in _FIGURES}
         row.figures |= {name: COLUMN_QUANTITIES[way](history[name]) for name, way in study.figures.items()}
         reference = references.of(trial)
         if reference is not None:
             last = min(history.time[-1], reference.time[-1])
-            mine, true = _figures(history.until(last)), _figures(reference.until(last))
+            mine, true = _measured(history.until(last)), _measured(reference.until(last))
             row.errors = {name: _error(mine[name], true[name]) for name in _FIGURES}
             row.errors["force_history"] = force_history_error(history, reference)
     except ImplamError as error:
@@ -135,12 +136,18 @@ def _error(value: float, true: float) -> float:
     return value / true - 1 if true else math.nan
 
 
-def _figures(history: History) -> dict[str, float]:
-    """Return the figures of a history; NaN if it does not have the columns."""
+def _number(value: object) -> float:
+    """Return a figure of a summary as a number; NaN if the run does not have it."""
+    return float(value) if isinstance(value, (int, float)) else math.nan
+
+
+def _measured(history: History) -> dict[str, float]:
+    """Return the figures of a history alone, as the reference may have no summary; NaN without the columns."""
     found = {}
     for name in _FIGURES:
         try:
-            found[name] = float(FIGURES[name].measure(history))
+            found[name] = (float(history["delaminated_area"][-1]) if name == "delaminated_area"
+                           else float(QUANTITIES[name](history)))
         except FileError:  # a measured history may not have the column
             found[name] = math.nan
     return found

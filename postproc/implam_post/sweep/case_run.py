@@ -31,6 +31,7 @@ from implam_post.io.program import (
     last_words,
     shell_code,
 )
+from implam_post.sweep.case_inputs import inputs_of
 
 MODULE = "implam_post.sweep.case_run"
 _RECORD, _LOCK, OUTPUT = "run.json", "lock", "output.txt"
@@ -43,12 +44,16 @@ _STOPPING = f"stopped, continues from a checkpoint if there is one ({EXIT_STOPPE
 
 @dataclass(frozen=True)
 class Record:
-    """Exit code of the last part of a run; times are totals of all parts, in seconds."""
+    """Exit code of the last part of a run; times are totals of all parts, in seconds.
+
+    `inputs` are hashes of the files that the deck reads, at the start of the run; None: not known.
+    """
 
     exit_code: int
     cpu_time: float = 0.0
     wall_time: float = 0.0
     parts: int = 0
+    inputs: dict[str, str] | None = None
 
     @property
     def final(self) -> bool:
@@ -63,7 +68,9 @@ def read_record(folder: Path) -> Record | None:
         return None
     try:
         record = Record(**json.loads(read_text(path, "the record")))
-        if not all(isinstance(value, (int, float)) for value in asdict(record).values()):
+        numbers = (record.exit_code, record.cpu_time, record.wall_time, record.parts)
+        if not all(isinstance(value, (int, float)) for value in numbers) or not isinstance(
+                record.inputs, (dict, type(None))):
             raise ValueError
     except (ValueError, TypeError, RecursionError):
         raise FileError(f"the record {path} is damaged: delete it to run the case again.") from None
@@ -79,11 +86,27 @@ def _is_lost(folder: Path) -> bool:
     return sum(1 for _ in itertools.islice(lines, 2)) < 2
 
 
-def remove_results(folder: Path) -> None:
+def changed_input(folder: Path, text: str) -> str:
+    """Return a file that the deck of a case reads and that has changed since its run; empty if there is none."""
+    record = read_record(folder)
+    if record is None:
+        return ""
+    now = inputs_of(text)
+    if record.inputs is None:  # by an earlier version
+        ended = (folder / _RECORD).stat().st_mtime
+        return next((name for name in now if Path(name).stat().st_mtime > ended), "")
+    return next((name for name in now.keys() | record.inputs.keys() if now.get(name) != record.inputs.get(name)), "")
+
+
+def remove_failed(folder: Path) -> None:
     """Remove record and checkpoint of a failed case that is not running, so that it starts again."""
     record = read_record(folder)
-    if record is None or record.exit_code == EXIT_DONE:
-        return
+    if record is not None and record.exit_code != EXIT_DONE:
+        remove_results(folder)
+
+
+def remove_results(folder: Path) -> None:
+    """Remove record and checkpoint of a case that is not running, so that it starts again."""
     lock = try_lock(folder / _LOCK)
     if lock is not None:
         (folder / _RECORD).unlink(missing_ok=True)
@@ -132,7 +155,7 @@ def run_case(folder: Path, deck: Path, program: Sequence[str], stop: _Stop) -> i
         record = read_record(folder)
         if record is None and (folder / _RECORD).exists():
             drop_checkpoint(folder)  # the history of the run is missing: it has to begin at the start
-        record = record or Record(EXIT_STOPPED)
+        record = record or Record(EXIT_STOPPED, inputs=inputs_of(read_text(deck, "the deck")))
         while not record.final and not stop:
             checkpoint = checkpoint_in(folder)
             record = _run_part(folder, deck if checkpoint is None else checkpoint, program, stop, lock, record)
@@ -161,7 +184,7 @@ def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lo
                 signalled = True
             time.sleep(_PAUSE)
     return Record(shell_code(code), before.cpu_time + _children_time() - cpu_before,
-                  before.wall_time + time.monotonic() - began, before.parts + 1)
+                  before.wall_time + time.monotonic() - began, before.parts + 1, before.inputs)
 
 
 def _is_useless(checkpoint: Path, folder: Path) -> bool:

@@ -1,6 +1,5 @@
 """The second deck of a sweep, `then`: a run for each case that begins with the final state of its first run."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,26 +11,16 @@ from implam_post.io.deck_text import copy_groups, deck_value, key_path, set_keys
 from implam_post.io.errors import EXIT_DONE, DeckError, ImplamError
 from implam_post.io.files import read_text
 from implam_post.io.program import checkpoint_in
-from implam_post.io.run import open_run
 from implam_post.sweep.case_run import read_record
 from implam_post.sweep.plan import Case
 from implam_post.sweep.runs import Sweep
-from implam_post.sweep.table import Table, no_figures
+from implam_post.sweep.table import FIGURES, RUN_COLUMNS, Table, add_columns, figures_in, no_figures
 
 # Groups of the first deck that are copied to the second one, as the damage depends on them.
 SHARED = ("material", "laminate", "ply_damage", "delamination", "thermal")
 # Groups whose swept keys are also set in the second deck, since mesh and plate are those of the first run.
 _SET_TOO = ("mesh", "plate")
 _OWN_KEYS = ("lines_x", "lines_y", "symmetry")
-# Figures of both runs by the name of their column: run (0 or 1), dimension, label.
-FIGURES = {
-    "dent_depth": (0, "length", "dent depth"),
-    "projected_area": (0, "area", "projected delaminated area"),
-    "residual_strength": (1, "stress", "residual strength"),
-    "shortening_at_strength": (1, "length", "shortening at the strength"),
-    "has_failed": (1, "", "whether the plate has failed"),
-    "failure_code": (1, "", "failure code"),
-}
 
 
 def following(sweep: Sweep) -> Sweep | None:
@@ -77,47 +66,37 @@ def _second(case: Case, checkpoint: Path, then: Path, text: str) -> Case:
 
 
 def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
-    """Add the columns of both runs to the table of the first; cells without a value are NaN or empty.
+    """Add the figures of the second runs to the table of the first; cells without a value are NaN or empty.
 
     The notes name summaries that cannot be read.
     """
     by_number = {case.number: case for case in second.plan.cases}
-    rows = []
-    for case in first.plan.cases:
-        continuation = by_number.get(case.number)
-        rows.append((_summary(first, case, table),
-                     {} if continuation is None else _summary(second, continuation, table)))
-    for name, (which, dimension, _) in FIGURES.items():
-        missing: object = math.nan if dimension else ""
-        table.columns[name] = [_cell(row[which].get(name), missing) for row in rows]
-
-
-def _cell(value: object, missing: object) -> object:
-    """Return the value of a cell."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    return missing if value is None else value
+    rows = [_figures(second, by_number[case.number], table) if case.number in by_number else {}
+            for case in first.plan.cases]
+    add_columns(table, rows, [name for name, figure in FIGURES.items() if figure.is_of_second])
+    for name in RUN_COLUMNS:  # the last ones
+        table.columns[name] = table.columns.pop(name)
 
 
 def lower_bounds(table: Table) -> np.ndarray:
     """Return for each row whether its strength is a lower bound, as the plate has not failed."""
-    return np.array([value == "false" for value in table.columns["has_failed"]])
+    return np.array([value == "false" for value in table.columns.get("has_failed", ())])
 
 
 def remark_of_bounds(table: Table) -> str:
     """Return the warning about runs that end before the plate fails; empty if there are none."""
     count = int(np.count_nonzero(lower_bounds(table)))
     return "" if count == 0 else (
-        f"warning: in {counted(count, 'run')} of {len(table.columns['has_failed'])} the plate has not failed: the "
+        f"warning: in {counted(count, 'run')} of {len(lower_bounds(table))} the plate has not failed: the "
         "strength is a lower bound, and so are means; give the &line of the second deck a larger displacement.")
 
 
-def _summary(sweep: Sweep, case: Case, table: Table) -> Mapping[str, object]:
-    """Return the summary of a run; empty without a result, with a note if it cannot be read."""
+def _figures(sweep: Sweep, case: Case, table: Table) -> Mapping[str, object]:
+    """Return the figures of a run; empty without a result, with a note if its summary cannot be read."""
     if sweep.failure(case):
         return {}
     try:
-        return open_run(sweep.folder(case)).summary
+        return figures_in(sweep.folder(case))
     except ImplamError as error:
         note, table.is_readable = no_figures(error), False
         if note not in table.notes:

@@ -8,10 +8,9 @@ from matplotlib.figure import Figure
 
 from implam_post.io.files import replaced
 from implam_post.io.units import axis_of
-from implam_post.sweep.chain import FIGURES, lower_bounds
-from implam_post.sweep.plots import series
-from implam_post.sweep.table import FIGURES as TABLE_FIGURES
-from implam_post.sweep.table import Table
+from implam_post.sweep.chain import lower_bounds
+from implam_post.sweep.plots import energies, series
+from implam_post.sweep.table import FIGURES, Table
 
 STRENGTH = "residual_strength"
 _AGAINST = ("impact_energy", "dent_depth", "projected_area")
@@ -24,22 +23,19 @@ def plot_strength(table: Table, path: Path) -> Path | None:
 
     Runs of the same energy and series have a mean with the standard deviation of a single run.
     """
-    strength = table.numbers(STRENGTH)
+    strength = table.numbers(STRENGTH) if STRENGTH in table.columns else None
     if strength is None or not np.any(np.isfinite(strength)):
         return None
     bounds = lower_bounds(table)
     drawing = Figure(figsize=(12, 4.2), layout="constrained")
-    up = axis_of(FIGURES[STRENGTH][2], "stress", strength, table.system)
-    for axes, name in zip(drawing.subplots(1, len(_AGAINST), sharey=True), _AGAINST, strict=True):
+    up = axis_of(FIGURES[STRENGTH].label, "stress", strength, table.system)
+    against = [name for name in _AGAINST if name in table.columns]
+    for axes, name in zip(drawing.subplots(1, len(against), sharey=True, squeeze=False)[0], against, strict=True):
         values = table.numbers(name)
-        if name in FIGURES:
-            _, dimension, label = FIGURES[name]
-        else:
-            dimension, label = TABLE_FIGURES[name].dimension, TABLE_FIGURES[name].label
-        along = axis_of(label, dimension, values, table.system)
+        along = axis_of(FIGURES[name].label, FIGURES[name].dimension, values, table.system)
         for place, (title, rows) in enumerate(series(table).items()):
             _draw(axes, along.factor * values[rows], up.factor * strength[rows], bounds[rows],
-                  groups(table.numbers("impact_energy")[rows]), f"C{place % 10}", title)
+                  groups(energies(table)[rows]), f"C{place % 10}", title)
         axes.set_xlabel(along.label)
         axes.grid(alpha=0.3)
         axes.set_ylim(bottom=0)

@@ -18,14 +18,15 @@ from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, DeckError, FileError, count, reason, run
 from implam_post.io.files import try_lock, write_text
 from implam_post.io.program import EXIT_STOPPED, PROGRAM_HELP, check_deck, find_program, processors
-from implam_post.sweep.case_run import case_command, remove_results
+from implam_post.sweep.case_run import case_command, remove_failed
 from implam_post.sweep.plan import FORMAT, Case, is_random, only, read_plan
-from implam_post.sweep.runs import NOT_RUN, STOPPED, Sweep, run_cases
+from implam_post.sweep.runs import NOT_RUN, OUTDATED, STOPPED, Sweep, run_cases
 
 if TYPE_CHECKING:  # it imports numpy, which an invalid sweep does not need
     from implam_post.sweep.table import Table
 
 _TABLE_EVERY = 10.0  # seconds between intermediate tables
+_LEFT = (NOT_RUN, STOPPED, OUTDATED)  # ends of cases that the same command runs
 _SHOWN = 20  # number of faulty decks that are listed
 _NUMBER = re.compile(r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
@@ -127,8 +128,8 @@ def print_outcomes(sweep: Sweep) -> int:
     """List failed and remaining cases, and return the exit code."""
     total = len(sweep.plan.cases)
     ends = [(case, sweep.failure(case)) for case in sweep.plan.cases]
-    left = [case for case, failure in ends if failure in (NOT_RUN, STOPPED)]
-    failed = [(case, failure) for case, failure in ends if failure and failure not in (NOT_RUN, STOPPED)]
+    left = [case for case, failure in ends if failure in _LEFT]
+    failed = [(case, failure) for case, failure in ends if failure and failure not in _LEFT]
     if failed:
         print(f"{len(failed)} of {total} cases failed:", file=sys.stderr)
     for case, failure in failed:
@@ -149,11 +150,18 @@ def _check_second(sweep: Sweep, cases: Sequence[Case], jobs: int) -> None:
     shutil.rmtree(second.plan.output)
 
 
+def print_outdated(sweep: Sweep, options: argparse.Namespace) -> None:
+    """Remove the results of cases that have to run again, and say why; not if only the table is made."""
+    for sentence in () if options.table else sweep.remove_outdated():
+        print(sentence)
+
+
 def _work(sweep: Sweep, options: argparse.Namespace) -> int:
     """Write and check the decks, then run or list them."""
     sweep.write_decks()
     for case in sweep.plan.cases if options.retry else ():
-        remove_results(sweep.folder(case))
+        remove_failed(sweep.folder(case))
+    print_outdated(sweep, options)
     cases, tables = sweep.open_cases(), _Tables(sweep)
     if options.table:
         return max(_gather(sweep, tables), _work_on_second(sweep, options, tables))
@@ -181,7 +189,8 @@ def _work_on_second(sweep: Sweep, options: argparse.Namespace, tables: _Tables) 
         return EXIT_DONE
     second.write_decks()
     for case in second.plan.cases if options.retry else ():
-        remove_results(second.folder(case))
+        remove_failed(second.folder(case))
+    print_outdated(second, options)
     cases = second.open_cases()
     if options.table:
         return _gather_second(sweep, second, tables)

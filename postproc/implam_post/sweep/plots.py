@@ -12,7 +12,8 @@ from implam_post.io.units import axis_of
 from implam_post.sweep.table import FIGURES, Table
 
 _MAX_SERIES, _MAX_COLUMNS, _LONGEST = 10, 6, 40
-_SCATTERED = ("peak_force", "max_deflection", "absorbed_energy", "delaminated_area", "first_growth_force")
+_SCATTERED = ("peak_force", "max_deflection", "absorbed_energy", "delaminated_area", "first_growth_force",
+              "residual_strength")
 # Dimensions of free names and keys; of keys only; and of keys of &material (e of &ply_damage is a fraction).
 _WORDS = {"energy": "energy", "velocity": "velocity", "mass": "mass"}
 _DIMENSIONS = {**_WORDS,
@@ -38,7 +39,7 @@ def series(table: Table) -> dict[str, np.ndarray]:
 
     If there are too many groups, or none has two rows, all rows are one series without a name.
     """
-    energy = table.numbers("impact_energy")
+    energy = energies(table)
     finite = np.isfinite(energy)
     swept = [name for name in _varied(table) if name not in table.derived]
     kept = [name for name in swept if not _changes_energy(table, swept, name, energy)]
@@ -49,6 +50,17 @@ def series(table: Table) -> dict[str, np.ndarray]:
     if len(groups) > _MAX_SERIES or all(len(rows) < 2 for rows in groups.values()):
         groups = {"": [int(row) for row in np.flatnonzero(finite)]}
     return {label: np.array(rows)[np.argsort(energy[rows], kind="stable")] for label, rows in groups.items()}
+
+
+def energies(table: Table) -> np.ndarray:
+    """Return the impact energies; NaN without an impactor."""
+    return numbers_or_nan(table, "impact_energy")
+
+
+def numbers_or_nan(table: Table, name: str) -> np.ndarray:
+    """Return the numbers of a column; NaN if the table does not have it."""
+    found = table.numbers(name) if name in table.columns else None
+    return np.full(len(table.decks), np.nan) if found is None else found
 
 
 def _changes_energy(table: Table, swept: list[str], name: str, energy: np.ndarray) -> bool:
@@ -64,7 +76,7 @@ def _changes_energy(table: Table, swept: list[str], name: str, energy: np.ndarra
 
 def _against_energy(table: Table, name: str) -> Drawing | None:
     """Draw a figure against the impact energy; None if no case has it."""
-    x, y = table.numbers("impact_energy"), table.numbers(name)
+    x, y = energies(table), numbers_or_nan(table, name)
     if not np.any(np.isfinite(x) & np.isfinite(y)):
         return None
     drawing = Drawing(figsize=(7, 4.5), layout="constrained")
@@ -84,7 +96,7 @@ def _against_energy(table: Table, name: str) -> Drawing | None:
 
 def _scatter(table: Table) -> Drawing | None:
     """Draw figures (rows) against swept values (columns); None without values."""
-    figures = [name for name in _SCATTERED if np.any(np.isfinite(table.numbers(name)))]
+    figures = [name for name in _SCATTERED if np.any(np.isfinite(numbers_or_nan(table, name)))]
     swept = _varied(table)[:_MAX_COLUMNS]
     if not figures or not swept:
         return None

@@ -8,14 +8,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from implam_post.io.counts import counted
 from implam_post.io.errors import EXIT_DONE, FileError, reason
 from implam_post.io.files import read_text, write_text
-from implam_post.io.program import EXIT_STOPPED, last_words
+from implam_post.io.program import EXIT_STOPPED, last_words, version_in, version_of
 from implam_post.io.progress import Progress
-from implam_post.sweep.case_run import OUTPUT, case_command, read_record
+from implam_post.sweep.case_run import OUTPUT, case_command, changed_input, read_record, remove_results
 from implam_post.sweep.plan import Case, Plan
 
-NOT_RUN, STOPPED = "not run", "stopped"
+NOT_RUN, STOPPED, OUTDATED = "not run", "stopped", "out of date"
 _PAUSE = 0.05  # seconds between checks of the runs
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2)
 
@@ -64,11 +65,34 @@ class Sweep:
         records = {key: read_record(self.folders[key]) for key in first}
         return [case for key, case in first.items() if not (records[key] and records[key].final)]
 
+    def remove_outdated(self) -> list[str]:
+        """Remove results with other input files, or of another version; return a sentence for each reason."""
+        reasons: dict[str, list[Case]] = {}
+        for case in self.plan.cases:
+            if reason := self._outdated(case):
+                reasons.setdefault(reason, []).append(case)
+        for cases in reasons.values():
+            for case in cases:
+                remove_results(self.folder(case))
+        return [f"{counted(len(cases), 'case')} of {len(self.plan.cases)} to run again from the start: {why}."
+                for why, cases in reasons.items()]
+
+    def _outdated(self, case: Case) -> str:
+        """Return the reason why the results of a case are out of date; empty if they are not."""
+        folder, version = self.folder(case), version_of(self.program)
+        if changed := changed_input(folder, case.deck):
+            return f"{changed} has changed since their run"
+        before = version_in(folder).replace("(commit ", "(")
+        return (f"their results are of Implam {before}, and this is {version}"
+                if read_record(folder) is not None and version and before not in ("", version) else "")
+
     def failure(self, case: Case) -> str:
         """Return the reason why a case has no result; empty if it has one."""
         record = read_record(self.folder(case))
         if record is None:
             return NOT_RUN
+        if changed_input(self.folder(case), case.deck):
+            return OUTDATED
         if record.exit_code == EXIT_DONE:
             return ""
         if record.exit_code == EXIT_STOPPED:

@@ -9,11 +9,12 @@ from implam_post.sweep.scatter_statistics import Difference, Spread, spreads
 
 # Figures that are printed; the files contain all figures.
 SHOWN = ("peak_force", "peak_force_at", "threshold_force", "largest_displacement", "largest_deflection",
-         "contact_duration", "rebound_velocity", "energy_absorbed", "delaminated_area", "projected_area",
-         "damage_diameter", "damage_length", "damage_width")
+         "contact_duration", "rebound_velocity", "energy_absorbed", "first_growth_force", "delaminated_area",
+         "projected_area", "damage_diameter", "damage_length", "damage_width", "residual_strength",
+         "shortening_at_strength", "effective_modulus", "buckling_strain", "percent_bending")
 # Figures in the table that compares variants.
 COMPARED = ("peak_force", "largest_displacement", "contact_duration", "energy_absorbed", "projected_area",
-            "damage_diameter")
+            "damage_diameter", "residual_strength", "effective_modulus")
 HEAD = ("", "mean", "standard error", "standard deviation", "5 % point", "95 % point", "runs")
 PAIRED = ("", "first", "difference", "smallest significant", "", "pairs")
 MEASURED = ("", "measured", "tolerance", "mean", "standard error", "difference", "")

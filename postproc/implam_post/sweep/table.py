@@ -1,7 +1,7 @@
 """The table of a sweep: a row for each case, with swept values, figures and exit code of its run."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,44 +9,51 @@ import h5py
 import numpy as np
 import pandas as pd
 
+from implam_post.io.counts import counted
 from implam_post.io.deck import Deck, system_of_deck
 from implam_post.io.deck_text import deck_value
-from implam_post.io.errors import EXIT_DONE, DeckError, ImplamError
+from implam_post.io.errors import DeckError, ImplamError
 from implam_post.io.files import replaced, write_table
-from implam_post.io.history import History, read_history
-from implam_post.io.program import history_in, version_in
-from implam_post.io.quantities import QUANTITIES
-from implam_post.io.run import SUMMARY, read_summary
+from implam_post.io.program import version_in
+from implam_post.io.run import open_run
+from implam_post.io.run_figures import numbers_of
 from implam_post.sweep.case_run import Record, read_record
-from implam_post.sweep.runs import Sweep
+from implam_post.sweep.runs import OUTDATED, Sweep
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure of a run: the function that evaluates it, its dimension, and its label on an axis."""
+    """A column with a figure of the runs: member of the summary, its dimension, and its label on an axis.
 
-    measure: Callable[[History], float]
+    `is_of_second` says whether it belongs to the second run of a case with `then`.
+    """
+
+    member: str
     dimension: str
     label: str
-
-
-def _area(history: History) -> float:
-    """Return the delaminated area at the end, including starters; NaN if the history does not have it."""
-    return float(history.columns.get("delaminated_area", [math.nan])[-1])
+    is_of_second: bool = False
 
 
 FIGURES = {
-    "impact_energy": Figure(QUANTITIES["impact_energy"], "energy", "impact energy"),
-    "peak_force": Figure(QUANTITIES["peak_force"], "force", "peak force"),
-    "peak_force_time": Figure(QUANTITIES["peak_force_time"], "time", "time of peak force"),
-    "contact_duration": Figure(QUANTITIES["contact_duration"], "time", "contact duration"),
-    "max_deflection": Figure(QUANTITIES["max_deflection"], "length", "largest deflection"),
-    "rebound_velocity": Figure(QUANTITIES["rebound_velocity"], "velocity", "rebound velocity"),
-    "absorbed_energy": Figure(QUANTITIES["absorbed_energy"], "energy", "absorbed energy"),
-    "delaminated_area": Figure(_area, "area", "delaminated area"),
-    "first_growth_force": Figure(QUANTITIES["first_growth_force"], "force", "threshold force"),
-    "first_growth_time": Figure(QUANTITIES["first_growth_time"], "time", "time of first growth"),
+    "impact_energy": Figure("energy_impact", "energy", "impact energy"),
+    "peak_force": Figure("peak_force", "force", "peak force"),
+    "peak_force_time": Figure("peak_force_at", "time", "time of peak force"),
+    "contact_duration": Figure("contact_duration", "time", "contact duration"),
+    "max_deflection": Figure("largest_deflection", "length", "largest deflection"),
+    "rebound_velocity": Figure("rebound_velocity", "velocity", "rebound velocity"),
+    "absorbed_energy": Figure("energy_absorbed", "energy", "absorbed energy"),
+    "delaminated_area": Figure("delaminated_area", "area", "delaminated area"),
+    "first_growth_force": Figure("first_growth_force", "force", "force at first growth"),
+    "first_growth_time": Figure("first_growth_at", "time", "time of first growth"),
+    "dent_depth": Figure("dent_depth", "length", "dent depth"),
+    "projected_area": Figure("projected_area", "area", "projected delaminated area"),
+    "residual_strength": Figure("residual_strength", "stress", "residual strength", True),
+    "shortening_at_strength": Figure("shortening_at_strength", "length", "shortening at the strength", True),
+    "effective_modulus": Figure("effective_modulus", "stress", "effective modulus", True),
+    "has_failed": Figure("has_failed", "", "whether the plate has failed", True),
+    "failure_code": Figure("failure_code", "", "failure code", True),
 }
+RUN_COLUMNS = ("exit_code", "cpu_time", "version", "folder")
 
 
 @dataclass
@@ -87,11 +94,14 @@ def make_table(sweep: Sweep, known: dict[str, dict[str, object]]) -> Table:
         folder = sweep.folder(case)
         record = read_record(folder)
         if case.key not in known or not known[case.key]["final"]:
-            known[case.key] = {"final": record is not None and record.final, **_row(folder, record)}
+            known[case.key] = {"final": record is not None and record.final,
+                               **_row(folder, record, sweep.failure(case))}
         rows.append({**known[case.key], "folder": str(folder.relative_to(sweep.plan.output))})
-    for name in (*FIGURES, "exit_code", "cpu_time", "version", "folder"):
+    add_columns(table, [row["figures"] for row in rows], FIGURES)
+    for name in RUN_COLUMNS:
         table.columns[name] = [row[name] for row in rows]
-    table.notes, table.is_readable = _notes(rows), not any(row["fault"] for row in rows)
+    outdated = sum(sweep.failure(case) == OUTDATED for case in cases)
+    table.notes, table.is_readable = _notes(rows, outdated), not any(row["fault"] for row in rows)
     table.system = sweep.plan.units or _system(cases[0].deck)
     return table
 
@@ -117,30 +127,54 @@ def write_hdf5(table: Table, path: Path) -> None:
         file.attrs.update({"sweep": table.sweep, "swept": table.swept, "units": table.system or "the deck's"})
 
 
-def _row(folder: Path, record: Record | None) -> dict[str, object]:
-    """Return figures and exit code of one run; a failed run has no figures."""
-    row: dict[str, object] = dict.fromkeys(FIGURES, math.nan)
-    row |= {"exit_code": math.nan, "cpu_time": math.nan, "version": "", "fault": ""}
+def add_columns(table: Table, rows: Sequence[Mapping[str, object]], names: Iterable[str]) -> None:
+    """Add the columns of figures that some run has; all of them as long as there are no results.
+
+    Cells without a value are NaN, or empty for texts.
+    """
+    found = [row for row in rows if row]
+    for name in names:
+        member, is_number = FIGURES[name].member, bool(FIGURES[name].dimension)
+        if not found or any(member in row for row in found):
+            table.columns[name] = [_cell(row.get(member), math.nan if is_number else "") for row in rows]
+
+
+def _cell(value: object, missing: object) -> object:
+    """Return the value of a cell."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return missing if value is None else value
+
+
+def figures_in(folder: Path) -> dict[str, object]:
+    """Return the members of the summary in a folder that are figures of the table; None: not known, or not ended."""
+    summary = open_run(folder).summary
+    numbers = dict(numbers_of(summary))
+    return {member: numbers.get(member, summary[member]) for figure in FIGURES.values()
+            if (member := figure.member) in summary}
+
+
+def _row(folder: Path, record: Record | None, failure: str) -> dict[str, object]:
+    """Return figures and exit code of one run; a failed or outdated run has no figures."""
+    row: dict[str, object] = {"figures": {}, "exit_code": math.nan, "cpu_time": math.nan, "version": "", "fault": ""}
     if record is None:
         return row
     row |= {"exit_code": record.exit_code, "cpu_time": round(record.cpu_time, 3), "version": version_in(folder)}
-    if record.exit_code != EXIT_DONE:
+    if failure:
         return row
     try:
-        path = history_in(folder)
-        history = read_history(folder / "history.csv" if path is None else path)
-        for summary in folder.glob(f"*{SUMMARY}"):
-            read_summary(summary)  # raises an error if it is damaged; reading the history does not
-        row |= {name: float(figure.measure(history)) for name, figure in FIGURES.items()}
+        row["figures"] = figures_in(folder)
     except ImplamError as error:
         row["fault"] = str(error)
     return row
 
 
-def _notes(rows: Iterable[dict[str, object]]) -> list[str]:
-    """Return the notes below the table."""
+def _notes(rows: Iterable[dict[str, object]], outdated: int) -> list[str]:
+    """Return the notes below the table; `outdated` is the number of cases whose input files have changed since."""
     versions = sorted({str(row["version"]) for row in rows if row["version"]})
     notes = [f"the runs are by several versions of Implam: {', '.join(versions)}."] if len(versions) > 1 else []
+    if outdated:
+        notes.append(f"{counted(outdated, 'case')} without figures: a file that the deck reads has changed since.")
     return notes + [no_figures(row["fault"]) for row in rows if row["fault"]]
 
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from implam_post.io.errors import FileError, ImplamError
-from implam_post.io.fields import area, extents, outline, read_fields
+from implam_post.io.fields import MODES, area, extents, outline, read_fields
 from implam_post.io.history import ENERGIES, History
 from implam_post.io.quantities import growth_rows
 from implam_post.plot import command as plot
@@ -162,9 +162,9 @@ class FieldsTest(unittest.TestCase):
     def test_failures_by_mode(self) -> None:
         """Bits are modes; only elements that contain the ply count."""
         last = read_fields(self.path).snapshots[-1]
-        self.assertAlmostEqual(area(last.failed_cells(3, 2)), 1 + 2)
-        self.assertEqual(len(last.failed_cells(3, 1)), 0)
-        for mode in (1, 2, 4):
+        self.assertAlmostEqual(area(last.failed_cells(3, "matrix cracking")), 1 + 2)
+        self.assertEqual(len(last.failed_cells(3, "fibre failure")), 0)
+        for mode in MODES:
             self.assertAlmostEqual(area(last.failed_cells(1, mode)), 9)
 
     def test_release_along_the_front(self) -> None:

@@ -71,8 +71,8 @@ class QuantitiesTest(unittest.TestCase):
         columns["energy_strain"][0], columns["work_external"][0] = 1.5, 0.5
         history = History(columns)
         self.assertEqual(QUANTITIES["impact_energy"](history), 10)
-        begin, end = contacts(history)[0].begin, contacts(history)[-1].end
-        self.assertEqual(QUANTITIES["contact_duration"](history), end - begin)
+        end = contacts(history)[-1].end
+        self.assertEqual(QUANTITIES["contact_duration"](history), sum(one.end - one.begin for one in contacts(history)))
         self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history), 10 - np.interp(end, history.time, columns[
             "energy_impactor"]), delta=1e-14)
         untouched = History(columns | {"force": np.zeros(8)})
@@ -102,13 +102,15 @@ class QuantitiesTest(unittest.TestCase):
         self.assertAlmostEqual(QUANTITIES["absorbed_energy"](history.until(2.0)), 5, delta=1e-14)
 
     def test_first_growth(self) -> None:
-        """The largest force up to the first growth; NaN without growth or area."""
+        """Force and time of the first growth, by stages of interfaces or else by area; NaN without."""
         columns = dict(pulses(0, 5, 3, 9).columns)
         force, time = (QUANTITIES[f"first_growth_{name}"] for name in ("force", "time"))
         self.assertTrue(np.isnan(force(History(columns))))
         columns["delaminated_area"] = np.array([1.0, 1, 2, 2])
-        self.assertEqual(force(History(columns)), 5)
+        self.assertEqual(force(History(columns)), 3)
         self.assertEqual(time(History(columns)), columns["time"][2])
+        staged = History(columns | {"stage_below_1": np.array([0, 1, 1, 2]), "stage_below_2": np.array([2, 2, 2, 2])})
+        self.assertEqual((force(staged), time(staged)), (9, columns["time"][3]))
         for area in (np.ones(4), np.full(4, np.nan)):
             self.assertTrue(np.isnan(force(History(columns | {"delaminated_area": area}))))
         self.assertTrue(np.isnan(force(History(columns | {"force": np.full(4, np.nan)}))))

@@ -17,9 +17,10 @@ from PIL import Image
 from implam_post.io.fields import Fields, Mesh, Snapshot, area, read_fields
 from implam_post.io.history import ENERGIES, History, read_history
 from implam_post.plot import command, movie, pictures
-from implam_post.plot.curves import axis_of_column
+from implam_post.plot.curves import axis_of_column, rows_of_growth
+from implam_post.plot.failures import along_fibres, failures_figure
 from implam_post.plot.front import front_figure
-from implam_post.plot.plan import along_fibres, delamination_figure, failures_figure, projected_figure
+from implam_post.plot.plan import delamination_figure, depth_colours, projected_figure
 from implam_post.plot.plan_frame import caption
 from implam_post.plot.style import PictureStyle, lay_out
 from implam_post.report.pictures import history_pictures
@@ -42,6 +43,17 @@ def history(name: str, factor: float = 1.0) -> History:
     rest = {name: np.zeros(31) for name in (*ENERGIES, "energy_error")}
     return History({"time": time, "force": force, "indentation": np.where(force > 0, 1e-4, -2e-3),
                     "deflection": 1e-3 * force / 2000, **rest}, name)
+
+
+def many_interfaces(path: Path, count: int) -> Fields:
+    """Return two times of a square plate with interfaces below all plies but the last two; every third ply cracks."""
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
+    plies = np.arange(1, count + 2)
+    mesh = Mesh(np.tile(corners, (count + 1, 1, 1)), plies, plies, np.zeros(count + 1, dtype=bool))
+    failures = {int(ply): np.where(plies == ply, 2 * (ply % 3 == 0), 0) for ply in plies}
+    return Fields(str(path), "whole", [
+        Snapshot(time, mesh, np.ones((count + 1, 9)) * (plies[:, None] > 1) * time, failures, np.zeros(count + 1))
+        for time in (0.5, 1.0)])
 
 
 class PicturesTest(unittest.TestCase):
@@ -72,7 +84,7 @@ class PicturesTest(unittest.TestCase):
     def test_axes_have_units_and_runs_their_styles(self) -> None:
         """2 kN at 1 ms are drawn as 2 and 1; line styles of two runs differ; no indentation after separation."""
         axes = Figure().subplots()
-        pictures._draw(axes, [history("a"), history("b", 0.5)], "force", PictureStyle("SI"))
+        pictures.draw_response(axes, [history("a"), history("b", 0.5)], "force", PictureStyle("SI"))
         self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("time [ms]", "contact force [kN]"))
         lines = axes.get_lines()
         self.assertAlmostEqual(np.max(lines[0].get_ydata()), 2.0, delta=1e-9)
@@ -89,7 +101,7 @@ class PicturesTest(unittest.TestCase):
         drawn = []
         for of, system in ((si, "SI"), (other, "mm-t-s")):
             axes = Figure().subplots()
-            pictures._draw(axes, [of], "deflection", PictureStyle(system))
+            pictures.draw_response(axes, [of], "deflection", PictureStyle(system))
             drawn.append((axes.get_ylabel(), axes.get_lines()[0].get_ydata()))
         self.assertEqual(drawn[0][0], drawn[1][0])
         np.testing.assert_allclose(drawn[0][1], drawn[1][1], rtol=1e-12)
@@ -109,13 +121,13 @@ class PicturesTest(unittest.TestCase):
         self.assertEqual(read_history(path).by_load_steps, False)
         for loaded in (goes_on, ended):
             axes = Figure().subplots(2)
-            pictures._draw(axes[0], [loaded], "force", style)
+            pictures.draw_response(axes[0], [loaded], "force", style)
             pictures._stack(axes[1], loaded, style)
             labels = {part.get_xlabel() for figure in (f for name, f in history_pictures(loaded, style) if
                       "against load factor" in name) for part in figure.axes} | {part.get_xlabel() for part in axes}
             self.assertEqual(labels, {"load factor"})
             self.assertEqual(axis_of_column("time", loaded.time, loaded, style).label, "load factor")
-        pictures._draw(axes[0], [goes_on, history("a")], "force", style)
+        pictures.draw_response(axes[0], [goes_on, history("a")], "force", style)
         self.assertEqual(axes[0].get_xlabel(), "time (the deck's units), load factor")
         left, right = front_figure(fields, style=style).axes[:2]
         self.assertEqual(left.get_legend().get_title().get_text(), "load factor")
@@ -147,12 +159,71 @@ class PicturesTest(unittest.TestCase):
             self.assertTrue(np.all(line >= -1e-12) and np.all(line <= [2 + 1e-12, 1 + 1e-12]), line)
             self.assertGreater(np.hypot(*run), 0.99)
         figure = failures_figure(read_fields(self.path), ("matrix cracking",), PictureStyle("SI"))
-        third = figure.axes[2]
+        self.assertIn("none of these failures in ply 2\n", figure.get_suptitle())
+        third = figure.axes[1]
         self.assertEqual(third.get_title(), "ply 3, 90°")
         lines = [segment for part in third.collections if isinstance(part, LineCollection)
                  for segment in part.get_segments()]
         self.assertEqual(len(lines), 2)
         self.assertTrue(all(abs(segment[0, 0] - segment[1, 0]) < 1e-9 for segment in lines))
+
+    def test_pages_of_many_interfaces(self) -> None:
+        """Thirty interfaces and 32 plies are on a page with one bar of colours, and no map outside it."""
+        fields = many_interfaces(self.folder / "none.h5", 30)
+        style = PictureStyle("SI")
+        for figure in (delamination_figure(fields, style), failures_figure(fields, style=style),
+                       projected_figure(fields, style)):
+            lay_out(figure)
+            self.assertTrue(np.all(np.array(figure.get_size_inches()) <= (7.5, 10)), figure.get_size_inches())
+            bars = [axes for axes in figure.axes if axes.get_label() == "<colorbar>"]
+            self.assertLessEqual(len(bars), 1)
+            inside = figure.bbox.padded(1)
+            for axes in figure.axes:
+                if axes.get_visible() and axes.get_title():
+                    box = axes.title.get_window_extent()
+                    self.assertTrue(inside.x0 <= box.x0 and box.x1 <= inside.x1 and box.y1 <= inside.y1,
+                                    axes.get_title())
+        titles = [axes.get_title() for axes in delamination_figure(fields, PictureStyle("SI")).axes if axes.get_title()]
+        self.assertEqual(len(titles), 30)
+        self.assertEqual(titles[0], "below ply 1: 4e+06 mm²")
+
+    def test_lowest_maps_have_axes(self) -> None:
+        """With an incomplete last row every column ends with a map that has the label of its axis."""
+        figure = delamination_figure(many_interfaces(self.folder / "none.h5", 7), PictureStyle("SI"))
+        maps = [axes for axes in figure.axes if axes.get_title()]
+        columns = len({round(axes.get_position().x0, 2) for axes in maps})
+        self.assertEqual(sum(axes.get_xlabel() != "" for axes in maps), columns)
+
+    def test_no_place_without_an_interface(self) -> None:
+        """The projected region is filled with colours of interfaces, also where interpolated shares are too small."""
+        corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+        mesh = Mesh(np.stack([corners, corners, corners]), np.array([1, 2, 3]), np.array([1, 2, 3]), np.zeros(3, bool))
+        shares = np.zeros((3, 9))
+        shares[1, [0, 3, 7]], shares[2, [1, 2, 5]] = 1, 1
+        fields = Fields(str(self.folder / "none.h5"), "whole", [Snapshot(1.0, mesh, shares, {}, np.zeros(3))])
+        region = sum(area(cells) for cells in fields.projected_rest(0))
+        self.assertAlmostEqual(region, area(fields.projected(0)))
+
+    def test_pictures_of_a_compression(self) -> None:
+        """A compression has no empty panels of contact; a run with contact has all four."""
+        of = history("a")
+        struck, pressed = History(dict(of.columns), "a"), History(of.columns | {
+            "force": np.zeros(31), "far_field_stress": np.linspace(0, 1e8, 31), "shortening": np.linspace(0, 1e-3, 31),
+            "nominal_strain": np.linspace(0, 1e-2, 31)}, "b")
+        self.assertIsNone(pictures.plot_response([pressed], self.folder / "b.png"))
+        with mock.patch.object(Figure, "savefig", autospec=True) as saved:
+            pictures.plot_response([struck, pressed], self.folder / "a.png")
+        axes = saved.call_args.args[0].axes
+        self.assertEqual(len(axes), 4)
+        self.assertEqual([len(axes[0].get_lines()), len(axes[2].get_lines())], [1, 2])
+
+    def test_growth_is_marked_from_first_growth_on(self) -> None:
+        """Rows in which an interface only softens are not growth."""
+        of = history("a")
+        rows = np.arange(31)
+        of = History(of.columns | {"delaminated_area": np.clip(rows - 4, 0, 12) * 1e-6,
+                                   "stage_below_2": np.select([rows < 4, rows < 9], [0, 1], 2)}, "a")
+        self.assertEqual(list(rows_of_growth(of)), list(range(9, 17)))
 
     def test_struck_aside(self) -> None:
         """The picture is centred at the struck point of the deck and shows the entire delaminated area."""
@@ -174,7 +245,8 @@ class PicturesTest(unittest.TestCase):
             self.assertEqual(movie.main([str(self.path), "--dpi", "50"]), 0)
         with Image.open(self.folder / "case.gif") as film:
             self.assertEqual(film.n_frames, 3)
-        blue = [np.count_nonzero(np.all(np.asarray(picture) == [31, 119, 180], axis=2))
+        colour = np.round(255 * np.array(depth_colours(1)[0][:3])).astype(int)
+        blue = [np.count_nonzero(np.all(np.asarray(picture) == colour, axis=2))
                 for picture in movie.frames(read_fields(self.path), None, PictureStyle("SI", 50))]
         self.assertTrue(blue[0] < blue[1] < blue[2], blue)
 

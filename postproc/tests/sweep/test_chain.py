@@ -82,7 +82,7 @@ class ChainTest(unittest.TestCase):
         self._end(self.sweep, 0, {"dent_depth": 1e-4, "projected_area": 2e-4})
         second = following(self.sweep)
         self._end(second, 0, {"residual_strength": 3e8, "failure_code": "LDM", "has_failed": False})
-        table = Table()
+        table = make_table(self.sweep, {})
         add_figures(table, self.sweep, second)
         self.assertEqual(table.columns["residual_strength"][0], 3e8)
         self.assertEqual(table.columns["dent_depth"][0], 1e-4)
@@ -124,9 +124,11 @@ class ChainTest(unittest.TestCase):
         self.assertEqual([list(rows) for rows in groups(np.array([2.0, 1.0, 2.0000000001]))], [[1], [0, 2]])
         numbers = {"has_failed": ["true", "false", "true"], "impact_energy": [1.0, 2, 2],
                    "dent_depth": [0.0, 1e-4, 2e-4], "projected_area": [0.0, 1e-4, 2e-4]}
-        nothing = Table(numbers | {"residual_strength": [float("nan")] * 3})
+        decks = 3 * ["&case /"]
+        nothing = Table(numbers | {"residual_strength": [float("nan")] * 3}, decks=decks)
         self.assertIsNone(plot_strength(nothing, self.folder / "none.png"))
-        drawn = plot_strength(Table(numbers | {"residual_strength": [3e8, 2e8, 2.2e8]}), self.folder / "strength.png")
+        drawn = plot_strength(Table(numbers | {"residual_strength": [3e8, 2e8, 2.2e8]}, decks=decks),
+                              self.folder / "strength.png")
         self.assertGreater(drawn.stat().st_size, 1000)
 
 

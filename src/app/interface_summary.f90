@@ -1,0 +1,94 @@
+!> Results of the interfaces in the summary.
+module interface_summary
+  use deck_contents, only: deck_t
+  use delamination_parameters, only: law_cohesive
+  use json_text, only: json_t
+  use kinds, only: wp
+  use run_figures, only: run_figures_t
+  use run_records, only: run_record_t
+  use states, only: state_t
+  implicit none
+  private
+  public :: put_interfaces
+
+contains
+
+  !> Results of the interfaces.
+  subroutine put_interfaces(json, deck, now, record, figures)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The state reached
+    type(state_t), intent(in) :: now
+    !> Record of the run
+    type(run_record_t), intent(in) :: record
+    !> Figures of the state
+    type(run_figures_t), intent(in) :: figures
+    integer :: zone
+
+    call json%put('delaminated_area', sum(figures%interfaces%area))
+    call json%put('projected_area', figures%projected_area)
+    call put_first('onset', record%earliest(record%onset))
+    call put_first('first_growth', record%earliest(record%growth))
+    if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
+    call json%open_list('interfaces')
+    do zone = 1, size(figures%interfaces)
+      associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
+        call json%open_object('')
+        call json%put('ply_above', interface%below_ply)
+        call json%put('is_cohesive', interface%law == law_cohesive)
+        call json%put('area', figure%area)
+        call json%put('energy', figure%energy)
+        call json%put('x', figure%bounds(:, 1))
+        call json%put('y', figure%bounds(:, 2))
+        call put_event(json, 'onset', record%onset(:, zone), deck)
+        call put_event(json, 'first_growth', record%growth(:, zone), deck)
+        call json%put('threshold_force', figures%threshold(zone))
+        call json%put('border_reached', now%interfaces%border_reached(zone))
+        call json%close()
+      end associate
+    end do
+    call json%close()
+
+  contains
+
+    !> Time and force of the first event of all interfaces.
+    subroutine put_first(name, event)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Time, contact force, deflection; time 0: never
+      real(wp), intent(in) :: event(3)
+
+      if (event(1) > 0) then
+        call json%put(name//'_at', event(1))
+        if (deck%has_impactor) call json%put(name//'_force', event(2))
+      else
+        call json%put_null(name//'_at')
+        if (deck%has_impactor) call json%put_null(name//'_force')
+      end if
+    end subroutine put_first
+  end subroutine put_interfaces
+
+  !> Time, force and deflection of an event.
+  subroutine put_event(json, name, event, deck)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Time, contact force, deflection; time 0: never, negative: before the run
+    real(wp), intent(in) :: event(3)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    if (.not. event(1) > 0) then
+      call json%put_null(name)
+      return
+    end if
+    call json%open_object(name)
+    call json%put('at', event(1))
+    if (deck%has_impactor) call json%put('force', event(2))
+    call json%put('deflection', event(3))
+    call json%close()
+  end subroutine put_event
+end module interface_summary
