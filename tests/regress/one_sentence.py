@@ -34,7 +34,7 @@ def check_reasons(implam, folder):
     deck = write_deck(folder, DECK)
     (folder / "ply_damage.log").mkdir()
     for command, code, words in (
-            ([implam, deck, "--output", folder], EXIT_FILES, "the log " + str(folder / "ply_damage.log: is a directory.")),
+            ([implam, deck, "--output", folder], EXIT_FILES, f"the log {folder / 'ply_damage.log'}: is a directory."),
             ([implam, "restart", folder / "none_restart.h5"], EXIT_FILES, "there is no such file."),
             ([implam, deck, "--output", deck], EXIT_FILES, "a file has this name."),
             ([implam, "explain", "materials", "im9"], 1, "the materials are t700_m21, ")):
