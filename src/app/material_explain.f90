@@ -1,6 +1,7 @@
 !> Published materials for the terminal and for the manual.
 module material_explain
   use errors, only: error_t, exit_usage, fail
+  use fibre_toughnesses, only: fibre_toughness_lines
   use material_library, only: library_lines, library_names
   use text, only: append, joined, line_t, lower_case, words_of
   implicit none
@@ -44,6 +45,12 @@ contains
     end if
     if (.not. markdown) call append(lines, '&material library names one of these; keys that the deck leaves out '// &
                                     'get its values, in the units of &case units. In SI:')
+    lines = [lines, table]
+    if (len(topic) > len(material_topic)) return
+    call append(lines, '')
+    call append(lines, 'Fracture energies of fibres, measured; they depend on the thickness of the block of plies:')
+    if (markdown) call append(lines, '')
+    call fibre_toughness_lines(markdown, table)
     lines = [lines, table]
   end subroutine explain_materials
 end module material_explain

@@ -6,6 +6,7 @@ module result_rows
   use interface_columns, only: area_rows, area_values, border_rows, border_values, interface_rows, interface_values, &
                                release_rows, release_values, rig_rows, rig_values
   use kinds, only: wp
+  use load_cases, only: load_case_t
   use line_columns, only: end_rows, end_values, has_ends, line_column_rows, line_values
   use models, only: model_t
   use operator_columns, only: operator_rows, operator_values
@@ -47,7 +48,7 @@ contains
     character(len=result_name_length), allocatable :: names(:)
     integer :: zone, line, gauge
 
-    names = names_of(plate_rows)
+    names = pack(names_of(plate_rows), apply_to(deck))
     do zone = 1, size(deck%delaminations)
       names = [names, numbered(interface_rows, deck%delaminations(zone)%below_ply)]
     end do
@@ -61,6 +62,27 @@ contains
     end do
     if (deck%output%force_filter > 0) names = [names, names_of(filter_rows)]
   end function column_names
+
+  !> Which columns of the plate have a meaning under a load: the bending stress around the struck point needs a load
+  !> across the plate, the contact area an impactor.
+  pure function apply_to(load) result(apply)
+    !> The load
+    class(load_case_t), intent(in) :: load
+    !> One for each row
+    logical :: apply(size(plate_rows))
+    integer :: i
+
+    apply = .true.
+    if (load%has_impactor) return
+    do i = 1, size(plate_rows)
+      select case (cell(plate_rows(i), column_name))
+      case ('contact_area')
+        apply(i) = .false.
+      case ('stress')
+        apply(i) = load%has_pressure
+      end select
+    end do
+  end function apply_to
 
   !> Names of some rows.
   pure function names_of(rows) result(names)
@@ -111,7 +133,7 @@ contains
     logical, allocatable :: whole(:)
     integer :: i
 
-    whole = [are_whole(plate_rows), (are_whole(interface_rows), i=1, size(deck%delaminations))]
+    whole = [pack(are_whole(plate_rows), apply_to(deck)), (are_whole(interface_rows), i=1, size(deck%delaminations))]
     if (size(deck%lines) > 0) &
       whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%lines))]
     if (has_ends(deck%plate, deck%lines)) whole = [whole, are_whole(end_rows)]
@@ -153,8 +175,8 @@ contains
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
              real(size(record%warning_kinds), wp), now%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &
-             dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent, &
-             interface_values(model, now%interfaces)]
+             dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent]
+      row = [pack(row, apply_to(model%setup)), interface_values(model, now%interfaces)]
       lines = line_values(model, now)
       row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement)]
     end associate

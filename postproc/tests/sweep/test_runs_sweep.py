@@ -5,6 +5,7 @@ import csv
 import fcntl
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -156,6 +157,35 @@ class SweepTest(unittest.TestCase):
             self.assertIn("solver.max_iterations=1  solver.tolerance=1e-13: ended with 3: ", text)
             rows = self.table()
             self.assertEqual([(row["exit_code"], row["peak_force"] == "") for row in rows], [("3", True), ("0", False)])
+
+    def test_changed_checkpoint(self) -> None:
+        """Cases that begin from a checkpoint run again once it has changed, or the program; others do not."""
+        self.addCleanup(os.chdir, Path.cwd())
+        os.chdir(self.folder)
+        deck = self.folder / "cai_impact.nml"
+        def strike(velocity: str) -> None:
+            text = re.sub(r"velocity=\S+", f"velocity={velocity}", (SMALL / deck.name).read_text())
+            deck.write_text(text)
+            subprocess.run([implam(), deck.name], check=True, stdout=subprocess.DEVNULL)
+        strike("8")
+        arguments = self.arguments('deck = "cai_compression.nml"\n[grid]\n"line[*].rise" = [0.09e-3]')
+        self.assertEqual(run_quietly(sweep.main, *arguments)[0], 0)
+        first, = self.table()
+        self.assertEqual((run_quietly(sweep.main, *arguments)[0], self.called("run")), (0, 1))
+        self.assertNotIn("impact_energy", first)
+        strike("6")
+        code, text = run_quietly(sweep.main, *arguments, "--table")
+        self.assertEqual((code, self.called("run"), self.table()[0].get("residual_strength", "")), (75, 1, ""), text)
+        self.assertIn("1 case without figures: a file that the deck reads has changed since.", text)
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual((code, self.called("run")), (0, 2), text)
+        self.assertIn("1 case of 1 to run again from the start: cai_impact_restart.h5 has changed since", text)
+        self.assertNotEqual(self.table()[0]["residual_strength"], first["residual_strength"])
+        log, = self.output.rglob("*.log")
+        log.write_text(re.sub(r"^Implam [^,]*,", "Implam 0.0.9 (commit abc),", log.read_text(), flags=re.MULTILINE))
+        code, text = run_quietly(sweep.main, *arguments)
+        self.assertEqual((code, self.called("run")), (0, 3), text)
+        self.assertIn("their results are of Implam 0.0.9 (abc), and this is ", text)
 
     def test_faults_are_reported_before_anything_runs(self) -> None:
         """A value out of range and a misspelt key: messages of the program, and no run."""
