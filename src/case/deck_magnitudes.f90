@@ -31,7 +31,7 @@ module deck_magnitudes
   end type magnitude_t
 
   !> Moduli besides the largest one, which a material with an error is asked for.
-  character(len=*), parameter :: other_moduli = 'E1c E2 G12 G13 G23'
+  character(len=*), parameter :: other_moduli = 'E2 G12 G13 G23'
 
 contains
 
