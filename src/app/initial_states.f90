@@ -95,16 +95,15 @@ contains
     if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
 
-  !> Warning of the check on an initial state that does not exist yet.
+  !> Remark of the check on an initial state that does not exist yet.
   function missing_start(deck) result(sentence)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> The warning, with file and line
+    !> The sentence
     character(len=:), allocatable :: sentence
 
-    sentence = deck%source//':'//to_text(deck%settings%line_of_group(initial_state_group))//': warning: &'// &
-               initial_state_group//' from = '''//deck%initial%from//''': there is no such file yet. The run needs '// &
-               'it, and the deck has not been compared with it.'
+    sentence = 'The initial state '//deck%initial%from//' does not exist yet, so the deck is not compared with it; '// &
+               'the run needs it.'
   end function missing_start
 
   !> Refuses the checkpoint that the run itself will write.
@@ -120,10 +119,7 @@ contains
 
     own = deck%output%directory//'/'//deck%name//checkpoint_ending
     is_own = .false.
-    ! The file need not exist yet.
-    if (communicator%is_root()) &
-      is_own = is_same_file(deck%initial%from, own) .or. any(own == [character(len=len(own) + 2) :: deck%initial%from, &
-                                                                     './'//deck%initial%from])
+    if (communicator%is_root()) is_own = is_same_file(deck%initial%from, own)
     call communicator%broadcast(is_own)
     if (is_own) call refuse(deck, 'is the checkpoint that this run writes at its own end, from which the next run '// &
                             'would start; allowed: another &case name or &output directory', error)
