@@ -6,6 +6,7 @@ module deck_reader
   use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
+  use deck_cell_growth, only: check_cell_growth
   use deck_central_differences, only: choose_for_central_differences, find_stable_step
   use deck_cross_checks, only: check_across_groups
   use deck_integrators, only: choose_integrator, needs_lengths
@@ -131,6 +132,7 @@ contains
     call check_left_out_zones(deck, problems)
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)
+    if (problems%errors() == 0) call check_cell_growth(deck, problems)
     call check_interfaces(deck, problems)
     call check_correction(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)

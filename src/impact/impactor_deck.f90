@@ -16,9 +16,8 @@ module impactor_deck
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at', &
                                          key_mass = 'mass', key_integrator = 'integrator', &
-                                         key_travel = 'travel', key_rise = 'rise', key_contact_area = 'contact_area'
-  !> Name used here more than once.
-  character(len=*), parameter :: key_energy = 'energy'
+                                         key_travel = 'travel', key_rise = 'rise', key_energy = 'energy', &
+                                         key_contact_area = 'contact_area'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor, and the point that it strikes.'

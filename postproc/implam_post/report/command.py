@@ -9,7 +9,7 @@ from typing import Any
 
 from implam_post.io.compression import strength_of
 from implam_post.io.counts import counted
-from implam_post.io.damage_resistance import DIRECTIONS, extent, kinds_of_damage
+from implam_post.io.damage_resistance import DIRECTIONS, Extent, extent, kinds_of_damage
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import refuse_equal_names, write_text
 from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES
@@ -55,6 +55,8 @@ _REMARKS = {"projected_area": "each point counts with the largest fraction of al
 # Words before a time, and texts for missing figures.
 _WHEN = {"contact_duration": "until"}
 _UNKNOWN = {"energy_absorbed": "contact has not ended"}
+# Half the range of directions, degrees, from which on the damage is called round.
+_ROUND = 45
 # Numbers in a deck, and the number of digits from which they are rounded: people write fewer.
 _NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[de][-+]?\d+)?(?![\w.])", re.IGNORECASE)
 _MANY_DIGITS = 10
@@ -137,13 +139,21 @@ def _frequency(style: PictureStyle, corner: float) -> str:
     return f"{corner / style.seconds / 1e3:.4g} kHz" if style.system else rounded(corner)
 
 
+def _direction(size: Extent) -> str:
+    """Return the direction of the largest diameter, to the degrees to which it is known."""
+    error = math.ceil(size.direction_error)
+    if error >= _ROUND:
+        return "in no certain direction: the damage is round to within an element"
+    return f"along {size.direction:.0f}°" + (f" ± {error}°" if error else "")
+
+
 def _sizes(results: Run, style: PictureStyle) -> list[tuple[str, str, str]]:
     """Return the rows of the size of the projected damage."""
     size = extent(results.fields)
     if size is None:
         return [("projected damage", "none", "")]
     rows = [("largest diameter of the projected damage", shown(style, "length", size.diameter),
-             f"along {size.direction:.0f}°"),
+             _direction(size)),
             ("length of the projected damage along 0° (x)", shown(style, "length", size.length), ""),
             ("width of the projected damage along 90° (y)", shown(style, "length", size.width), "")]
     return rows + [(f"length of the projected damage through the struck point, along {angle}°",
