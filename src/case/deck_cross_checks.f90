@@ -20,7 +20,7 @@ module deck_cross_checks
   use laminate_deck, only: laminate_group
   use line_deck, only: line_group, key_rise
   use line_loads, only: line_load_t
-  use material_deck, only: material_group, require_densities
+  use material_deck, only: key_compressive, material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
   use output_deck, only: check_intervals, remark_idle_fields
   use plies, only: ply_t, material_objection
@@ -309,12 +309,12 @@ contains
 
     associate (material => deck%materials(place))
       if (.not. material%xc > 0) then
-        if (are_clear(deck%settings, problems, material_group, 'XC', place)) &
-          call report(deck%settings, problems, material_group, 'XC', 'is missing; fibre_compression = ''kinking'' '// &
-                      'of &ply_damage derives the misalignment of the fibres from it.', place)
+        if (are_clear(deck%settings, problems, material_group, key_compressive, place)) &
+          call report(deck%settings, problems, material_group, key_compressive, 'is missing; fibre_compression = '// &
+                      '''kinking'' of &ply_damage derives the misalignment of the fibres from it.', place)
       else if (material%g12 > 0) then
         if (larc_objection(material) /= '') &
-          call report(deck%settings, problems, material_group, 'XC', larc_objection(material)//'.', place)
+          call report(deck%settings, problems, material_group, key_compressive, larc_objection(material)//'.', place)
       end if
     end associate
   end subroutine check_kinking
