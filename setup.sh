@@ -42,6 +42,21 @@ run_apt() {
   rm "$log"
 }
 
+# build WORD...: without a terminal ninja prints a line for each of 840 files; they are shown only if the build fails.
+build() {
+  local log
+  if [[ -t 1 ]]; then
+    cmake --build --preset release "$@"
+    return
+  fi
+  log=$(mktemp)
+  if ! cmake --build --preset release "$@" >"$log" 2>&1; then
+    cat "$log" >&2
+    exit 1
+  fi
+  rm "$log"
+}
+
 install_packages() {
   local missing=() wanted=() package
   if ! command -v apt-get >/dev/null; then
@@ -102,7 +117,7 @@ cmake --preset release
 
 if [[ $task == test ]]; then
   stage "Building program and tests"
-  cmake --build --preset release
+  build
   stage "Testing"
   status=0
   ctest --preset release --output-junit "$PWD/build/tests.xml" --test-output-size-passed 100000 "$@" || status=$?
@@ -112,8 +127,8 @@ if [[ $task == test ]]; then
   exit $status
 fi
 
-stage "Building the program"
-cmake --build --preset release --target implam
+stage "Building the program (some minutes)"
+build --target implam
 stage "Striking a first plate, input/peanut.nml"
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 build/implam input/peanut.nml --output results/peanut

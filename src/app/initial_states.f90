@@ -36,7 +36,7 @@ module initial_states
   use time_stepping, only: time_stepper_t
   implicit none
   private
-  public :: fit_initial_state, take_initial_state, visit_incomplete_start
+  public :: fit_initial_state, missing_start, take_initial_state, visit_incomplete_start
 
 contains
 
@@ -60,13 +60,12 @@ contains
 
     if (present(lacks)) lacks = .false.
     if (.not. deck%initial%is_inherited) return
+    call refuse_own_end(deck, communicator, error)
+    if (allocated(error)) return
     if (present(lacks)) then
       if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
       call communicator%broadcast(lacks)
       if (lacks) return
-    else
-      call refuse_own_end(deck, communicator, error)
-      if (allocated(error)) return
     end if
     call open_checkpoint(deck%initial%from, communicator, archive, old, error)
     if (allocated(error)) return
@@ -77,7 +76,7 @@ contains
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
     if (objection /= '') then
-      call refuse(deck, 'that run has another plate, '//objection, error)
+      call refuse(deck, 'the deck does not fit that run, '//objection, error)
       return
     end if
     if (is_mapped(deck, old) .and. force > 0) then
@@ -96,6 +95,17 @@ contains
     if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
 
+  !> Remark of the check on an initial state that does not exist yet.
+  function missing_start(deck) result(sentence)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The sentence
+    character(len=:), allocatable :: sentence
+
+    sentence = 'The initial state '//deck%initial%from//' does not exist yet, so the deck is not compared with it; '// &
+               'the run needs it.'
+  end function missing_start
+
   !> Refuses the checkpoint that the run itself will write.
   subroutine refuse_own_end(deck, communicator, error)
     !> The deck
@@ -104,11 +114,12 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Set (deck) if it is that checkpoint
     type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: own
     logical :: is_own
 
+    own = deck%output%directory//'/'//deck%name//checkpoint_ending
     is_own = .false.
-    if (communicator%is_root()) &
-      is_own = is_same_file(deck%initial%from, deck%output%directory//'/'//deck%name//checkpoint_ending)
+    if (communicator%is_root()) is_own = is_same_file(deck%initial%from, own)
     call communicator%broadcast(is_own)
     if (is_own) call refuse(deck, 'is the checkpoint that this run writes at its own end, from which the next run '// &
                             'would start; allowed: another &case name or &output directory', error)

@@ -4,6 +4,7 @@ module interface_summary
   use delamination_parameters, only: law_cohesive
   use json_text, only: json_t
   use kinds, only: wp
+  use projected_areas, only: area_dissipated, area_failed, area_softened, projected_rule
   use run_figures, only: run_figures_t
   use run_records, only: run_record_t
   use states, only: state_t
@@ -28,7 +29,10 @@ contains
     integer :: zone
 
     call json%put('delaminated_area', sum(figures%interfaces%area))
-    call json%put('projected_area', figures%projected_area)
+    call json%put('projected_area', figures%projected_areas(area_dissipated))
+    call json%put('projected_area_rule', projected_rule)
+    call json%put('projected_area_failed', figures%projected_areas(area_failed))
+    call json%put('projected_area_softened', figures%projected_areas(area_softened))
     call put_first('onset', record%earliest(record%onset))
     call put_first('first_growth', record%earliest(record%growth))
     if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
@@ -83,6 +87,7 @@ contains
 
     if (.not. event(1) > 0) then
       call json%put_null(name)
+      call json%put(name//'_before_run', event(1) < 0)
       return
     end if
     call json%open_object(name)

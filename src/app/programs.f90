@@ -14,7 +14,7 @@ module programs
   use deck_explain, only: explain, explain_table
   use files, only: ignore_size_signal
   use hdf5_file, only: files_left_open
-  use initial_states, only: fit_initial_state
+  use initial_states, only: fit_initial_state, missing_start
   use build_information, only: version, commit, compiler, petsc_version
   use run_provenance, only: citation_of
   use command_lines, only: command_t, read_command_line, verb_run, verb_check, verb_explain, verb_restart, &
@@ -31,7 +31,7 @@ module programs
   use shell_pages, only: completion, manual_page
   use rig_decks, only: rig_deck_name
   use starter_decks, only: starter_name, write_starter
-  use usage_texts, only: usage_lines
+  use usage_texts, only: command_help, usage_lines
   implicit none
   private
   public :: run_program
@@ -65,6 +65,8 @@ contains
       case (verb_help)
         if (command%target == '') then
           call print_usage(communicator)
+        else if (size(command_help(command%target)) > 0) then
+          call print_lines(communicator, command_help(command%target))
         else
           call explain_topic(command, communicator, error)
         end if
@@ -187,7 +189,8 @@ contains
     end if
     if (is_result_topic(command%target) .or. is_material_topic(command%target)) then
       if (is_material_topic(command%target)) then
-        call explain_materials(command%markdown, lines)
+        call explain_materials(command%target, command%markdown, lines, error)
+        if (allocated(error)) return
       else
         call explain_results(command%target, command%markdown, lines)
       end if
@@ -229,8 +232,7 @@ contains
     if (code /= exit_done) return
     call fit_initial_state(deck, communicator, error, lacks)
     if (allocated(error)) return
-    if (lacks) call print_lines(communicator, [line_t('The initial state '//deck%initial%from// &
-                                                      ' does not exist, so the deck is not compared with it.')])
+    if (lacks) call print_lines(communicator, [line_t(missing_start(deck))])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), strength_lines(deck), toughness_lines(deck)])

@@ -82,7 +82,8 @@ contains
       if (markdown) then
         call markdown_table(column_heading, column_rows, lines)
       else
-        call append(lines, 'NAME_history.csv has a row for each accepted step. Its columns, in their order:')
+        call append(lines, 'NAME_history.csv has a row for each accepted step, with central differences '// &
+                    'about 2000 rows. Its columns, in their order:')
         call plain_table(column_heading, column_rows, lines)
       end if
     else if (markdown) then

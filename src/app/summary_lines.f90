@@ -5,6 +5,7 @@ module summary_lines
   use energy_ledgers, only: ledger_t
   use impactors, only: impactor_energy, new_impactor
   use kinds, only: wp
+  use projected_areas, only: area_dissipated, area_failed, area_softened
   use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
   use roundings, only: rounding
@@ -219,7 +220,11 @@ contains
     integer :: zone
 
     call add_figure(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
-              ' of all interfaces, projected '//rounded_text(figures%projected_area)//within(errors%area))
+              ' of all interfaces'//within(errors%area))
+    call add_figure(lines, '  projected', rounded_text(figures%projected_areas(area_dissipated))// &
+                    ' by dissipated fractions, as in a C-scan; failed points '// &
+                    rounded_text(figures%projected_areas(area_failed))//', with process zones '// &
+                    rounded_text(figures%projected_areas(area_softened)))
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
         call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &

@@ -4,7 +4,7 @@ module usage_texts
   use text, only: line_t, append, joined, words_of
   implicit none
   private
-  public :: usage_lines, explained_options
+  public :: usage_lines, command_help, explained_options
 
   !> Characters of a term and of an explanation; columns of explanations and of the page.
   integer, parameter, public :: text_length = 400
@@ -19,14 +19,14 @@ module usage_texts
     'explain [GROUP [KEY]]', 'groups and keys of a deck: units, defaults, meaning; GROUP.KEY and GROUP%KEY are &
       &accepted too', &
     'explain history|fields', 'contents of the results: names, units, meaning', &
-    'explain materials', 'published materials for decks, with the source of each value', &
+    'explain materials [NAME]', 'published materials for decks, with the source of each value', &
     'restart [FILE]', 'resume from a checkpoint (NAME_restart.h5), or from the newest one of a folder: that named, &
       &that of --output, or the current one; the deck is that of the checkpoint, and its file is not read again', &
     'queue slurm|pbs [DECK.nml]', 'write a job script with ranks and memory estimated from the deck; with --chain '// &
     'the job is submitted again until the run is complete; array.txt of a sweep makes a job array', &
     'completion bash|zsh', 'print a script for the completion of commands, groups and keys in the shell', &
     'man', 'print this page and all keys as a manual page of Unix: implam man | man -l -', &
-    'help [GROUP [KEY]]', 'this page, or the same as explain'], [2, 11])
+    'help [COMMAND|GROUP [KEY]]', 'this page, its part on a command, or the same as explain'], [2, 11])
   !> Options: term, commands that take it (empty: all), explanation. The last row is of PETSc.
   integer, parameter, public :: of_term = 1, of_commands = 2, of_meaning = 3
   character(len=*), parameter :: runs = 'run restart'
@@ -76,6 +76,32 @@ contains
       call append_wrapped(lines, '', trim(notes(i)), 2)
     end do
   end subroutine usage_lines
+
+  !> The part of the help on one command.
+  pure function command_help(command) result(lines)
+    !> Its first word
+    character(len=*), intent(in) :: command
+    !> Lines for the terminal; none: there is no such command
+    type(line_t), allocatable :: lines(:)
+    character(len=text_length) :: options(2, size(option_rows, 2))
+    logical :: on_it(size(command_rows, 2)), with_it(size(option_rows, 2))
+    integer :: i
+
+    allocate (lines(0))
+    do i = 1, size(on_it)
+      on_it(i) = index(command_rows(1, i)//' ', command//' ') == 1 .or. &
+                 index(command_rows(1, i), '['//command//']') == 1
+    end do
+    if (.not. any(on_it)) return
+    do i = 1, size(with_it)
+      with_it(i) = index(' '//trim(option_rows(of_commands, i))//' ', ' '//command//' ') > 0
+    end do
+    call append_rows(lines, 'Usage:', 'implam ', command_rows(:, pack([(i, i=1, size(on_it))], on_it)))
+    options(1, :) = option_rows(of_term, :)
+    options(2, :) = option_rows(of_meaning, :)
+    if (any(with_it)) call append_rows(lines, 'Options:', '', options(:, pack([(i, i=1, size(with_it))], with_it)))
+    call append(lines, 'implam help lists all commands, options and exit codes.')
+  end function command_help
 
   !> Options and their explanations, which begin with the commands that take them.
   pure function explained_options() result(rows)

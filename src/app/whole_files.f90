@@ -25,8 +25,7 @@ contains
     call file%close()
     if (file%failed) then
       call remove_file(path//'.tmp')
-      call fail(error, exit_files, 'Cannot write '//path//': does the folder exist, is the disk full or the quota '// &
-                'used up?')
+      call fail(error, exit_files, 'Cannot write '//path//': '//file%reason//'.')
     else
       call rename_file(path//'.tmp', path, error)
     end if

@@ -1,6 +1,7 @@
 /* Age, kind and identity of files, and reasons of failed writes. They are in structures and numbers that each system
    lays out in its own way, so this is written in its language. */
 #define _POSIX_C_SOURCE 200809L
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -104,6 +105,18 @@ int implam_write_obstacle(const char *path, const char *trial, int bytes)
   case EFBIG: return 3;
   default: return 4;
   }
+}
+
+/* The reason of the last failure in words that end a sentence, without a final zero; returns their number. */
+int implam_last_reason(char *text, int size)
+{
+  const char *words = errno ? strerror(errno) : "the system gives no reason";
+  int length = (int)strlen(words);
+  if (length > size) length = size;
+  memcpy(text, words, (size_t)length);
+  /* "No such file", but not the first letters of an abbreviation. */
+  if (length > 1 && islower((unsigned char)text[1])) text[0] = (char)tolower((unsigned char)text[0]);
+  return length;
 }
 
 /* A write beyond the limit of the size of files then fails, as on a full disk, and does not end the program. */

@@ -2,11 +2,12 @@
 module files
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_ptr, c_size_t, c_associated, c_loc
   use errors, only: error_t, fail, exit_files
+  use system_reasons, only: last_reason
   use text, only: to_text
   implicit none
   private
   public :: file_exists, is_directory, is_pipe, is_readable, is_same_file, rename_file, remove_file, &
-            make_directory, read_whole_file, write_obstacle, ignore_size_signal
+            make_directory, read_whole_file, read_obstacle, write_obstacle, ignore_size_signal
 
   !> Permissions of new folders before the user's mask: rwx for all (octal 777).
   integer(c_int), parameter :: all_permissions = 511_c_int
@@ -173,7 +174,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (c_rename(from//c_null_char, to//c_null_char) == 0) return
-    call fail(error, exit_files, "Cannot rename "//from//' to '//to//'.')
+    call fail(error, exit_files, "Cannot rename "//from//' to '//to//': '//last_reason()//'.')
   end subroutine rename_file
 
   !> Removes a file if it exists. A failure is reported when the file is written again.
@@ -191,14 +192,19 @@ contains
     character(len=*), intent(in) :: path
     !> Raised if the folder does not exist afterwards
     type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: reason
     integer :: i, status
 
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, all_permissions)
     end do
     status = c_mkdir(path//c_null_char, all_permissions)
+    if (status /= 0) reason = last_reason()
     ! Another process may have created the folder, so only the result matters.
-    if (.not. is_directory(path)) call fail(error, exit_files, "Cannot make the folder "//path//'.')
+    if (is_directory(path)) return
+    if (file_exists(path)) reason = 'a file has this name'
+    if (.not. allocated(reason)) reason = 'it has disappeared'
+    call fail(error, exit_files, "Cannot make the folder "//path//': '//reason//'.')
   end subroutine make_directory
 
   !> Reads an entire file, byte by byte.
@@ -216,11 +222,13 @@ contains
     integer :: bytes, i
 
     content = ''
-    call check_readable(path, error)
-    if (allocated(error)) return
+    if (read_obstacle(path) /= '') then
+      call fail(error, exit_files, path//': '//read_obstacle(path)//'.')
+      return
+    end if
     stream = c_fopen(path//c_null_char, 'rb'//c_null_char)
     if (.not. c_associated(stream)) then
-      call fail(error, exit_files, path//": cannot be opened.")
+      call fail(error, exit_files, path//': cannot be read: '//last_reason()//'.')
       return
     end if
     allocate (buffer(max_bytes + 1))
@@ -237,19 +245,20 @@ contains
     end do
   end subroutine read_whole_file
 
-  !> Reports in one sentence why a path cannot be read.
-  subroutine check_readable(path, error)
+  !> Why a path cannot be read, as the end of a sentence; empty if it can be.
+  function read_obstacle(path) result(reason)
     !> The path
     character(len=*), intent(in) :: path
-    !> Raised if it cannot be read
-    type(error_t), allocatable, intent(inout) :: error
+    !> The reason
+    character(len=:), allocatable :: reason
 
+    reason = ''
     if (is_directory(path)) then
-      call fail(error, exit_files, path//': is a folder, not a file.')
+      reason = 'it is a folder, not a file'
     else if (.not. file_exists(path)) then
-      call fail(error, exit_files, path//': there is no such file.')
+      reason = 'there is no such file'
     else if (.not. is_readable(path)) then
-      call fail(error, exit_files, path//': this user may not read it.')
+      reason = 'this user may not read it'
     end if
-  end subroutine check_readable
+  end function read_obstacle
 end module files

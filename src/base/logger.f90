@@ -85,7 +85,7 @@ contains
       return
     end if
     call self%file%open(path, merge('a', 'w', append))
-    if (self%file%failed) call fail(error, exit_files, "Cannot open the log "//trim(path)//' for writing.')
+    if (self%file%failed) call fail(error, exit_files, "Cannot write the log "//trim(path)//': '//self%file%reason//'.')
     call system_clock(self%flushed)
   end subroutine open
 

@@ -1,6 +1,7 @@
 !> Text files written through the C library, because Fortran's `flush` and `close` do not report when the disk is full.
 module output_streams
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
+  use system_reasons, only: last_reason
   implicit none
   private
   public :: output_stream_t
@@ -9,6 +10,8 @@ module output_streams
   type :: output_stream_t
     !> True: an operation has failed
     logical :: failed = .false.
+    !> Why the first one has failed, as the end of a sentence
+    character(len=:), allocatable :: reason
     !> C's handle
     type(c_ptr), private :: stream = c_null_ptr
   contains
@@ -19,6 +22,7 @@ module output_streams
     procedure :: flush
     procedure :: synchronise
     procedure :: close
+    procedure, private :: note
   end type output_stream_t
 
   interface
@@ -81,7 +85,8 @@ contains
     character(len=*), intent(in) :: mode
 
     self%stream = c_fopen(path//c_null_char, mode//c_null_char)
-    self%failed = .not. c_associated(self%stream)
+    self%failed = .false.
+    call self%note(.not. c_associated(self%stream))
   end subroutine open
 
   !> Whether the file is open.
@@ -102,7 +107,7 @@ contains
 
     if (self%failed .or. len(text) == 0) return
     written = c_fwrite(text, 1_c_size_t, len(text, c_size_t), self%stream)
-    self%failed = written /= len(text)
+    call self%note(written /= len(text))
   end subroutine put
 
   !> Writes a line.
@@ -120,7 +125,7 @@ contains
     !> The stream
     class(output_stream_t), intent(inout) :: self
 
-    if (.not. self%failed) self%failed = c_fflush(self%stream) /= 0
+    if (.not. self%failed) call self%note(c_fflush(self%stream) /= 0)
   end subroutine flush
 
   !> Waits until the file is on the disk.
@@ -129,7 +134,7 @@ contains
     class(output_stream_t), intent(inout) :: self
 
     call self%flush()
-    if (.not. self%failed) self%failed = c_fsync(c_fileno(self%stream)) /= 0
+    if (.not. self%failed) call self%note(c_fsync(c_fileno(self%stream)) /= 0)
   end subroutine synchronise
 
   !> Closes the file.
@@ -141,6 +146,18 @@ contains
     if (.not. self%is_open()) return
     status = c_fclose(self%stream)
     self%stream = c_null_ptr
-    self%failed = self%failed .or. status /= 0
+    call self%note(status /= 0)
   end subroutine close
+
+  !> Stores a failure of the last operation with its reason; that of the first one is kept.
+  subroutine note(self, has_failed)
+    !> The stream
+    class(output_stream_t), intent(inout) :: self
+    !> True: it has failed
+    logical, intent(in) :: has_failed
+
+    if (self%failed .or. .not. has_failed) return
+    self%failed = .true.
+    self%reason = last_reason()
+  end subroutine note
 end module output_streams

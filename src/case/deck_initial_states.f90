@@ -18,6 +18,7 @@ module deck_initial_states
   use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
   use plate_deck, only: key_symmetry
   use plate_options, only: kinematics_linear
+  use ply_damage_deck, only: ply_damage_group
   use ply_damage_parameters, only: damage_names, numbers_of
   use roundings, only: rounding
   use static_deck, only: static_group
@@ -182,7 +183,9 @@ contains
     here = numbers_of(deck%ply_damage)
     there = numbers_of(old%ply_damage)
     i = findloc(differ(here, there), .true., dim=1)
-    if (i > 0) objection = both('&ply_damage '//trim(damage_names(i)), to_text(here(i)), to_text(there(i)))
+    if (i > 0) objection = both('&ply_damage '//trim(damage_names(i)), &
+                                value_in(deck, ply_damage_group, trim(damage_names(i)), here(i)), &
+                                value_in(old, ply_damage_group, trim(damage_names(i)), there(i)))
 
   contains
 
@@ -220,7 +223,8 @@ contains
         k = findloc(differ(here, there), .true., dim=1)
         if (k > 0) then
           objection = both('&delamination '//trim(law_names(k))//' below ply '//to_text(mine(i)%below_ply), &
-                           to_text(here(k)), to_text(there(k)))
+                           value_in(deck, delamination_group, trim(law_names(k)), here(k), mine(i)%group), &
+                           value_in(old, delamination_group, trim(law_names(k)), there(k), its(i)%group))
         else if (has_other_starter(mine(i), its(i))) then
           objection = both('&delamination '//key_starter//' below ply '//to_text(mine(i)%below_ply), &
                            starter_list(mine(i)), starter_list(its(i)))//'; allowed: the same, or none'
@@ -331,4 +335,22 @@ contains
 
     name = ''''//trim(names(symmetry))//''''
   end function part_name
+
+  !> A value as a deck has it: a word of a choice, a logical value, or a number.
+  function value_in(deck, group, key, number, place) result(shown)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Group and key
+    character(len=*), intent(in) :: group, key
+    !> The number that stands for it
+    real(wp), intent(in) :: number
+    !> Index among the groups of this name
+    integer, intent(in), optional :: place
+    !> As text
+    character(len=:), allocatable :: shown
+
+    shown = deck%settings%text_of(group, key, place)
+    if (scan(shown, 'abcfghijklmnopqrstuvwxyz') == 0) shown = to_text(number)
+    if (scan(shown(1:1), 'abcdefghijklmnopqrstuvwxyz') == 1) shown = ''''//shown//''''
+  end function value_in
 end module deck_initial_states

@@ -6,8 +6,8 @@ module deck_process_zones
   use deck_remarks, only: remark, remark_idle
   use delaminated_regions, only: cells_within
   use interface_places, only: delamination_group
-  use delamination_deck, only: key_flaws, key_shear_cracks
-  use delamination_parameters, only: delamination_t, law_cohesive, toughnesses
+  use delamination_deck, only: key_flaws, key_growth_control, key_shear_cracks
+  use delamination_parameters, only: delamination_t, growth_by_energy, law_cohesive, toughnesses
   use in_situ_strengths, only: crack_strengths
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -19,6 +19,7 @@ module deck_process_zones
   use scale_tables, only: length_unit, length_unit_size
   use mean_stiffnesses, only: in_bending
   use stacking, only: stacked_plies, section_stiffness
+  use stepping_parameters, only: is_explicit
   implicit none
   private
   public :: check_process_zones, set_flaws
@@ -37,6 +38,9 @@ contains
     if (problems%errors() > 0) return
     do i = 1, size(deck%delaminations)
       if (deck%delaminations(i)%law /= law_cohesive) cycle
+      if (deck%delaminations(i)%growth_control == growth_by_energy .and. .not. is_explicit(deck%stepping)) &
+        call remark_idle(deck%settings, problems, delamination_group, key_growth_control, 'has no effect without '// &
+                         '&time integrator = ''central_difference''.', deck%delaminations(i)%group)
       warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply, &
                                      length_unit(deck), length_unit_size(deck))
       if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
@@ -129,6 +133,7 @@ contains
     zone%strength_opening = delamination%strength_opening
     zone%strength_shear = delamination%strength_shear
     zone%is_pulled = .not. deck%has_impactor
+    zone%by_energy = delamination%growth_control == growth_by_energy .and. is_explicit(deck%stepping)
   end function process_zone
 
   !> Total thickness of plies.

@@ -6,6 +6,7 @@ module deck_reader
   use deck_accuracy, only: check_left_out, choose_by_accuracy
   use deck_contents, only: deck_t
   use deck_crack_bands, only: check_crack_bands
+  use deck_cell_growth, only: check_cell_growth
   use deck_central_differences, only: choose_for_central_differences, find_stable_step
   use deck_cross_checks, only: check_across_groups
   use deck_integrators, only: choose_integrator, needs_lengths
@@ -46,7 +47,7 @@ module deck_reader
   use line_deck, only: fill_lines, check_lines
   use delamination_parameters, only: law_cohesive, law_front
   use solver_deck, only: check_petsc_options, fill_equilibrium, fill_linear_solver
-  use material_deck, only: fill_materials, normal_compliance
+  use material_deck, only: fill_materials
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh, check_mesh
   use mesh_parameters, only: add_lines
@@ -58,6 +59,7 @@ module deck_reader
   use rigs, only: window_lines
   use stepping_parameters, only: is_error_controlled, is_explicit
   use support_deck, only: fill_supports, check_rigs
+  use deck_struck_faces, only: check_struck_face, struck_face_of
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
   implicit none
@@ -130,6 +132,7 @@ contains
     call check_left_out_zones(deck, problems)
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)
+    if (problems%errors() == 0) call check_cell_growth(deck, problems)
     call check_interfaces(deck, problems)
     call check_correction(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)
@@ -221,16 +224,11 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
-    real(wp) :: compliance
 
     call fill_impactor(deck%settings, deck%impactor, problems)
     if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
-    if (deck%has_impactor) then
-      compliance = 0
-      if (allocated(deck%laminate%material)) compliance = normal_compliance( &
-        deck%settings, deck%laminate%material(1), deck%materials(deck%laminate%material(1)))
-      call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
-    end if
+    if (deck%has_impactor) &
+      call fill_indentation(deck%settings, deck%impactor%radius, struck_face_of(deck), deck%indentation)
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
@@ -289,6 +287,7 @@ contains
     call check_delaminations(deck%settings, deck%delaminations, problems)
     if (allocated(deck%laminate%angle)) &
       call remark_left_out(deck%settings, size(deck%laminate%angle), changes_of_angle(deck), problems)
+    call check_struck_face(deck, problems)
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
     if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)

@@ -6,39 +6,21 @@
 !> the contact stiffness with Sun's formula.
 module deck_units
   use deck_contents, only: deck_t
+  use deck_magnitudes, only: magnitude_t, magnitudes_of
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
-  use delamination_deck, only: key_strength_shear, key_toughness, key_toughness_shear
-  use interface_places, only: delamination_group
-  use delamination_parameters, only: toughnesses
   use hertz_contact, only: sun_stiffness
-  use impactor_deck, only: impactor_group, key_mass, key_radius, key_velocity
+  use impactor_deck, only: impactor_group, key_energy, key_mass
   use indentation_deck, only: indentation_group, key_k
   use kinds, only: wp
   use mathematical_constants, only: pi
-  use laminate_deck, only: laminate_group, key_thicknesses
-  use material_deck, only: material_group, key_isotropic, key_along, key_density, strength_keys, toughness_keys
-  use plate_deck, only: plate_group, key_length
   use short_numbers, only: short_text
   use time_deck, only: time_group, key_end
   use unit_systems, only: base_units, is_unusual, system_named, unit_that_fits, unit_name, systems, quantities, &
-                          of_pressure, of_density, of_length, of_thickness, of_radius, of_mass, of_velocity, &
-                          of_toughness, of_time, of_strength, of_fibre_toughness
+                          of_length, of_mass, of_pressure, of_radius, of_thickness, of_time
   implicit none
   private
   public :: check_units
-
-  !> One value of the deck, and the key to be named in a warning.
-  type :: quantity_t
-    !> Kind of the quantity
-    integer :: quantity = 0
-    !> Its value
-    real(wp) :: value = 0
-    !> Group and key
-    character(len=16) :: group = '', key = ''
-    !> Index among the groups of this name
-    integer :: place = 1
-  end type quantity_t
 
   !> Usual range of the end of the run over the plate's period or the contact, whichever is longer. It is wide enough
   !> for any run, and confused units change the ratio by 1e3 or 1e6. It affects a warning only, as all below.
@@ -51,6 +33,14 @@ module deck_units
   !> Ratios of the contact stiffness to that of Sun's formula for a rigid ball: usual and improbable ones. That of an
   !> elastic plate is .5 (input/verify/karas.nml); N/mm^1.5 in place of N/m^1.5 changes the ratio by 3e4.
   real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
+  !> Slowest drop weight, m/s: 5 mm of height. Energy over thickness of a plate, J/m, beyond which nothing is left of
+  !> it: ASTM D7136 has 6.7 J/mm, perforation takes up to 60 J/mm.
+  real(wp), parameter :: slowest_drop = 0.3_wp, highest_energy = 1.0e6_wp
+  !> Keys of lengths in the plane of the plate.
+  character(len=*), parameter :: groups_of_lengths(*) = [character(len=12) :: 'mesh', 'mesh', 'mesh', 'mesh', 'mesh', &
+    'delamination', 'delamination', 'support', 'impactor', 'line', 'gauge'], &
+    keys_of_lengths(*) = [character(len=7) :: 'patch', 'core', 'cell', 'lines_x', 'lines_y', 'zone', 'starter', &
+    'window', 'at', 'at', 'at']
   !> N/m^1.5 in one N/mm^1.5: 1000**1.5.
   real(wp), parameter :: per_millimetre = 31622.8_wp
 
@@ -62,23 +52,47 @@ contains
     type(deck_t), intent(in) :: deck
     !> Warnings are added
     type(problems_t), intent(inout) :: problems
-    type(quantity_t), allocatable :: list(:)
+    type(magnitude_t), allocatable :: list(:)
     character(len=:), allocatable :: fits
     integer :: system, i
 
-    if (problems%errors() > 0) return
-    call gather(deck, list)
+    call magnitudes_of(deck, problems, list)
     system = probable_system(deck, list)
     if (system == 0) return
     do i = 1, size(list)
       if (.not. is_unusual(list(i)%quantity, list(i)%value, system)) cycle
+      if (is_soft(list, i, system)) cycle
       fits = unit_that_fits(list(i)%quantity, list(i)%value)
       if (fits == '') cycle
-      call report_unit(deck, problems, list(i), system, 'is unusual', fits)
+      call report_unit(deck, problems, list(i), system, trim(merge('of the laminate is unusual', &
+                       'is unusual                ', list(i)%quantity == of_thickness)), fits)
     end do
+    call check_lengths(deck, system, problems)
+    ! The other values are those of the model, which a deck with errors does not have.
+    if (problems%errors() > 0) return
     if (deck%has_time .and. .not. deck%is_static()) call check_times(deck, system, problems)
-    if (deck%moves_impactor()) call check_ball(deck, system, problems)
+    if (deck%moves_impactor()) then
+      call check_mass(deck, system, problems)
+      call check_ball(deck, system, problems)
+    end if
   end subroutine check_units
+
+  !> True for a modulus of a material of which some are unusual, but not all, and more than one: those of a honeycomb.
+  pure logical function is_soft(list, place, system)
+    !> Values of the deck
+    type(magnitude_t), intent(in) :: list(:)
+    !> Index of the modulus
+    integer, intent(in) :: place
+    !> Index of the system
+    integer, intent(in) :: system
+    logical :: of_material(size(list))
+    integer :: unusual, i
+
+    of_material = list%quantity == of_pressure .and. list%quantity == list(place)%quantity .and. &
+                  list%place == list(place)%place
+    unusual = count([(of_material(i) .and. is_unusual(of_pressure, list(i)%value, system), i=1, size(list))])
+    is_soft = unusual > 1 .and. unusual < count(of_material)
+  end function is_soft
 
   !> Adds a warning.
   subroutine report_unit(deck, problems, item, system, finding, fits)
@@ -87,7 +101,7 @@ contains
     !> Receives the warning
     type(problems_t), intent(inout) :: problems
     !> The value
-    type(quantity_t), intent(in) :: item
+    type(magnitude_t), intent(in) :: item
     !> Index of the system
     integer, intent(in) :: system
     !> The finding
@@ -100,86 +114,13 @@ contains
                 trim(systems(system))//'; it is probably in '//fits//'.', item%place)
   end subroutine report_unit
 
-  !> Values whose magnitude can be recognised as unusual.
-  subroutine gather(deck, list)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> The values
-    type(quantity_t), allocatable, intent(out) :: list(:)
-    real(wp) :: toughness(2)
-    integer :: i, stiffest
-
-    allocate (list(0))
-    call add(of_length, minval(deck%plate%length), plate_group, key_length, 1)
-    call add(of_thickness, sum(deck%laminate%thickness), laminate_group, key_thicknesses, 1)
-    ! In-plane moduli and strengths of a honeycomb have no lower limit: only the stiffest material is considered.
-    stiffest = maxloc(deck%materials%e1, 1)
-    call add(of_pressure, deck%materials(stiffest)%e1, material_group, &
-             merge(key_isotropic, key_along, deck%settings%is_given(material_group, key_isotropic, stiffest)), stiffest)
-    do i = 1, size(strength_keys)
-      call add(of_strength, deck%settings%real_of(material_group, strength_keys(i), stiffest), material_group, &
-               strength_keys(i), stiffest)
-    end do
-    do i = 1, size(toughness_keys)
-      call add(merge(of_fibre_toughness, of_toughness, i <= 2), deck%materials(stiffest)%toughness(i), material_group, &
-               toughness_keys(i), stiffest)
-    end do
-    do i = 1, size(deck%materials)
-      call add(of_density, deck%materials(i)%density, material_group, key_density, i)
-    end do
-    do i = 1, size(deck%delaminations)
-      associate (d => deck%delaminations(i))
-        ! Interfaces of one group share its values.
-        if (any(deck%delaminations(:i - 1)%group == d%group)) cycle
-        toughness = toughnesses(d)
-        if (d%toughness > 0) then
-          call add(of_toughness, toughness(2), delamination_group, key_toughness, d%group)
-        else
-          call add(of_toughness, toughness(2), delamination_group, key_toughness_shear, d%group)
-        end if
-        ! The strength in opening may be as small as large cells require.
-        if (deck%settings%is_given(delamination_group, key_strength_shear, d%group)) &
-          call add(of_strength, d%strength_shear, delamination_group, key_strength_shear, d%group)
-      end associate
-    end do
-    if (.not. deck%has_impactor) return
-    if (deck%moves_impactor()) then
-      call add(of_mass, deck%impactor%mass, impactor_group, key_mass, 1)
-      call add(of_velocity, deck%impactor%velocity, impactor_group, key_velocity, 1)
-    end if
-    call add(of_radius, deck%impactor%radius, impactor_group, key_radius, 1)
-
-  contains
-
-    !> Adds a value if it is given.
-    subroutine add(quantity, value, group, key, place)
-      !> Kind of the quantity
-      integer, intent(in) :: quantity
-      !> The value
-      real(wp), intent(in) :: value
-      !> Group and key
-      character(len=*), intent(in) :: group, key
-      !> Index among the groups of this name
-      integer, intent(in) :: place
-      type(quantity_t) :: item
-
-      if (.not. value > 0) return
-      item%quantity = quantity
-      item%value = value
-      item%group = group
-      item%key = key
-      item%place = place
-      list = [list, item]
-    end subroutine add
-  end subroutine gather
-
   !> The system of the deck, or otherwise the one with the fewest unusual kinds of quantities; 0: none fits, the deck
   !> has units of its own.
   pure integer function probable_system(deck, list) result(system)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> Its values
-    type(quantity_t), intent(in) :: list(:)
+    type(magnitude_t), intent(in) :: list(:)
     integer :: odd(size(systems)), present_kinds, i
 
     system = system_named(deck%units)
@@ -196,7 +137,7 @@ contains
   !> Number of kinds of quantities with an unusual value; lengths of all kinds count as one.
   pure integer function unusual_kinds(list, system) result(number)
     !> Values of the deck
-    type(quantity_t), intent(in) :: list(:)
+    type(magnitude_t), intent(in) :: list(:)
     !> Index of the system
     integer, intent(in) :: system
     logical :: odd(quantities)
@@ -236,12 +177,69 @@ contains
       if (ratio*thousands(i) < shortest_run .or. ratio*thousands(i) > longest_run) cycle
       associate (unit => merge(of_ms(i), of_si(i), unit_name(of_time, system) == 'ms'))
         if (unit /= '') call report_unit(deck, problems, &
-                                       quantity_t(of_time, deck%stepping%time%end, time_group, key_end), &
+                                       magnitude_t(of_time, deck%stepping%time%end, time_group, key_end), &
                                        system, 'is '//short_text(ratio)//' times the expected duration', trim(unit))
       end associate
       return
     end do
   end subroutine check_times
+
+  !> Checks lengths that do not fit on the plate, which would do so in millimetres.
+  subroutine check_lengths(deck, system, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the system
+    integer, intent(in) :: system
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp), allocatable :: values(:)
+    character(len=:), allocatable :: group, key
+    real(wp) :: side
+    integer :: i, place
+
+    side = maxval(deck%plate%length)
+    if (unit_name(of_length, system) /= 'm' .or. is_unusual(of_length, side, system)) return
+    do i = 1, size(keys_of_lengths)
+      group = trim(groups_of_lengths(i))
+      key = trim(keys_of_lengths(i))
+      do place = 1, deck%settings%groups_named(group)
+        if (.not. deck%settings%is_given(group, key, place)) cycle
+        values = abs(deck%settings%reals_of(group, key, place))
+        if (.not. any(values > side) .or. any(values > 1000*side)) cycle
+        call remark(deck%settings, problems, group, key, short_text(maxval(values))//' m is more than the '// &
+                    'plate''s length of '//short_text(side)//' m; it is probably in mm.', place)
+      end do
+    end do
+  end subroutine check_lengths
+
+  !> Checks the mass of a drop weight against its speed, or the energy against the thickness of the plate.
+  subroutine check_mass(deck, system, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the system
+    integer, intent(in) :: system
+    !> Warnings are added
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: base(3), speed, energy
+    character(len=:), allocatable :: finding
+
+    associate (impactor => deck%impactor)
+      base = base_units(system)
+      speed = impactor%velocity*base(1)/base(3)
+      energy = 0.5_wp*impactor%mass*base(2)*speed**2/(sum(deck%laminate%thickness)*base(1))
+      if (is_unusual(of_mass, impactor%mass, system)) return
+      if (deck%settings%is_given(impactor_group, key_energy)) then
+        if (speed > slowest_drop .or. speed*sqrt(1000.0_wp) < slowest_drop) return
+        finding = 'has a speed of only '//short_text(speed)//' m/s with the energy of the deck'
+      else
+        if (energy < highest_energy) return
+        finding = 'has an energy of '//short_text(energy/1000)//' J per mm of thickness'
+      end if
+      call remark(deck%settings, problems, impactor_group, key_mass, short_text(impactor%mass)//' '// &
+                  unit_name(of_mass, system)//' '//finding//'; the mass is probably in '// &
+                  trim(merge('kg', 'g ', unit_name(of_mass, system) == 't'))//'.')
+    end associate
+  end subroutine check_mass
 
   !> Checks mass and contact stiffness of the ball against its radius.
   subroutine check_ball(deck, system, problems)
@@ -259,7 +257,7 @@ contains
       base = base_units(system)
       ball = impactor%mass*base(2)/(4*pi/3*(impactor%radius*base(1))**3)
       if (abs(ball/(1000*steel) - 1) < near) then
-        call report_unit(deck, problems, quantity_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
+        call report_unit(deck, problems, magnitude_t(of_mass, impactor%mass, impactor_group, key_mass), system, &
                        'is a thousand times that of a steel ball,', &
                        trim(merge('kg', 'g ', unit_name(of_mass, system) == 't')))
       end if

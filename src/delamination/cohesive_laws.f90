@@ -21,8 +21,8 @@ module cohesive_laws
 
   !> The law of one interface.
   type :: cohesive_law_t
-    !> Stiffness K_n of opening and K_s of shear, pressure per jump
-    real(wp) :: stiffness_opening = 0, stiffness_shear = 0
+    !> Stiffness K_n of opening and K_s of shear, and that of closed surfaces, pressure per jump
+    real(wp) :: stiffness_opening = 0, stiffness_shear = 0, stiffness_closing = 0
     !> Toughness of pure opening G_Ic and of pure shear G_IIc, energy per area
     real(wp) :: toughness_opening = 0, toughness_shear = 0
     !> Exponent eta of Benzeggagh and Kenane
@@ -63,6 +63,7 @@ contains
       if (.not. thickness > 0) return
       law%stiffness_opening = max(usual_stiffness*modulus/thickness, min_stiffness(law))
     end if
+    law%stiffness_closing = law%stiffness_opening
     law%stiffness_shear = law%stiffness_opening*(toughness(1)/toughness(2))*(strength(2)/strength(1))**2
     law%failure_ratio = min_ratio*law%stiffness_opening/min_stiffness(law)
   end function create_cohesive_law
@@ -97,18 +98,21 @@ contains
     end if
   end function cohesive_objection
 
-  !> A law with strengths reduced by a factor, of the same stiffness and toughness: its jump at failure is larger.
-  pure function weakened(law, part) result(weak)
+  !> A law with strengths reduced by a factor, of the same stiffness and toughness: its jump at failure is larger. A
+  !> reduced stiffness of opening reduces the strength of opening by the root of its factor: the ratio of jumps at
+  !> failure and at the onset remains that of all mixtures of modes.
+  pure function weakened(law, part, opening) result(weak)
     !> The law
     type(cohesive_law_t), intent(in) :: law
-    !> Strength factor, above 0 and up to 1
-    real(wp), intent(in) :: part
+    !> Factor of the strengths, and factor of the stiffness of opening; above 0 and up to 1
+    real(wp), intent(in) :: part, opening
     !> The reduced law
     type(cohesive_law_t) :: weak
 
     weak = law
-    if (.not. part < 1) return
-    weak%strength_opening = part*law%strength_opening
+    if (.not. min(part, opening) < 1) return
+    weak%stiffness_opening = opening*law%stiffness_opening
+    weak%strength_opening = part*sqrt(opening)*law%strength_opening
     weak%strength_shear = part*law%strength_shear
     weak%failure_ratio = law%failure_ratio/part**2
   end function weakened

@@ -99,7 +99,7 @@ contains
     end if
     work = work + (1 - damage)*undamaged_energy(self%law, to) - (1 - first)*undamaged_energy(self%law, from)
     if (self%closing) return
-    work = work + self%law%stiffness_opening/2*((1 - damage)*min(to(3), 0.0_wp)**2 &
+    work = work + self%law%stiffness_closing/2*((1 - damage)*min(to(3), 0.0_wp)**2 &
                                                 - (1 - first)*min(from(3), 0.0_wp)**2) &
            + self%closing_loss(from(3), to(3), damage - first)
   end function work
@@ -114,7 +114,7 @@ contains
     real(wp), intent(in) :: growth
 
     closing_loss = 0
-    if (.not. self%closing) closing_loss = self%law%stiffness_opening*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2
+    if (.not. self%closing) closing_loss = self%law%stiffness_closing*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2
   end function closing_loss
 
   !> Derivative of the traction.
@@ -163,7 +163,7 @@ contains
     type(cohesive_point_t), intent(in) :: point
 
     limit = 0
-    if (is_in_contact(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_opening*jumps(3)
+    if (is_in_contact(self, jumps)) limit = -self%friction*point%damage*self%law%stiffness_closing*jumps(3)
   end function friction_limit
 
   !> Derivatives of the friction traction.
@@ -187,7 +187,7 @@ contains
     !> The point with its jumps
     type(cohesive_point_t), intent(in) :: point
 
-    stiffness = self%law%stiffness_opening
+    stiffness = self%law%stiffness_closing
     if (.not. self%closing) stiffness = (1 - point%damage)*stiffness
   end function closing_stiffness
 

@@ -3,12 +3,14 @@ module delamination_deck
   use cohesive_laws, only: cohesive_objection, create_cohesive_law
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: report, remark, remark_idle, are_clear
+  use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
+  use delamination_idle_keys, only: fronts_only, remark_idle_keys
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
-                                     growth_one_per_step, tie_eliminate, tie_penalty, &
+                                     growth_one_per_step, growth_by_strength, &
+                                     growth_by_energy, tie_eliminate, tie_penalty, &
                                      contact_augmented_lagrangian, contact_continuous_penalty, contact_none, &
                                      unloading_contact, unloading_glued
   use interface_places, only: delamination_group, key_below_ply, plies_above
@@ -22,12 +24,9 @@ module delamination_deck
   character(len=*), parameter, public :: key_zone = 'zone', key_starter = 'starter', key_law = 'law', &
     key_toughness = 'G_c', key_toughness_opening = 'G_Ic', key_toughness_shear = 'G_IIc', key_smoothing = 'smoothing', &
     key_strip = 'starter_strip', key_starter_at = 'starter_at', &
-    key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks', key_strength_shear = 'strength_shear'
+    key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks', key_strength_shear = 'strength_shear', &
+    key_growth_control = 'growth_control'
   character(len=*), parameter :: group = delamination_group
-  !> Keys that have no effect on a cohesive interface, and on one with a front.
-  character(len=*), parameter :: fronts_only = 'energy_release growth tie penalty unloading smoothing contact_exponent'
-  character(len=*), parameter :: law_only = 'strength_opening strength_shear stiffness friction '//key_flaws// &
-                                            ' '//key_shear_cracks
   !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | Interfaces that may delaminate; one group for all that have equal properties.'
@@ -66,6 +65,8 @@ module delamination_deck
       &Beside matrix cracks of adjacent plies damage starts at the strengths whose process zone the cells resolve.', &
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
       &Beside transverse shear cracks of adjacent plies damage starts at the shear strength of these plies.', &
+    'delamination | growth_control | choice | 1 | - | ''energy'' | energy strength | &
+      &Damage beside delaminated points starts by the energy release rate or the strengths, or by strengths alone.', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
       &Energy release rate: Eq. 11 of Li et al. with its sign corrected, or virtual crack closure.', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
@@ -138,6 +139,8 @@ contains
       d%friction = s%real_of(group, 'friction', place)
       d%cracks_as_flaws = s%logical_of(group, key_flaws, place)
       d%shear_cracks = s%logical_of(group, key_shear_cracks, place)
+      d%growth_control = code_of(s%text_of(group, key_growth_control, place), 'strength energy', &
+                                 [growth_by_strength, growth_by_energy])
       if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
       d%is_adaptive = d%law == law_cohesive .and. .not. s%is_given(group, key_zone, place)
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
@@ -359,42 +362,4 @@ contains
     end associate
     if (objection /= '') call report(settings, problems, group, 'stiffness', objection//'.', place)
   end subroutine check_law
-
-  !> Remarks on keys of an interface without effect.
-  subroutine remark_idle_keys(settings, delamination, place, problems)
-    !> Keys in effect
-    type(settings_t), intent(in) :: settings
-    !> The interface
-    type(delamination_t), intent(in) :: delamination
-    !> Index of the group
-    integer, intent(in) :: place
-    !> Remarks are added
-    type(problems_t), intent(inout) :: problems
-
-    associate (d => delamination)
-      if (d%law == law_cohesive) call idle(fronts_only, 'with law = ''cohesive''')
-      if (d%law /= law_cohesive) call idle(law_only, 'without law = ''cohesive''')
-      if (d%contact == contact_none) call idle('friction', 'as contact = ''none'' lets surfaces penetrate')
-      if (.not. d%starter > 0) call idle('starter_shape '//key_starter_at, 'without '//key_starter)
-      if (d%toughness > 0) call idle('eta', 'as G_c is given')
-      if (d%law == law_cohesive) return
-      if (d%tie /= tie_penalty) call idle('penalty', 'without tie = ''penalty''')
-      if (d%contact /= contact_continuous_penalty) &
-        call idle('contact_exponent', 'without contact = ''continuous_penalty''')
-      if (d%energy_release /= release_vcct .and. d%growth /= growth_equilibrium) &
-        call idle('smoothing', 'without energy_release = ''vcct'' or growth = ''equilibrium''')
-    end associate
-
-  contains
-
-    !> Remarks on one key.
-    subroutine idle(key, reason)
-      !> The key
-      character(len=*), intent(in) :: key
-      !> Reason why it has no effect
-      character(len=*), intent(in) :: reason
-
-      call remark_idle(settings, problems, group, key, 'has no effect '//reason//'.', place)
-    end subroutine idle
-  end subroutine remark_idle_keys
 end module delamination_deck

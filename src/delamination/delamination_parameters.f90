@@ -22,6 +22,9 @@ module delamination_parameters
   !> Surfaces while the impactor rebounds: contact, or glued (Eq. 13b).
   integer, parameter, public :: unloading_contact = 1, unloading_glued = 2
 
+  !> Growth of cohesive damage beside delaminated points: by the strengths alone, or from the energy release rate.
+  integer, parameter, public :: growth_by_strength = 1, growth_by_energy = 2
+
   !> One interface that may delaminate. It has many components because two laws share
   !> one group of the deck.
   type :: delamination_t
@@ -56,6 +59,8 @@ module delamination_parameters
     real(wp) :: stiffness = 0
     !> Coulomb's coefficient of friction between separated surfaces
     real(wp) :: friction = 0
+    !> growth_by_strength or growth_by_energy
+    integer :: growth_control = growth_by_energy
     !> True: reduced strengths beside cracks of the adjacent plies
     logical :: cracks_as_flaws = .false.
     !> True: beside cracks by transverse shear in an adjacent ply, damage of the interface starts at the shear stress at
@@ -88,7 +93,8 @@ module delamination_parameters
 
   !> Keys whose values must be equal in two runs for one to start with the damage of the other.
   character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
-    'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
+    'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks', &
+    'growth_control']
 
 contains
 
@@ -102,7 +108,7 @@ contains
     associate (d => delamination)
       numbers = [real(d%law, wp), d%toughness, d%toughness_opening, d%toughness_shear, d%mixing_exponent, &
                  d%strength_opening, d%strength_shear, d%stiffness, d%friction, &
-                 real([merge(1, 0, d%cracks_as_flaws), merge(1, 0, d%shear_cracks)], wp)]
+                 real([merge(1, 0, d%cracks_as_flaws), merge(1, 0, d%shear_cracks), d%growth_control], wp)]
     end associate
   end function law_of
 

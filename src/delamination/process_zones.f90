@@ -37,6 +37,8 @@ module process_zones
     !> with .9 cells in the process zone of opening the force is within 2 % of the closed form
     !> (input/verify/cohesive_threshold.nml).
     logical :: is_pulled = .true.
+    !> True: the energy release rate starts softening beside delaminated points (`energy_onsets`)
+    logical :: by_energy = .false.
   end type process_zone_t
 
 contains
@@ -103,7 +105,7 @@ contains
   end function is_resolved
 
   !> Warning of the check for an interface; empty if its process zone is resolved. Numbers have the units of the deck,
-  !> lengths the given one.
+  !> lengths the given one. The figures of growth by energy are those of tests/studies/growth_strips.py.
   pure function process_zone_warning(zone, below_ply, unit, size_of_unit) result(warning)
     !> The interface
     type(process_zone_t), intent(in) :: zone
@@ -124,7 +126,14 @@ contains
     warning = 'delamination below ply '//to_text(below_ply)//': the process zone is '// &
               short_text(shear/size_of_unit)//unit//' long in shear ('//short_text(opening/size_of_unit)//unit// &
               ' in opening), that is '//in_cells(shear, zone%cell)//' ('// &
-              in_cells(opening, zone%cell)//') cells; below 2.5 cells the load at growth is too large '// &
+              in_cells(opening, zone%cell)//') cells; '
+    if (zone%by_energy) then
+      warning = warning//'below 2.5 cells growth_control = ''energy'' finds the load at growth to 5 % (strips of '// &
+                '0.13 to 2 mm on cells of 2 to 4 mm); first damage away from delaminations depends on the cells. '// &
+                'Cells of '//text_at_most(resolving_cell(zone)/size_of_unit)//unit//' resolve the zone.'
+      return
+    end if
+    warning = warning//'below 2.5 cells the load at growth is too large '// &
               '(4 % at 1.7, 33 % at 0.9). Take cells of at most '// &
               text_at_most(resolving_cell(zone)/size_of_unit)//unit//', or strength_shear <= '// &
               text_at_most(resolved_shear_strength(zone))// &

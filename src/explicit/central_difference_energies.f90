@@ -133,8 +133,8 @@ contains
           call stored%add(-model%rig%clamp_preload(i)*sum(u(3, i:last_layer(model%map%above, i))))
         if (.not. allocated(cohesive%cohesive)) cycle
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
-        if (cohesive%points(i)%damage > 0) then
-          associate (surfaces => cohesive%surfaces_of(model, model%zone(i), cohesive%strength(i)))
+        if (cohesive%points(i)%damage > 0 .or. cohesive%by_energy(i)) then
+          associate (surfaces => cohesive%surfaces_of(model, i))
             call stored%add(method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i)))
           end associate
         else

@@ -10,6 +10,7 @@ module central_differences
   use central_difference_parameters, only: central_difference_parameters_t
   use circle_frames, only: circle_frames_t, create_circle_frames
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
+  use front_onsets, only: front_onsets_t, create_front_onsets
   use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
   use interface_stacks, only: create_interface_stacks
   use kinds, only: wp
@@ -51,6 +52,8 @@ module central_differences
     type(impactor_steps_t) :: impact
     !> Points on circular windows
     type(circle_frames_t) :: circles
+    !> Search for onsets of damage by energy
+    type(front_onsets_t), private :: onsets
     !> Step for which inertia and stacks are prepared
     type(step_lengths_t), private :: prepared
     !> Points of nodes with one layer: unconstrained ones, and those constrained by a frame or a line
@@ -112,9 +115,10 @@ contains
     self%rigs = create_rig_steps(model)
     self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
+    self%onsets = create_front_onsets(model)
     call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
-    self%impact%patch%offset = now%contact%offset
+    self%impact%patch%offset = merge(-now%contact%touched_at, now%contact%offset, allocated(model%nose))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     allocate (self%force(5, size(model%distribution%points)), self%motion(5, size(model%distribution%points)), &
               self%field(5, model%borders%columns), self%strain(lanes, model%elements%batches), source=0.0_wp)
@@ -196,6 +200,7 @@ contains
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call change_length(self, model, v, 1)
+      call self%onsets%find(model, now%step, self%stacks, now%interfaces%cohesive, u)
       call model%profile%leave()
       call model%halo%update(u)
     end associate

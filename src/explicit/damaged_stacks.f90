@@ -48,7 +48,7 @@ contains
       work%points = cohesive%points(p + 1:q)
     end associate
     do j = 1, work%n
-      surfaces = cohesive%surfaces_of(model, model%zone(p + j), 1.0_wp)
+      surfaces = cohesive%surfaces_of(model, p + j)
       work%closing(j) = surfaces%closing
       work%friction(j)%coefficient = surfaces%friction
       associate (sticking => stacks%history%sticking(:, p + j))
@@ -59,8 +59,9 @@ contains
         work%given(:, j) = past_jumps(work%start(:, j), change, earlier)
         if (surfaces%closing) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))
       end associate
-      work%given(:, j) = (1 - work%points(j)%damage)*work%stiffness([1, 1, 2], j)*work%given(:, j)
-      work%secant(:, j) = newest*(1 - work%points(j)%damage)*work%stiffness(:, j)
+      work%secant(:, j) = (1 - work%points(j)%damage)*[1.0_wp, cohesive%opening(p + j)]*work%stiffness(:, j)
+      work%given(:, j) = work%secant([1, 1, 2], j)*work%given(:, j)
+      work%secant(:, j) = newest*work%secant(:, j)
     end do
   end subroutine load_stack
 
@@ -88,12 +89,12 @@ contains
     grows = .false.
     do j = 1, work%n
       if (.not. work%points(j)%damage < 1) cycle
-      associate (law => model%cohesive_laws(model%zone(p + j)), strength => cohesive%strength(p + j))
+      surfaces = cohesive%surfaces_of(model, p + j)
+      associate (law => surfaces%law)
         energy = (law%stiffness_shear*(jumps(1, j)**2 + jumps(2, j)**2) &
                   + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
         ! N Y = G_c at the onset; the toughness of a mixture of modes is at least that of the weaker pure mode.
-        if (energy*law%failure_ratio < strength**2*min(law%toughness_opening, law%toughness_shear)) cycle
-        surfaces = cohesive%surfaces_of(model, model%zone(p + j), strength)
+        if (energy*law%failure_ratio < min(law%toughness_opening, law%toughness_shear)) cycle
       end associate
       damage = grown_damage(surfaces%law, separation_of(surfaces%law, jumps(:, j)), work%points(j))
       if (.not. damage > work%points(j)%damage) cycle

@@ -42,6 +42,10 @@ module interface_stacks
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
     procedure :: find_onsets
+    !> Reduces the law of a point, and treats its stack as damaged.
+    procedure :: begin_softening
+    procedure :: may_separate
+    procedure :: mark_damaged
     !> Copies the state of masters to their dependents.
     procedure :: copy_to_dependents
   end type interface_stacks_t
@@ -150,10 +154,69 @@ contains
 
     do i = 1, size(self%first)
       associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
-        self%damaged(i) = any(cohesive%points(from:to)%damage > 0)
+        self%damaged(i) = any(cohesive%points(from:to)%damage > 0 .or. cohesive%by_energy(from:to))
       end associate
     end do
   end subroutine find_damaged
+
+  !> True for an independent point that no clamp holds.
+  pure logical function may_separate(self, p)
+    !> The stacks
+    class(interface_stacks_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: p
+
+    may_separate = self%area(p) > 0 .and. self%min_onset(p) < huge(1.0_wp)
+  end function may_separate
+
+  !> Reduces the law of an undamaged point, and treats its stack as damaged. A smaller stiffness of opening stores less
+  !> energy; the difference, a small part of the toughness, is recorded as algorithmic.
+  pure subroutine begin_softening(self, model, cohesive, p, factors, u)
+    !> The stacks
+    class(interface_stacks_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The interfaces; receive the law
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> The point
+    integer, intent(in) :: p
+    !> Factors of the strengths and of the stiffness of opening
+    real(wp), intent(in) :: factors(2)
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    integer :: first
+
+    cohesive%strength(p) = factors(1)
+    cohesive%opening(p) = factors(2)
+    cohesive%by_energy(p) = .true.
+    self%history%lost(2, p) = self%history%lost(2, p) + (1 - factors(2))*self%stiffness(2, p)*max(0.0_wp, u(3, p))**2/2
+    first = p
+    do while (model%map%above(first) > 0)
+      first = model%map%above(first)
+    end do
+    call self%mark_damaged(findloc(self%first, first, 1), cohesive, u)
+  end subroutine begin_softening
+
+  !> Treats a stack as damaged from the next step on.
+  pure subroutine mark_damaged(self, i, cohesive, u)
+    !> The stacks
+    class(interface_stacks_t), intent(inout) :: self
+    !> Index of the stack
+    integer, intent(in) :: i
+    !> The interfaces; their surfaces receive the present jumps as slips
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    integer :: p
+
+    if (self%damaged(i)) return
+    self%damaged(i) = .true.
+    do p = self%first(i) + 1, self%first(i) + self%layers(i) - 1
+      cohesive%points(p)%sliding%slip = u(1:2, p)
+      associate (last => self%history%change(:, p))
+        self%history%work(p) = sum(self%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
+      end associate
+    end do
+  end subroutine mark_damaged
 
   !> Copies the state of the interfaces of masters to their dependents.
   pure subroutine copy_to_dependents(self, inertia, cohesive)
@@ -170,6 +233,9 @@ contains
       associate (dependent => inertia%dependents(i))
         if (.not. cohesive%cohesive(dependent)) cycle
         cohesive%points(dependent) = cohesive%points(inertia%masters(i))
+        cohesive%strength(dependent) = cohesive%strength(inertia%masters(i))
+        cohesive%opening(dependent) = cohesive%opening(inertia%masters(i))
+        cohesive%by_energy(dependent) = cohesive%by_energy(inertia%masters(i))
         cohesive%points(dependent)%sliding%slip = inertia%signs(1:2, i)*cohesive%points(dependent)%sliding%slip
       end associate
     end do

@@ -66,28 +66,24 @@ contains
     real(wp), intent(in) :: u(:, :)
     type(cohesive_surfaces_t) :: surfaces
     real(wp) :: k(3), traction(3)
+    logical :: begins
     integer :: p
 
+    begins = .false.
     associate (history => stacks%history, from => stacks%first(i) + 1, to => stacks%first(i) + stacks%layers(i) - 1)
       do p = from, to
         k = stacks%stiffness([1, 1, 2], p)
         associate (jump => u(1:3, p), point => cohesive%points(p))
           if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
-          surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
+          surfaces = cohesive%surfaces_of(model, p)
           point%sliding%slip = jump(1:2)
           call surfaces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
           history%lost(2, p) = history%lost(2, p) + sum(k*jump**2)/2 &
                                - stacks%area(p)*(surfaces%stored(jump, point) + point%dissipated)
-          if (point%damage > 0) stacks%damaged(i) = .true.
+          if (point%damage > 0) begins = .true.
         end associate
       end do
-      if (.not. stacks%damaged(i)) return
-      do p = from, to
-        cohesive%points(p)%sliding%slip = u(1:2, p)
-        associate (last => history%change(:, p))
-          history%work(p) = sum(stacks%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
-        end associate
-      end do
+      if (begins) call stacks%mark_damaged(i, cohesive, u)
     end associate
   end subroutine start_damage
 
@@ -112,7 +108,7 @@ contains
     associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps)
       do j = 1, size(forces, 2)
         p = stacks%first(i) + j
-        surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
+        surfaces = cohesive%surfaces_of(model, p)
         change = steps%now*v(1:3, p)
         last = history%last_change(p, steps%kept)
         before = u(1:3, p)

@@ -16,9 +16,8 @@ module impactor_deck
   character(len=*), parameter, public :: impactor_group = 'impactor', key_velocity = 'velocity', &
                                          key_radius = 'radius', key_gravity = 'gravity', key_at = 'at', &
                                          key_mass = 'mass', key_integrator = 'integrator', &
-                                         key_travel = 'travel', key_rise = 'rise', key_contact_area = 'contact_area'
-  !> Name used here more than once.
-  character(len=*), parameter :: key_energy = 'energy'
+                                         key_travel = 'travel', key_rise = 'rise', key_energy = 'energy', &
+                                         key_contact_area = 'contact_area'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor, and the point that it strikes.'
@@ -39,7 +38,7 @@ module impactor_deck
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k is not given.', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
-      &Area on which the contact force acts: the patch, or that in contact with a spherical nose if it is larger.', &
+      &Area on which the contact force acts: the patch, or that in contact with a spherical nose, point by point.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
       &Acceleration of gravity along the impact, positive towards the plate.', &
     'impactor | integrator | choice | 1 | - | ''gear4'' | gear4 trapezoidal central conserving | &

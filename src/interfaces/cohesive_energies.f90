@@ -30,7 +30,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      surfaces = self%surfaces_of(model, model%zone(i), old%strength(i))
+      surfaces = old%surfaces_of(model, i)
       start = old%points(i)
       call surfaces%traction(before(1:3, i), start, traction(:, 1), point)
       start%sliding%limit = self%points(i)%sliding%limit

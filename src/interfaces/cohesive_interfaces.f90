@@ -24,8 +24,11 @@ module cohesive_interfaces
     logical, allocatable :: cohesive(:)
     !> Damage and dissipated energy per area of each point, (local points)
     type(cohesive_point_t), allocatable :: points(:)
-    !> Strength factor of flaws at each point, (local points)
-    real(wp), allocatable :: strength(:)
+    !> Factor of the strengths at each point, of flaws and of onset by energy, and factor of the stiffness of opening
+    !> after an onset by energy, (local points)
+    real(wp), allocatable :: strength(:), opening(:)
+    !> True at points whose law was reduced by an onset by energy, (local points)
+    logical, allocatable :: by_energy(:)
     !> Stiffness of the jumps for the factored operator, (3, local points)
     real(wp), allocatable :: stiffness(:, :)
     !> Consistent tangents, used in load steps instead, unsymmetric, (3, 3, local points)
@@ -71,7 +74,8 @@ contains
     if (.not. any(model%setup%delaminations%law == law_cohesive)) return
     allocate (self%cohesive(size(model%zone)), source=.false.)
     allocate (self%points(size(model%zone)))
-    allocate (self%strength(size(model%zone)), source=1.0_wp)
+    allocate (self%strength(size(model%zone)), self%opening(size(model%zone)), source=1.0_wp)
+    allocate (self%by_energy(size(model%zone)), source=.false.)
     allocate (self%stiffness(3, size(model%zone)), source=0.0_wp)
     if (.not. model%setup%has_inertia()) allocate (self%tangents(3, 3, size(model%zone)), source=0.0_wp)
     do i = 1, size(model%zone)
@@ -105,7 +109,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      surfaces = self%surfaces_of(model, model%zone(i), self%strength(i))
+      surfaces = self%surfaces_of(model, i)
       associate (jumps => displacement(1:3, i), area => model%contact_area(i))
         start = old%points(i)
         start%sliding%limit = self%points(i)%sliding%limit
@@ -137,7 +141,7 @@ contains
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
       if (.not. self%cohesive(i)) cycle
-      surfaces = self%surfaces_of(model, model%zone(i), self%strength(i))
+      surfaces = self%surfaces_of(model, i)
       start = old%points(i)
       start%sliding%limit = self%points(i)%sliding%limit
       tangents(:, :, i) = model%contact_area(i)*surfaces%slopes(displacement(1:3, i), start)
@@ -344,22 +348,20 @@ contains
     !> The point
     integer, intent(in) :: i
 
-    law = weakened(model%cohesive_laws(model%zone(i)), self%strength(i))
+    law = weakened(model%cohesive_laws(model%zone(i)), self%strength(i), self%opening(i))
   end function law_at
 
-  !> Surfaces of an interface.
-  pure type(cohesive_surfaces_t) function surfaces_of(self, model, zone, strength) result(surfaces)
+  !> Surfaces at one of this rank's cohesive points.
+  pure type(cohesive_surfaces_t) function surfaces_of(self, model, i) result(surfaces)
     !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Index of the zone
-    integer, intent(in) :: zone
-    !> Strength factor of flaws
-    real(wp), intent(in) :: strength
+    !> The point
+    integer, intent(in) :: i
 
-    surfaces%law = weakened(model%cohesive_laws(zone), strength)
-    surfaces%closing = prevents_penetration(model, zone)
-    surfaces%friction = model%setup%delaminations(zone)%friction
+    surfaces%law = self%law_at(model, i)
+    surfaces%closing = prevents_penetration(model, model%zone(i))
+    surfaces%friction = model%setup%delaminations(model%zone(i))%friction
   end function surfaces_of
 
   !> Saves or loads.

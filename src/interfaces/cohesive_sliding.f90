@@ -35,7 +35,7 @@ contains
     largest = 0
     do i = 1, model%distribution%owned
       if (.not. interfaces%cohesive(i)) cycle
-      surfaces = interfaces%surfaces_of(model, model%zone(i), interfaces%strength(i))
+      surfaces = interfaces%surfaces_of(model, i)
       limit = surfaces%friction_limit(displacement(1:3, i), interfaces%points(i))
       associate (before => interfaces%points(i)%sliding%limit)
         largest = max(largest, [limit, abs(limit - before)])

@@ -142,11 +142,17 @@ contains
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(interfaces%strength)) return
-    if (.not. any(model%setup%delaminations%cracks_as_flaws .or. model%setup%delaminations%shear_cracks)) return
-    fields = reshape(interfaces%strength, [1, size(interfaces%strength)])
+    allocate (fields(3, size(interfaces%strength)))
+    fields(1, :) = interfaces%strength
+    fields(2, :) = interfaces%opening
+    fields(3, :) = merge(1.0_wp, 0.0_wp, interfaces%by_energy)
     associate (partition => model%distribution)
-      call archive%field('cohesive/strength', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('cohesive/law', partition%points(:partition%owned), model%mesh%points(), fields)
     end associate
-    if (archive%loading) interfaces%strength = fields(1, :)
+    if (.not. archive%loading) return
+    interfaces%strength = fields(1, :)
+    interfaces%opening = fields(2, :)
+    ! Means of points of another mesh: most of them.
+    interfaces%by_energy = fields(3, :) > 0.5_wp
   end subroutine visit_flaws
 end module interface_flaws

@@ -20,9 +20,10 @@ module laminate_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses', &
-                                         key_correction = 'shear_correction', key_bending_error = 'bending_error'
+                                         key_ply_thickness = 'ply_thickness', key_correction = 'shear_correction', &
+                                         key_bending_error = 'bending_error'
   !> Names used here more than once.
-  character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking', key_ply_thickness = 'ply_thickness'
+  character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: laminate_group_row = &
     'laminate | required | The plies, from the struck face to the back.'

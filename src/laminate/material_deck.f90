@@ -8,6 +8,7 @@ module material_deck
   use kinds, only: wp
   use material_parameters, only: material_t
   use plies, only: material_objection
+  use short_numbers, only: short_text
   use text, only: line_t, append, joined, to_text, words_of
   implicit none
   private
@@ -153,8 +154,8 @@ contains
     if (material_objection(material) /= '') then
       call report(settings, problems, material_group, '', material_objection(material)//'.', place)
     else if (contrast(material) > max_contrast) then
-      call report(settings, problems, material_group, '', 'its moduli differ by more than a factor of '// &
-                to_text(max_contrast)//', where round-off dominates.', place)
+      call report(settings, problems, material_group, '', contrast_text(material)//' differ by more than a factor '// &
+                  'of '//to_text(max_contrast)//', where round-off dominates.', place)
     end if
     material%shear_beta = shear_coefficient(material%g12, material%s12, &
                                             settings%real_of(material_group, key_shear_strain, place))
@@ -170,6 +171,23 @@ contains
               material%g13, material%g23]
     contrast = maxval(moduli)/minval(moduli)
   end function contrast
+
+  !> Smallest and largest modulus as text.
+  pure function contrast_text(material) result(words)
+    !> The material
+    type(material_t), intent(in) :: material
+    !> Such as `its moduli G23 = 2980 and E1 = 139e9`
+    character(len=:), allocatable :: words
+    character(len=*), parameter :: names(5) = [character(len=3) :: 'E1', 'E2', 'G12', 'G13', 'G23']
+    real(wp) :: moduli(5)
+    integer :: least, largest
+
+    moduli = [material%e1, material%e2, material%g12, material%g13, material%g23]
+    least = minloc(moduli, 1)
+    largest = maxloc(moduli, 1)
+    words = 'its moduli '//trim(names(least))//' = '//short_text(moduli(least))//' and '//trim(names(largest))// &
+            ' = '//short_text(moduli(largest))
+  end function contrast_text
 
   !> Whether the elastic constants are complete and valid; reports missing ones.
   subroutine check_completeness(settings, place, problems, complete)

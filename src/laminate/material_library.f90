@@ -1,6 +1,6 @@
 !> Published values of some materials, each with its source, by which `library` of &material fills in keys left out.
 module material_library
-  use text, only: line_t, append, lower_case, words_of
+  use text, only: line_t, append, joined, lower_case, words_of
   implicit none
   private
   public :: library_value_t, library_values, library_lines
@@ -99,24 +99,34 @@ contains
   end function library_values
 
   !> The table of all values, and their sources.
-  pure subroutine library_lines(markdown, lines)
+  pure subroutine library_lines(wanted, markdown, lines)
+    !> Beginning of the names of the materials wanted; empty: all
+    character(len=*), intent(in) :: wanted
     !> True: as tables for the manual
     logical, intent(in) :: markdown
-    !> The lines
+    !> The lines; none: no material has such a name
     type(line_t), allocatable, intent(out) :: lines(:)
-    type(line_t), allocatable :: cells(:)
-    integer :: row
+    type(line_t), allocatable :: cells(:), names(:)
+    integer, allocatable :: columns(:)
+    character(len=:), allocatable :: cited
+    integer :: row, i
 
     allocate (lines(0))
-    call append(lines, table_line([line_t('key'), line_t('unit'), words_of(library_names, ' ')], markdown))
-    if (markdown) call append(lines, '|'//repeat('---|', size(words_of(library_names, ' ')) + 2))
+    names = words_of(library_names, ' ')
+    columns = pack([(i, i=1, size(names))], [(index(names(i)%text, lower_case(wanted)) == 1, i=1, size(names))])
+    if (size(columns) == 0) return
+    cited = ''
+    call append(lines, table_line([line_t('key'), line_t('unit'), names(columns)], markdown))
+    if (markdown) call append(lines, '|'//repeat('---|', size(columns) + 2))
     do row = 1, size(rows)
       cells = words_of(trim(rows(row)), '|')
-      call append(lines, table_line(cells(2:), markdown))
+      call append(lines, table_line([cells(2:heads), cells(heads + columns)], markdown))
+      cited = cited//joined(cells(heads + columns), ' ')//' '
     end do
     call append(lines, '')
     do row = 1, size(sources)
       cells = words_of(trim(sources(row)), '|')
+      if (index(cited, ' '//cells(1)%text//' ') == 0) cycle
       if (markdown) then
         call append(lines, '- '//cells(1)%text//': '//cells(2)%text//'.')
       else

@@ -3,6 +3,7 @@ module plies
   use kinds, only: wp
   use mathematical_constants, only: degree
   use material_parameters, only: material_t
+  use short_numbers, only: short_text
   use text, only: listed
   implicit none
   private
@@ -101,7 +102,8 @@ contains
       else if (.not. (m%density >= 0 .and. m%density <= huge(m%density))) then
         objection = 'the density must not be negative'
       else if (.not. m%nu12**2 < m%e1/m%e2) then
-        objection = 'nu12 must lie between -sqrt(E1/E2) and sqrt(E1/E2)'
+        objection = 'nu12 must lie between -sqrt(E1/E2) and sqrt(E1/E2), which is '//short_text(sqrt(m%e1/m%e2))// &
+                    ' with E1 = '//short_text(m%e1)//' and E2 = '//short_text(m%e2)
       else if (.not. m%nu12**2*m%e1c < m%e1**2/m%e2) then
         objection = 'E1c must be below E1**2/(E2 nu12**2)'
       else if (.not. abs(m%nu23) < 1) then

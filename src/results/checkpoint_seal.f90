@@ -3,7 +3,7 @@
 module checkpoint_seal
   use, intrinsic :: iso_fortran_env, only: int32, int8
   use errors, only: error_t, exit_files, fail
-  use files, only: is_pipe
+  use files, only: is_pipe, read_obstacle
   use kinds, only: long
   use output_streams, only: output_stream_t
   implicit none
@@ -43,7 +43,11 @@ contains
     call file%put(head(bytes, crc))
     call file%synchronise()
     call file%close()
-    if (status /= 0 .or. file%failed) call fail(error, exit_files, "Cannot complete the checkpoint "//path//'.')
+    if (file%failed) then
+      call fail(error, exit_files, 'Cannot complete the checkpoint '//path//': '//file%reason//'.')
+    else if (status /= 0) then
+      call fail(error, exit_files, 'Cannot complete the checkpoint '//path//', which cannot be read.')
+    end if
   end subroutine seal
 
   !> Checks that a file is a valid checkpoint.
@@ -61,7 +65,9 @@ contains
     status = merge(1, 0, is_pipe(path))
     if (status == 0) call read_head(path, found, status)
     if (status == 0) call read_body(path, bytes, crc, status)
-    if (status /= 0) then
+    if (read_obstacle(path) /= '') then
+      call fail(error, exit_files, 'Cannot read the checkpoint '//path//': '//read_obstacle(path)//'.')
+    else if (status /= 0) then
       call fail(error, exit_files, "Cannot read the checkpoint "//path//'.')
     else if (found(:len(title)) /= title) then
       call fail(error, exit_files, path//' is not a checkpoint of Implam.')
@@ -85,7 +91,8 @@ contains
     call entries%open(path, 'r')
     call entries%synchronise()
     call entries%close()
-    if (entries%failed) call fail(error, exit_files, "Cannot write the folder "//path//' out to the disk.')
+    if (entries%failed) call fail(error, exit_files, 'Cannot write the folder '//path//' to the disk: '// &
+                                  entries%reason//'.')
   end subroutine synchronise_folder
 
   !> The header of a file with a given body.

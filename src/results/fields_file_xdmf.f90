@@ -104,7 +104,7 @@ contains
     end do
     call file%put(line(1, '</Grid>')//line(0, '</Domain>')//line(0, '</Xdmf>'))
     call file%close()
-    if (file%failed) call fail(error, exit_files, "Cannot write "//path//'.tmp.')
+    if (file%failed) call fail(error, exit_files, "Cannot write "//path//'.tmp: '//file%reason//'.')
     if (.not. allocated(error)) call rename_file(path//'.tmp', path, error)
   end subroutine write_xdmf
 

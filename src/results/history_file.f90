@@ -197,8 +197,8 @@ contains
     !> Set if so
     type(error_t), allocatable, intent(inout) :: error
 
-    if (self%file%failed) call fail(error, exit_files, "Cannot write the history "//self%path &
-                                    //': does the folder exist, is the disk full or the quota used up?')
+    if (self%file%failed) call fail(error, exit_files, "Cannot write the history "//self%path//': '// &
+                                    self%file%reason//'.')
     call self%communicator%agree(error)
   end subroutine check
 
@@ -246,7 +246,7 @@ contains
         call copy%open(to, 'w')
         call copy_bytes(unit, bytes, copy, status)
         call copy%close()
-        if (copy%failed) call fail(error, exit_files, "Cannot write "//to//'.')
+        if (copy%failed) call fail(error, exit_files, "Cannot write "//to//': '//copy%reason//'.')
         if (status /= 0) call fail(error, exit_files, "Cannot read the history "//from//'.')
       end if
     end if

@@ -35,6 +35,19 @@ ROWS = (
     ('shear strength in GPa', 'peanut_cracked', (('S12', 1e-9),), 'S12', 'GPa'),
     ('fracture energies of fibres in N/mm', 'experiments/t700_m21_25J', (('G_ft', 1e-3),), 'G_ft', 'N/mm'),
     ('fracture energies of the matrix in N/mm', 'experiments/t700_m21_25J', (('G_mc', 1e-3),), 'G_mc', 'N/mm'),
+    # These are errors, besides which the unit is named.
+    ('E1 alone in MPa', 'peanut', (('E1', 1e-6),), 'E1', 'MPa'),
+    ('E1 alone in GPa', 'peanut', (('E1', 1e-9),), 'E1', 'GPa'),
+    ('E2 alone in GPa', 'peanut', (('E2', 1e-9),), 'E2', 'GPa'),
+    ('G23 alone in MPa', 'peanut', (('G23', 1e-6),), 'G23', 'MPa'),
+    ('thicknesses alone in mm', 'peanut', (('thicknesses', 1e3),), 'thicknesses', 'mm'),
+    ('ply_thickness in mm', 'tutorial/plate', (('ply_thickness', 1e3),), 'ply_thickness', 'mm'),
+    ('core and cell in mm', 'peanut', (('core', 1e3), ('cell', 1e3)), 'core', 'mm'),
+    ('zone in mm', 'peanut', (('zone', 1e3),), 'zone', 'mm'),
+    # A drop of 3 J in steps of 1 kg, 4 J of 5.5 kg, and 13.4 m/s.
+    ('mass of a drop weight in g', 'peanut', (('mass', 1e3),), 'mass', 'g'),
+    ('mass of a heavy drop weight in g', 'peanut', (('mass', 5.5e3),), 'mass', 'g'),
+    ('mass in g beside a velocity', 'experiments/t700_m21_25J', (('mass', 1e3),), 'mass', 'g'),
 )
 
 

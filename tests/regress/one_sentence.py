@@ -21,11 +21,28 @@ def say(command, expected):
     require(len(lines) == 1 and lines[0].startswith("implam: ") and lines[0].endswith((".", "?")),
             f"{command} did not end with one sentence: {lines}")
     print(lines[0])
+    return lines[0]
 
 
 def contents(folder):
     """Return the files of a folder with their contents."""
     return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def check_reasons(implam, folder):
+    """A file that cannot be written, a checkpoint that cannot be read, and an unknown material: the reason is given."""
+    deck = write_deck(folder, DECK)
+    (folder / "ply_damage.log").mkdir()
+    for command, code, words in (
+            ([implam, deck, "--output", folder], EXIT_FILES, f"the log {folder / 'ply_damage.log'}: is a directory."),
+            ([implam, "restart", folder / "none_restart.h5"], EXIT_FILES, "there is no such file."),
+            ([implam, deck, "--output", deck], EXIT_FILES, "a file has this name."),
+            ([implam, "explain", "materials", "im9"], 1, "the materials are t700_m21, ")):
+        require(words in say(command, code), f"{command} does not give the reason.")
+    (folder / "ply_damage.log").rmdir()
+    shown = run([implam, "explain", "materials", "IM7"])
+    require("im7_8552" in shown and "t700" not in shown and "Camanho" in shown and "Rivallant" not in shown, shown)
+    require("check DECK.nml" in run([implam, "help", "check"]), "help check does not explain the command.")
 
 
 def check_one_writer(implam, folder):
@@ -118,6 +135,7 @@ def main(implam, folder):
              if "error: " in line]
     require(len(error) == 1, f"The log holds the sentence {len(error)} times.")
     check_limit_load(implam, folder / "limit")
+    check_reasons(implam, folder / "reasons")
     check_one_writer(implam, folder / "writer")
     check_invalid_files(implam, folder / "invalid")
     check_removed_history(implam, folder / "removed")

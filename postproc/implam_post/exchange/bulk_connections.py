@@ -11,7 +11,10 @@ from implam_post.io.errors import DeckError
 # Where pyNastran keeps what a card adds to a model.
 _KINDS = ("elements", "rigid_elements", "mpcs", "masses")
 # Grids of cards that pyNastran does not read, by field.
-_FIELDS = {"RJOINT": (2, 3), "RTRPLT": (2, 3, 4), "SUPORT": (1, 3, 5, 7), "DMIG": (2,)}
+_FIELDS = {"RJOINT": (2, 3), "RTRPLT": (2, 3, 4), "RTRPLT1": (2, 3, 4), "SUPORT": (1, 3, 5, 7), "SUPORT1": (2, 4, 6),
+           "DMIG": (2,)}
+# Cards of which every integer after the number may be a grid.
+_LISTS = ("CWELD", "CSEAM", "CINTC", "GENEL", "RSSCON", "CSUPER")
 
 
 def remark_connections(bulk: BulkData, on_edges: Mapping[int, list[int]], edges: tuple[str, ...],
@@ -44,7 +47,7 @@ def _connections(bulk: BulkData, panel: Mapping[int, Any]) -> Iterator[tuple[Bul
     from pyNastran.bdf.bdf import BDF
     model = BDF(debug=None)
     for card in bulk.cards:
-        if card.name in KNOWN or card in bulk.also_read or card.name[0] not in "CRMSD":
+        if card.name in KNOWN or card in bulk.also_read or card.name[0] not in "CRMSDG":
             continue
         if not any(number in panel for number in _integers(card)):
             continue
@@ -66,6 +69,8 @@ def _grids(model: Any, card: BulkCard) -> tuple[list[int], bool]:
     if card.name in _FIELDS:
         texts = [card.fields.field(number) or "" for number in _FIELDS[card.name]]
         return [int(text) for text in texts if text.isdigit()], False
+    if card.name in _LISTS:
+        return _integers(card)[1:], False
     for kind in _KINDS:
         getattr(model, kind).clear()
     try:

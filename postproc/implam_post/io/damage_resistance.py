@@ -31,7 +31,10 @@ DIRECTIONS = (0, 45, 90, -45)
 
 @dataclass(frozen=True)
 class Threshold:
-    """First drop of the force by damage: filtered force, time, energy transferred until then, corner frequency."""
+    """First drop of the force by damage: filtered force, time, energy transferred until then, corner frequency.
+
+    The time is that of the force before the filter, which delays it.
+    """
 
     force: float
     time: float
@@ -41,11 +44,16 @@ class Threshold:
 
 @dataclass(frozen=True)
 class Extent:
-    """Size of the projected damage: largest diameter and its direction in degrees, lengths along x and y, and the
-    distance of its outermost points on lines through the struck point, by direction."""
+    """Size of the projected damage: largest diameter, lengths along x and y, and the distance of its outermost points
+    on lines through the struck point, by direction.
+
+    The largest diameter is in `direction`, to `direction_error`, both in degrees: in these directions the damage is
+    shorter by less than the diagonal of an element, to which its outline is known.
+    """
 
     diameter: float
     direction: float
+    direction_error: float
     length: float
     width: float
     through: dict[int, float]
@@ -84,8 +92,8 @@ def threshold(history: History, corner: float) -> Threshold | None:
         drop = force[place] - force[lowest]
         if drop >= _MIN_FORCE_DROP * force[place] > 0 and (
                 dissipated[lowest] - dissipated[place] >= _MIN_ENERGY_RATIO * drop * displacement[place] / 2):
-            at = float(even[place])
-            return Threshold(float(force[place]), at, energy_transferred(history, at - delay), corner)
+            at = max(0.0, float(even[place]) - delay)
+            return Threshold(float(force[place]), at, energy_transferred(history, at), corner)
         place = after
     return None
 
@@ -107,23 +115,42 @@ def extent(fields: Fields) -> Extent | None:
         return None
     edges = outline(cells)
     points = np.unique(edges.reshape(-1, 2), axis=0)
-    (diameter, direction), (length, width) = _widest(points), np.ptp(points, axis=0)
+    (diameter, direction, error), (length, width) = _widest(points, _grain(fields)), np.ptp(points, axis=0)
     middle = struck_point(fields)
     through = {angle: _between_outermost(edges - middle, math.radians(angle)) for angle in DIRECTIONS}
-    return Extent(diameter, direction, float(length), float(width), through)
+    return Extent(diameter, direction, error, float(length), float(width), through)
 
 
-def _widest(points: np.ndarray) -> tuple[float, float]:
-    """Return the largest distance of two points, and the direction of their line, -90 < degrees <= 90."""
-    angles = np.radians(np.arange(0, 180, 0.5))
-    reach = points @ np.stack([np.cos(angles), np.sin(angles)])
-    # Only points of the convex hull can be ends of the largest diameter.
-    outer = np.unique(points[np.concatenate([np.argmax(reach, axis=0), np.argmin(reach, axis=0)])], axis=0)
-    distances = outer[:, None] - outer[None]
+def _grain(fields: Fields) -> float:
+    """Return the mean diagonal of the elements with damage at the last time; corners of a stair of elements protrude by
+    half of it.
+    """
+    corners, shares = fields.snapshots[-1].projected()
+    damaged = corners[shares.max(axis=1, initial=0) > 0]
+    return float(np.mean(np.linalg.norm(damaged[:, 2] - damaged[:, 0], axis=-1)))
+
+
+def _widest(points: np.ndarray, grain: float) -> tuple[float, float, float]:
+    """Return the largest distance of two points, the middle of the directions, -90 < degrees <= 90, in which distances
+    are smaller by less than `grain`, and half their range, up to 90.
+    """
+    from scipy.spatial import ConvexHull
+
+    hull = points[ConvexHull(points).vertices]
+    # Ends of diameters lie on the convex hull, here no further apart than an element.
+    counts = np.ceil(np.linalg.norm(np.roll(hull, -1, axis=0) - hull, axis=1) / grain).astype(int)
+    ends = np.concatenate([first + np.arange(count)[:, None] / count * (second - first) for first, second, count
+                           in zip(hull, np.roll(hull, -1, axis=0), counts, strict=True)])
+    distances = ends[:, None] - ends[None]
     lengths = np.hypot(*np.moveaxis(distances, -1, 0))
-    x, y = distances[np.unravel_index(np.argmax(lengths), lengths.shape)]
-    degrees = math.degrees(math.atan2(y, x))
-    return float(lengths.max()), degrees - 180 if degrees > 90 else degrees + 180 if degrees <= -90 else degrees
+    x, y = distances[lengths >= lengths.max() - grain].T
+    degrees = np.unique(np.degrees(np.arctan2(y, x)) % 180)
+    # All are within the smallest range around the half circle: that which leaves out the widest gap.
+    gaps = np.diff(degrees, append=degrees[0] + 180)
+    first = degrees[(np.argmax(gaps) + 1) % len(degrees)]
+    half = (180 - gaps.max()) / 2
+    middle = (first + half) % 180
+    return float(lengths.max()), float(middle - 180 if middle > 90 else middle), float(half)
 
 
 def _between_outermost(edges: np.ndarray, angle: float) -> float:

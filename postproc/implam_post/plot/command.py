@@ -82,6 +82,7 @@ def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
     """Read the data of the curves."""
     from implam_post.io.compression import strength_of
     from implam_post.io.history import read_history
+    from implam_post.io.measured import check_units
     from implam_post.io.run import HISTORY, SUMMARY, read_summary
     from implam_post.plot.compression import is_compressed
     from implam_post.plot.pictures import RESPONSES
@@ -90,6 +91,9 @@ def _read_curves(paths: Sequence[Path], options: argparse.Namespace) -> _Curves:
     if measured is not None and not set(measured.columns) & set(RESPONSES):
         raise FileError(f"{options.measured} has none of the columns {', '.join(RESPONSES)} in addition to time.")
     histories = [read_history(path) for path in paths]
+    if measured is not None:
+        for history in histories:
+            check_units(history, measured)
     beside = [path.with_name(path.name.removesuffix(HISTORY) + SUMMARY) for path in paths]
     summaries = [read_summary(path) if is_compressed(history) and path.exists() else {}
                  for history, path in zip(histories, beside, strict=True)]

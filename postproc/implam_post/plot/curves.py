@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from implam_post.io.errors import FileError, reason
 from implam_post.io.history import History, read_columns
+from implam_post.io.measured import check_units
 from implam_post.io.quantities import growth_rows
 from implam_post.io.units import Axis
 from implam_post.plot.style import PictureStyle
@@ -26,6 +27,8 @@ _GROWN = 2  # stage of an interface in which points have failed
 def plot_curves(history: History, files: Sequence[Path], path: Path, style: PictureStyle) -> Path:
     """Draw a history as lines and measured curves as dots, a panel for each file of curves."""
     curves = [read_columns(file) for file in files]
+    for curve in curves:
+        check_units(history, curve)
     with matplotlib.rc_context({"font.size": style.letters}):
         figure = Figure(figsize=(8, 4.5 * len(curves)), layout="constrained")
         for axes, curve in zip(figure.subplots(len(curves), squeeze=False)[:, 0], curves, strict=True):

@@ -9,6 +9,7 @@ from pathlib import Path
 from implam_post.io.deck import read_deck
 from implam_post.io.errors import EXIT_DONE, EXIT_USAGE, CommandParser, FileError, run
 from implam_post.io.history import History, read_history
+from implam_post.io.measured import check_units
 from implam_post.io.quantities import AGAINST_QUANTITIES, COLUMN_QUANTITIES, QUANTITIES
 from implam_post.plot.style import add_options, style_of
 from implam_post.reference.semi_analytic import semi_analytic
@@ -43,7 +44,11 @@ def check_expectations(history: History, expectations: Sequence[Expectation], fo
         path = Path(folder) / name
         if not path.exists() and (Path(history.name).parent / name).exists():
             path = Path(history.name).parent / name
-        return read_history(path) if path.suffix == ".csv" else semi_analytic(read_deck(path))
+        if path.suffix != ".csv":
+            return semi_analytic(read_deck(path))
+        curve = read_history(path)
+        check_units(history, curve)
+        return curve
 
     def measure(expected: Expectation) -> float:
         if expected.quantity in AGAINST_QUANTITIES:

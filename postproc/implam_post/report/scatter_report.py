@@ -12,7 +12,7 @@ from implam_post.io.summary_shape import OrNull, misshapen
 from implam_post.plot.style import PictureStyle
 from implam_post.report.page import image_of, render
 from implam_post.sweep.scatter_plots import BAND, SHARE
-from implam_post.sweep.scatter_results import STATISTICS
+from implam_post.sweep.scatter_results import STATISTICS, verdict_of
 from implam_post.sweep.scatter_statistics import Difference, Spread
 from implam_post.sweep.scatter_text import HEAD, PAIRED, SHOWN, difference_rows, spread_rows
 
@@ -76,7 +76,7 @@ def _group(group: Mapping[str, Any], content: Mapping[str, Any], style: PictureS
     """Return the tables of a group: the figures shown, all figures, and measured values."""
     rows = _rows_of(content["statistics"], group)
     measured = [(row["figure"], row["measured"], row["aim"], row["mean"], row["error_of_mean"],
-                 "within" if row["within"] else "beyond") for row in _rows_of(content.get("measured", []), group)]
+                 verdict_of(row["mean"], row["within"])) for row in _rows_of(content.get("measured", []), group)]
     return {"of": _of(group["name"]), "shown": _spreads(rows, style, SHOWN), "measured": measured,
             "all": _spreads(rows, style, [row["figure"] for row in rows])}
 

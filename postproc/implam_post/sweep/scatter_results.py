@@ -103,6 +103,18 @@ class ComparedMean:
         """Whether the mean is within the tolerance."""
         return abs(self.found.mean - self.expected.value) <= self.expected.tolerance
 
+    @property
+    def verdict(self) -> str:
+        """Words for the comparison."""
+        return verdict_of(self.found.mean, self.passed)
+
+
+def verdict_of(mean: float | None, within: bool) -> str:
+    """Return the words for a comparison of a mean; a history that ends before the measured one has no difference."""
+    if mean is None or math.isnan(mean):
+        return "not compared: the runs end before the curve"
+    return "within" if within else "beyond"
+
 
 def groups_of(sweep: Sweep) -> list[Group]:
     """Return the groups of a sweep in order, with the results of the runs that have ended."""

@@ -103,7 +103,7 @@ def measured_rows(rows: Sequence[ComparedMean]) -> Iterator[tuple[str, ...]]:
         aim = f"{100 * expected.relative:.3g} %" if expected.relative is not None else f"{expected.absolute:.3g}"
         off = f"{100 * (found.mean / expected.value - 1):+.1f} %" if expected.value else f"{found.mean:.3g}"
         yield (expected.label, f"{expected.value:.4g}", aim, _number(found.mean), _number(found.error), off,
-               "within" if row.passed else "beyond")
+               row.verdict)
 
 
 def words_of(name: str) -> str:

@@ -50,7 +50,8 @@ class ConnectionTest(ImportTest):
                      ("CBUSH", 1, 1, end, None, None, None, None, 0), ("CELAS2", 1, 1e3, end, 3),
                      ("CROD", 1, 1, end, 900), ("RBAR", 1, 900, end, 123456, None, None, 123456),
                      ("RBE3", 1, None, 900, 123, 1.0, 123, *EDGE), ("MPC", 1, end, 3, 1.0, 900, 3, -1.0),
-                     ("CQUADR", 99, 1, EDGE[1], end, 900, 901), ("RJOINT", 1, end, 900, 123), ("SUPORT", end, 3)):
+                     ("CQUADR", 99, 1, EDGE[1], end, 900, 901), ("RJOINT", 1, end, 900, 123), ("SUPORT", end, 3),
+                     ("SUPORT1", 1, end, 3), ("GENEL", 1, None, end, 1, end, 2), ("RSSCON", 1, "GRID", end, 900, 901)):
             with self.subTest(card):
                 text = self.report(OUTSIDE, card, edges=("", "1234", "1235", "1235"))
                 self.assertRegex(text, f"{card[0]}, line [0-9]+: it connects the edge x-min to something")

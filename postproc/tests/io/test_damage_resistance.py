@@ -51,8 +51,9 @@ class ThresholdTest(unittest.TestCase):
         force = STIFFNESS * SPEED * 0.8e-3
         found = threshold(history(0.3, 0.3 * force * SPEED * 0.8e-3 / 2), CORNER)
         self.assertAlmostEqual(found.force / force, 1, delta=0.05)
-        self.assertAlmostEqual(found.time, 0.8e-3, delta=0.1e-3)
-        self.assertAlmostEqual(found.energy / (STIFFNESS * (SPEED * 0.8e-3)**2 / 2), 1, delta=0.06)
+        # The filter delays the drop by .07 ms. Measured: .785 ms, and the energy of this time.
+        self.assertAlmostEqual(found.time, 0.8e-3, delta=0.02e-3)
+        self.assertAlmostEqual(found.energy, STIFFNESS * (SPEED * found.time)**2 / 2, delta=0.02)
 
     def test_impactors_whose_travel_is_given(self) -> None:
         """Given displacements have no impact energy, and load steps no time for a filter."""
@@ -99,13 +100,36 @@ class ExtentTest(unittest.TestCase):
         middle = np.array([[-4, -3], [4, -3], [4, 3], [-4, 3]]) / math.sqrt(2)
         found = extent(self.fields((middle @ np.array([[1, 1], [-1, 1]]))[None]))
         self.assertAlmostEqual(found.diameter, 10)
-        angle = 45 + math.degrees(math.atan2(3, 4))
-        self.assertIn(round(found.direction, 6), (round(angle, 6), round(90 - angle, 6)))
+        # One element is as large as the damage, so that no direction is certain.
+        self.assertGreater(found.direction_error, 45)
         self.assertAlmostEqual(found.length, 14 / math.sqrt(2))
         self.assertAlmostEqual(found.width, 14 / math.sqrt(2))
         self.assertAlmostEqual(found.through[45], 8)
         self.assertAlmostEqual(found.through[-45], 6)
         self.assertAlmostEqual(found.through[0], 6 * math.sqrt(2))
+
+    def test_direction(self) -> None:
+        """Ellipses of cells: the axis lies within the error, which is the angle at which a cell is missing."""
+        x, y = (axis.ravel() for axis in np.meshgrid(*2 * (np.arange(-29.5, 30),)))
+        for angle, half in ((0.0, (25, 10)), (20.0, (25, 10)), (-65.0, (25, 10)), (90.0, (24, 12)), (10.0, (20, 20))):
+            with self.subTest(angle, half=half):
+                c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+                inside = ((c * x + s * y) / half[0])**2 + ((c * y - s * x) / half[1])**2 < 1
+                middles = np.stack([x, y], axis=1)[inside]
+                found = extent(self.fields(middles[:, None] + [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]]))
+                off = abs((found.direction - angle + 90) % 180 - 90)
+                self.assertAlmostEqual(found.diameter, 2 * half[0], delta=math.sqrt(2))
+                if half[0] == half[1]:
+                    self.assertGreater(found.direction_error, 45)
+                    continue
+                # The chord of an ellipse is shorter by the diagonal of a cell at this angle from its axis.
+                ratio = (half[0] / (half[0] - math.sqrt(0.5)))**2 - 1
+                expected = math.degrees(math.asin(math.sqrt(ratio / ((half[0] / half[1])**2 - 1))))
+                self.assertLess(off, found.direction_error)
+                self.assertAlmostEqual(found.direction_error, expected, delta=3)
+                # A model that is symmetric about x has a direction that is, too.
+                if angle in (0, 90):
+                    self.assertAlmostEqual(found.direction, angle)
 
     def test_two_lobes(self) -> None:
         """For lobes with a gap at the struck point outermost points count; a line between lobes has length 0."""

@@ -1,0 +1,87 @@
+!> Warns of elements outside of the core that grow too fast: a smaller cell in an unchanged number of elements refines
+!> the core only, and lengthens all others.
+module deck_cell_growth
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: remark
+  use gradings, only: core_elements
+  use kinds, only: wp
+  use mesh_deck, only: key_elements, mesh_group
+  use mesh_parameters, only: is_halved
+  use short_numbers, only: short_text
+  use text, only: to_text
+  implicit none
+  private
+  public :: check_cell_growth
+
+  !> Ratio of the lengths of adjacent elements above which a warning is given, and that of the elements recommended.
+  !> Twice is the usual limit of graded meshes. It affects a warning only.
+  real(wp), parameter :: fastest = 3, recommended = 1.5_wp
+
+contains
+
+  !> Warns of fast growth along either direction.
+  subroutine check_cell_growth(deck, problems)
+    !> The deck, without errors
+    type(deck_t), intent(in) :: deck
+    !> Receives the warning
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: growth(2), longest(2)
+    integer :: enough(2), direction
+
+    if (.not. deck%mesh%cell > 0) return
+    do direction = 1, 2
+      call measure(deck, direction, growth(direction), longest(direction), enough(direction))
+    end do
+    if (.not. any(growth > fastest)) return
+    call remark(deck%settings, problems, mesh_group, key_elements, 'outside of the core each element is up to '// &
+                short_text(maxval(growth))//' times as long as the one before, the longest '// &
+                short_text(maxval(longest))//', with cell = '//short_text(deck%mesh%cell)//'; elements = '// &
+                to_text(enough(1))//', '//to_text(enough(2))//' refine the rest as the core.')
+  end subroutine check_cell_growth
+
+  !> Growth from the core to the border, the longest element, and the number of elements for the growth recommended.
+  subroutine measure(deck, direction, growth, longest, enough)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> Ratio of adjacent elements, the larger of both sides
+    real(wp), intent(out) :: growth
+    !> Length of the longest element
+    real(wp), intent(out) :: longest
+    !> Number of elements
+    integer, intent(out) :: enough
+    real(wp), allocatable :: edges(:)
+    real(wp) :: half_core
+    logical :: halved(2)
+    integer :: side, outside
+
+    associate (mesh => deck%mesh)
+      edges = cell_edges(deck%plate, mesh, direction) - mesh%struck(direction)
+      half_core = max(mesh%core(direction), mesh%patch)/2
+      halved = is_halved(deck%plate%symmetry)
+      growth = 1
+      enough = 0
+      longest = maxval(edges(2:) - edges(:size(edges) - 1))
+      do side = merge(2, 1, halved(direction)), 2
+        if (side == 1) edges = -edges(size(edges):1:-1)
+        outside = max(1, count(edges > half_core + mesh%cell/2))
+        growth = max(growth, ((edges(size(edges)) - edges(size(edges) - 1))/mesh%cell)**(1.0_wp/outside))
+        enough = enough + sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + &
+                 elements_for((edges(size(edges)) - half_core)/mesh%cell)
+        if (side == 1) edges = -edges(size(edges):1:-1)
+      end do
+      enough = max(enough, mesh%elements(direction))
+    end associate
+  end subroutine measure
+
+  !> Number of elements that grow as recommended over a length.
+  pure integer function elements_for(length) result(number)
+    !> The length over that of the elements before
+    real(wp), intent(in) :: length
+
+    number = max(1, ceiling(log(1 + length*(recommended - 1)/recommended)/log(recommended)))
+  end function elements_for
+end module deck_cell_growth

@@ -1,0 +1,174 @@
+!> Onset of damage beside delaminated points by the energy release rate, theory (D15) to (D17), in steps by central
+!> differences.
+module front_onsets
+  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_laws, only: cohesive_law_t
+  use delamination_parameters, only: growth_by_energy, law_cohesive
+  use energy_onsets, only: onset_share, reduce_law, release_over_toughness
+  use front_stencils, only: ahead, behind, create_front_stencils, far_behind, front_stencils_t
+  use interface_stacks, only: interface_stacks_t
+  use kinds, only: wp
+  use models, only: model_t
+  implicit none
+  private
+  public :: front_onsets_t, create_front_onsets
+
+  !> Number of steps between two searches. A stress wave crosses at most two nodes in this time, a front, which follows
+  !> bending waves, less than one.
+  integer, parameter :: steps_between_searches = 4
+  !> Values of a point: tractions, jumps, and damage.
+  integer, parameter :: of_tractions(3) = [1, 2, 3], of_jumps(3) = [4, 5, 6], of_damage = 7
+  !> Signs of jumps and tractions of images under point symmetry.
+  real(wp), parameter :: turned(3) = [-1.0_wp, -1.0_wp, 1.0_wp]
+
+  !> Search for points that begin to soften.
+  type :: front_onsets_t
+    !> Nodes before and behind each point; no points where strengths control growth
+    type(front_stencils_t) :: stencils
+    !> Values of the points of the mesh that this rank needs, (7, points of the mesh)
+    real(wp), allocatable, private :: values(:, :)
+  contains
+    !> Finds onsets.
+    procedure :: find
+  end type front_onsets_t
+
+contains
+
+  !> The search in a model. Collective.
+  function create_front_onsets(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The search
+    type(front_onsets_t) :: self
+
+    allocate (self%stencils%points(0))
+    if (.not. model%map%layered) return
+    if (.not. any(model%setup%delaminations%law == law_cohesive .and. &
+                  model%setup%delaminations%growth_control == growth_by_energy)) return
+    self%stencils = create_front_stencils(model)
+    allocate (self%values(7, model%mesh%points()), source=0.0_wp)
+  end function create_front_onsets
+
+  !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
+  subroutine find(self, model, step, stacks, cohesive, u)
+    !> The search
+    class(front_onsets_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> Number of the step
+    integer, intent(in) :: step
+    !> The stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> The interfaces; receive the laws
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    integer :: i
+
+    if (.not. allocated(self%values) .or. modulo(step, steps_between_searches) > 0) return
+    call gather(self, model, stacks, cohesive, u)
+    do i = 1, size(self%stencils%points)
+      associate (p => self%stencils%points(i))
+        if (cohesive%points(p)%damage > 0 .or. cohesive%by_energy(p) .or. .not. stacks%may_separate(p)) cycle
+        if (model%setup%delaminations(model%zone(p))%growth_control /= growth_by_energy) cycle
+        call find_at(self, model, i, stacks, cohesive, u)
+      end associate
+    end do
+  end subroutine find
+
+  !> Collects the values of this rank's points and of those of other ranks in their stencils. Collective.
+  subroutine gather(self, model, stacks, cohesive, u)
+    !> The search; receives the values
+    type(front_onsets_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The stacks
+    type(interface_stacks_t), intent(in) :: stacks
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    integer :: i
+
+    do i = 1, size(self%stencils%points)
+      associate (p => self%stencils%points(i))
+        if (.not. stacks%area(p) > 0) cycle
+        associate (value => self%values(:, model%distribution%points(p)))
+          value(of_tractions) = stacks%history%forces(:, p)/stacks%area(p)
+          value(of_jumps) = u(1:3, p)
+          value(of_damage) = cohesive%points(p)%damage
+        end associate
+      end associate
+    end do
+    call self%stencils%exchange%update(self%values)
+  end subroutine gather
+
+  !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
+  pure subroutine find_at(self, model, i, stacks, cohesive, u)
+    !> The search
+    type(front_onsets_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> Index of the point among those with an interface
+    integer, intent(in) :: i
+    !> The stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> The interfaces; receive the law
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    real(wp) :: rate, largest, strength, opening
+    integer :: d, direction
+
+    associate (p => self%stencils%points(i), near => self%stencils%near(:, :, i))
+      largest = 0
+      direction = 0
+      do d = 1, size(near, 2)
+        if (any(near(behind:far_behind, d) == 0)) cycle
+        if (.not. self%values(of_damage, abs(near(behind, d))) > 0) cycle
+        rate = rate_in(self, model%cohesive_laws(model%zone(p)), model%distribution%points(p), near(:, d), &
+                       self%stencils%widths(:, d, i))
+        if (.not. rate > largest) cycle
+        largest = rate
+        direction = d
+      end do
+      if (largest < onset_share) return
+      call reduce_law(model%cohesive_laws(model%zone(p)), u(1:3, p), stacks%history%forces(:, p)/stacks%area(p), &
+                      taken(self, of_jumps, near(behind, direction)), strength, opening)
+      if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
+        call stacks%begin_softening(model, cohesive, p, [strength, opening], u)
+    end associate
+  end subroutine find_at
+
+  !> Energy release rate over the toughness for growth in one direction.
+  pure real(wp) function rate_in(self, law, point, near, widths) result(rate)
+    !> The search
+    type(front_onsets_t), intent(in) :: self
+    !> The law of the undamaged interface
+    type(cohesive_law_t), intent(in) :: law
+    !> The point of the mesh, and those ahead and behind
+    integer, intent(in) :: point, near(3)
+    !> Lengths that belong to the point and to the node ahead
+    real(wp), intent(in) :: widths(2)
+    real(wp) :: tractions(3, 2), jumps(3, 2)
+
+    tractions(:, 1) = self%values(of_tractions, point)
+    tractions(:, 2) = taken(self, of_tractions, near(ahead))
+    jumps(:, 1) = taken(self, of_jumps, near(behind))
+    jumps(:, 2) = taken(self, of_jumps, near(far_behind))
+    rate = release_over_toughness(law, tractions, jumps, widths)
+  end function rate_in
+
+  !> Traction or jump of a node of a stencil; zero without a node.
+  pure function taken(self, which, point) result(vector)
+    !> The search
+    type(front_onsets_t), intent(in) :: self
+    !> Indices of the values
+    integer, intent(in) :: which(3)
+    !> The point of the mesh, negative for its image
+    integer, intent(in) :: point
+    !> Two shears and opening
+    real(wp) :: vector(3)
+
+    vector = 0
+    if (point == 0) return
+    vector = self%values(which, abs(point))
+    if (point < 0) vector = turned*vector
+  end function taken
+end module front_onsets

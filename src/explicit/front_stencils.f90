@@ -1,0 +1,161 @@
+!> Nodes of an interface before and behind each of its points along the lines of nodes, for virtual crack closure.
+module front_stencils
+  use column_exchanges, only: column_exchange_t, new_column_exchange
+  use kinds, only: wp
+  use layered_meshes, only: layered_mesh_t
+  use models, only: model_t
+  use nine_node_grids, only: first_line, last_line
+  implicit none
+  private
+  public :: front_stencils_t, create_front_stencils
+
+  !> Directions of growth: along x, against x, along y, against y.
+  integer, parameter :: steps(2, 4) = reshape([1, 0, -1, 0, 0, 1, 0, -1], [2, 4])
+  !> Nodes of a stencil: the one ahead, and those one and two nodes behind.
+  integer, parameter, public :: ahead = 1, behind = 2, far_behind = 3
+
+  !> The stencils of this rank's points.
+  type :: front_stencils_t
+    !> Points of this rank with an interface, (n)
+    integer, allocatable :: points(:)
+    !> Points of the mesh ahead, behind and two behind, negative for images under point symmetry, whose in-plane motion
+    !> has the opposite sign; 0: none, (3, directions, n)
+    integer, allocatable :: near(:, :, :)
+    !> Lengths along the direction that belong to the point and to the node ahead, (2, directions, n)
+    real(wp), allocatable :: widths(:, :, :)
+    !> Exchange of values at points of the mesh between ranks
+    type(column_exchange_t) :: exchange
+  end type front_stencils_t
+
+contains
+
+  !> Stencils of a model. Collective.
+  function create_front_stencils(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The stencils
+    type(front_stencils_t) :: self
+    integer, allocatable :: groups(:, :)
+    logical, allocatable :: mine(:)
+    integer :: i
+
+    associate (mesh => model%mesh, parts => model%distribution)
+      self%points = pack([(i, i=1, parts%owned)], model%zone(:parts%owned) > 0)
+      allocate (self%near(3, 4, size(self%points)), self%widths(2, 4, size(self%points)))
+      do i = 1, size(self%points)
+        call find_stencil(mesh, parts%points(self%points(i)), self%near(:, :, i), self%widths(:, :, i))
+      end do
+      if (model%communicator%size == 1) return
+      allocate (groups(13, mesh%points()))
+      allocate (mine(mesh%points()), source=.false.)
+      mine(parts%points(:parts%owned)) = .true.
+      do i = 1, mesh%points()
+        groups(:, i) = group_of(mesh, i)
+      end do
+      self%exchange = new_column_exchange(model%communicator, mine, groups)
+    end associate
+  end function create_front_stencils
+
+  !> A point and the points of its stencil. Each of these has the point in its own stencil.
+  pure function group_of(mesh, point) result(group)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Point of the mesh
+    integer, intent(in) :: point
+    !> Points, padded with zeros
+    integer :: group(13)
+    integer :: near(3, 4)
+    real(wp) :: widths(2, 4)
+
+    near = 0
+    if (mesh%point_zone(point) > 0) call find_stencil(mesh, point, near, widths)
+    group = [point, abs(reshape(near, [12]))]
+  end function group_of
+
+  !> Stencil of a point in all directions of growth.
+  pure subroutine find_stencil(mesh, point, near, widths)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Point of the mesh, with an interface
+    integer, intent(in) :: point
+    !> Points ahead and behind, (3, directions)
+    integer, intent(out) :: near(3, 4)
+    !> Lengths, (2, directions)
+    real(wp), intent(out) :: widths(2, 4)
+    integer :: lines(2), d, along
+
+    lines = mesh%lines_of(mesh%point_node(point))
+    do d = 1, size(steps, 2)
+      associate (zone => mesh%point_zone(point), step => steps(:, d))
+        near(:, d) = [point_at(mesh, zone, lines + step), point_at(mesh, zone, lines - step), &
+                      point_at(mesh, zone, lines - 2*step)]
+        along = merge(1, 2, abs(step(1)) > 0)
+        widths(:, d) = [width_of(mesh, along, lines(along)), width_of(mesh, along, lines(along) + step(along))]
+      end associate
+    end do
+  end subroutine find_stencil
+
+  !> Point of an interface at the crossing of two lines of nodes; negative for its image, 0: none.
+  pure integer function point_at(mesh, zone, lines) result(point)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Zone of the interface
+    integer, intent(in) :: zone
+    !> Lines of nodes of one x and of one y, which may lie beyond the model
+    integer, intent(in) :: lines(2)
+    integer :: at(2), master
+    logical :: turned
+
+    point = 0
+    at = lines
+    turned = at(1) < 0 .and. mesh%halved(1) .and. .not. mesh%mirrored(1)
+    if (turned) at = [-at(1), last_line(mesh%cells(2)) - at(2)]
+    if (any(at < 0 .or. at > last_line(mesh%cells))) return
+    point = mesh%lower_point(mesh%node_at(at(1), at(2)), zone)
+    if (point == 0) return
+    master = mesh%master(point)
+    if (master > 0) then
+      point = master
+      turned = .not. turned
+    end if
+    if (turned) point = -point
+  end function point_at
+
+  !> Length that belongs to a line of nodes, by the integrals of the shape functions; 0 beyond the plate.
+  pure real(wp) function width_of(mesh, along, line) result(width)
+    !> The mesh
+    type(layered_mesh_t), intent(in) :: mesh
+    !> Direction, 1 or 2
+    integer, intent(in) :: along
+    !> Line of nodes
+    integer, intent(in) :: line
+    integer :: cell
+
+    width = 0
+    if (line < 0 .or. line > last_line(mesh%cells(along))) return
+    cell = line/2 + 1
+    if (modulo(line, 2) == 1) then
+      width = 2*side(cell)/3
+    else
+      if (cell <= mesh%cells(along)) width = side(cell)/6
+      if (line > first_line(1)) then
+        width = width + side(cell - 1)/6
+      else if (mesh%halved(along) .and. .not. mesh%mirrored(along)) then
+        width = 2*width
+      end if
+    end if
+
+  contains
+
+    !> Side of a column or row of cells.
+    pure real(wp) function side(cell)
+      !> Its number
+      integer, intent(in) :: cell
+
+      if (along == 1) then
+        side = mesh%x_edges(cell + 1) - mesh%x_edges(cell)
+      else
+        side = mesh%y_edges(cell + 1) - mesh%y_edges(cell)
+      end if
+    end function side
+  end function width_of
+end module front_stencils
