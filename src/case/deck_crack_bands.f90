@@ -9,6 +9,7 @@ module deck_crack_bands
   use deck_remarks, only: report, remark, remark_idle, are_clear
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
+  use larc_criteria, only: larc_objection
   use material_deck, only: material_group, key_shear_strain, toughness_keys
   use material_parameters, only: first_alike, material_t
   use mesh_parameters, only: is_halved
@@ -19,7 +20,7 @@ module deck_crack_bands
   use scale_tables, only: length_text
   use stacking, only: stacked_plies
   use stepping_parameters, only: is_explicit
-  use text, only: line_t, append, joined, rounded_text
+  use text, only: line_t, append, joined, rounded_text, to_text
   implicit none
   private
   public :: check_crack_bands
@@ -64,10 +65,31 @@ contains
                                           [1, size(deck%laminate%angle)])) &
       call remark(deck%settings, problems, ply_damage_group, key_in_situ, 'has no effect: all plies are of one '// &
                   'material and angle, so that no ply has a neighbour that constrains its cracks.')
+    if (deck%ply_damage%in_situ .and. deck%ply_damage%kinking) call check_kinking_in_place(deck, problems)
     do i = 1, size(deck%materials)
       call check_lengths(deck, i, problems)
     end do
   end subroutine check_crack_bands
+
+  !> Kinking requires in-situ strengths that a misalignment of the fibres explains.
+  subroutine check_kinking_in_place(deck, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> The fault is added
+    type(problems_t), intent(inout) :: problems
+    type(ply_t), allocatable :: plies(:)
+    character(len=:), allocatable :: objection
+    integer :: ply
+
+    plies = stacked_plies(deck%laminate, deck%materials)
+    do ply = 1, size(plies)
+      objection = larc_objection(material_in_place(plies, ply, deck%materials, deck%ply_damage))
+      if (objection == '') cycle
+      call report(deck%settings, problems, ply_damage_group, key_in_situ, 'raises S12 of ply '//to_text(ply)// &
+                  ' so far that '//objection//'.')
+      return
+    end do
+  end subroutine check_kinking_in_place
 
   !> Permanent shear strains require nonlinear shear and central differences.
   subroutine check_permanent_shear(deck, problems)

@@ -11,6 +11,7 @@ module deck_cross_checks
   use interface_places, only: delamination_group, key_below_ply
   use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
   use failure_criteria, only: needed_strengths
+  use larc_criteria, only: larc_objection
   use impactor_deck, only: impactor_group, key_velocity, key_radius, key_at, key_gravity, key_integrator, key_mass, &
                            key_travel, impactor_key_rise => key_rise, keys_of_motion
   use impact_parameters, only: law_hertz
@@ -19,7 +20,7 @@ module deck_cross_checks
   use laminate_deck, only: laminate_group
   use line_deck, only: line_group, key_rise
   use line_loads, only: line_load_t
-  use material_deck, only: material_group, require_densities
+  use material_deck, only: key_compressive, material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
   use output_deck, only: check_intervals, remark_idle_fields
   use plies, only: ply_t, material_objection
@@ -286,7 +287,29 @@ contains
       end do
       if (size(missing) > 0) call report(deck%settings, problems, material_group, '', 'ply damage needs the '// &
         'strengths '//joined(missing, ', ')//'; give them or leave &ply_damage out.', i)
+      if (deck%ply_damage%kinking .and. size(missing) == 0) call check_kinking(deck, i, problems)
       deallocate (missing)
     end do
   end subroutine check_strengths
+
+  !> Checks the strengths of fibres that fail by kinking.
+  subroutine check_kinking(deck, place, problems)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Index of the material, which has the strengths of the matrix
+    integer, intent(in) :: place
+    !> Faults found are added
+    type(problems_t), intent(inout) :: problems
+
+    associate (material => deck%materials(place))
+      if (.not. material%xc > 0) then
+        if (are_clear(deck%settings, problems, material_group, key_compressive, place)) &
+          call report(deck%settings, problems, material_group, key_compressive, 'is missing; fibre_compression = '// &
+                      '''kinking'' of &ply_damage derives the misalignment of the fibres from it.', place)
+      else if (material%g12 > 0) then
+        if (larc_objection(material) /= '') &
+          call report(deck%settings, problems, material_group, key_compressive, larc_objection(material)//'.', place)
+      end if
+    end associate
+  end subroutine check_kinking
 end module deck_cross_checks

@@ -16,7 +16,7 @@ module deck_idle_keys
   use plate_deck, only: key_imperfection, plate_group
   use plate_options, only: kinematics_linear
   use ply_damage_deck, only: ply_damage_group
-  use ply_damage_parameters, only: criteria_hou, criteria_puck
+  use ply_damage_parameters, only: criteria_hou, criteria_puck, criteria_larc
   use stepping_parameters, only: is_explicit
   use thermal_deck, only: thermal_group
   use time_deck, only: time_group, key_longest_step
@@ -103,9 +103,10 @@ contains
     if (deck%ply_damage%criteria /= criteria_hou .or. any(deck%materials(place)%toughness > 0)) &
       call remark_idle(deck%settings, problems, material_group, key_fibre_shear, &
                        'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
-    if (deck%ply_damage%criteria == criteria_puck) &
+    if (any(deck%ply_damage%criteria == [criteria_puck, criteria_larc])) &
       call remark_idle(deck%settings, problems, material_group, key_shear_23, &
-                       'has no effect with criteria = ''puck''.', place)
+                       'has no effect with criteria = '''//trim(merge('puck', 'larc', &
+                         deck%ply_damage%criteria == criteria_puck))//'''.', place)
   end subroutine remark_strengths
 
   !> True: strengths of the plies determine the yield pressure of the struck face.

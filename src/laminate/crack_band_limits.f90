@@ -3,9 +3,11 @@
 module crack_band_limits
   use crack_bands, only: crack_band_t
   use kinds, only: wp
+  use larc_criteria, only: kinking_exposure
   use linear_softening, only: min_ratio
   use mathematical_constants, only: pi
   use matrix_exposures, only: matrix_exposure
+  use plies, only: reduced_stiffness
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
   implicit none
   private
@@ -34,8 +36,36 @@ contains
     ! Between two adjacent directions the exposure is therefore at most the larger of their exposures over the cosine of
     ! half the angle between them.
     onset_strain = (1 - nu12*nu21)*cos(pi/(2*directions))/exposure
+    if (band%kinking) onset_strain = min(onset_strain, kinking_strain(band))
     if (band%shear_beta > 0) onset_strain = 0
   end function onset_strain
+
+  !> A strain below which fibres do not kink, in the same measure: the smallest of a grid of directions, less the
+  !> variation of the exposure between two of them.
+  pure real(wp) function kinking_strain(band) result(strain)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    integer, parameter :: directions = 60
+    real(wp), parameter :: reserve = 0.9_wp
+    real(wp) :: polar, turn, e(3), exposure
+    integer :: i, j
+
+    exposure = 0
+    associate (c => band%elasticity)
+      do i = 0, directions
+        do j = 0, directions
+          polar = pi*i/directions
+          turn = pi*j/directions
+          e = [cos(polar), sin(polar)*cos(turn), sqrt(2.0_wp)*sin(polar)*sin(turn)]
+          associate (q => reduced_stiffness(c))
+            exposure = max(exposure, kinking_exposure(band%matrix%larc, &
+              max(1.0_wp, c%compression)*(q(1)*e(1) + q(2)*e(2)), q(2)*e(1) + q(3)*e(2), q(4)*e(3)))
+          end associate
+        end do
+      end do
+    end associate
+    strain = reserve/exposure
+  end function kinking_strain
 
   !> Longest element across the crack that dissipates no more than the fracture energy, in each mode; shear counts as
   !> transverse compression.

@@ -9,14 +9,15 @@
 !> 897-908, for the energy and its variables). Before the matrix cracks, nonlinear shear may reduce G12 throughout the
 !> element by the law of Hahn and Tsai.
 module crack_bands
+  use crack_band_laws, only: band_state_t, crack_band_t, create_crack_band
   use crack_closures, only: band_strains_t, remaining_t, fractions_under, find_strain_alone, compressed_share, &
                             find_recovered
   use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
-  use material_parameters, only: material_t
-  use matrix_exposures, only: matrix_strengths_t, matrix_strengths, matrix_exposure
-  use plies, only: elasticity_t, elasticity_of
-  use ply_damage_parameters, only: ply_damage_t, energy_modes, fibre_tension, fibre_compression, matrix_tension, &
+  use larc_criteria, only: frame_exposure, kinking_exposure
+  use matrix_exposures, only: matrix_exposure
+  use plies, only: elasticity_t
+  use ply_damage_parameters, only: energy_modes, fibre_tension, fibre_compression, matrix_tension, &
                                    matrix_compression
   use linear_softening, only: softening_t, linear_softening_of, more_damaged, damage_at, dissipated_by
   implicit none
@@ -29,62 +30,7 @@ module crack_bands
   integer, parameter :: max_iterations = 50
   real(wp), parameter :: damage_tolerance = 1.0e-14_wp
 
-  !> The law of a ply.
-  type :: crack_band_t
-    !> Constants without damage
-    type(elasticity_t) :: elasticity
-    !> Strengths along the fibres, tension and compression
-    real(wp) :: along(2) = 0
-    !> Those of the matrix, with the set of criteria
-    type(matrix_strengths_t) :: matrix
-    !> Energy per area of crack in each mode
-    real(wp) :: toughness(energy_modes) = 0
-    !> Residual stiffness, as a fraction
-    real(wp) :: remainder = 0
-    !> Coefficient beta of Hahn and Tsai; 0: shear is linear
-    real(wp) :: shear_beta = 0
-    !> True: shear strain beyond s12/G12 is permanent
-    logical :: permanent_shear = .false.
-    !> True: tensile cracks carry compression
-    logical :: crack_closure = .false.
-  end type crack_band_t
-
-  !> History variables of a ply in an element.
-  type :: band_state_t
-    !> Damage of fibres and matrix, from 0 to 1
-    real(wp) :: damage(2) = 0
-    !> Energy dissipated per volume in each mode
-    real(wp) :: dissipated(energy_modes) = 0
-    !> Loss of G12 by shear before matrix cracking, as a fraction
-    real(wp) :: shear_damage = 0
-    !> Permanent shear strain, and its accumulated magnitude
-    real(wp) :: permanent = 0, accumulated = 0
-    !> Part of the damage of fibres and matrix that remains when cracks close
-    real(wp) :: closed(2) = 0
-    !> Stresses carried by closed cracks, and half their product with the mean strains
-    real(wp) :: recovered(3) = 0
-  end type band_state_t
-
 contains
-
-  !> The law of a ply of a material.
-  pure function create_crack_band(material, damage) result(band)
-    !> The material, with strengths and fracture energies
-    type(material_t), intent(in) :: material
-    !> Criteria, and residual stiffness as a fraction
-    type(ply_damage_t), intent(in) :: damage
-    !> The law
-    type(crack_band_t) :: band
-
-    band%elasticity = elasticity_of(material)
-    band%along = [material%xt, merge(material%xc, material%xt, material%xc > 0)]
-    band%matrix = matrix_strengths(material, damage%criteria)
-    band%toughness = material%toughness
-    band%remainder = damage%e
-    band%shear_beta = material%shear_beta
-    band%crack_closure = damage%crack_closure
-    band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0
-  end function create_crack_band
 
   !> Permanent shear strain of a ply under trial strains, which is subtracted from these. The opening of a crack is no
   !> strain of the ply: after cracking the permanent strain is constant.
@@ -142,7 +88,8 @@ contains
     do round = 1, max_iterations
       before = new%damage
       left = remaining_fractions(band, new)
-      signs(:, 1) = fibre_softening(band, lengths(1), strains, left)
+      new%kinked = old%kinked
+      call soften_fibres(band, lengths(1), strains, left, new%kinked, signs(:, 1))
       signs(:, 2) = matrix_softening(band, lengths(2), strains, left)
       do i = 1, 2
         new%damage(i) = max(old%damage(i), damage_at(more_damaged(signs(:, i))))
@@ -324,7 +271,7 @@ contains
   end function mean_elasticity
 
   !> Softening laws of the fibres.
-  pure function fibre_softening(band, length, strains, left) result(signs)
+  pure subroutine soften_fibres(band, length, strains, left, kinked, signs)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along the fibres
@@ -333,19 +280,52 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
+    !> Compressive strength at the onset of kinking, which later loads do not change; 0: not yet
+    real(wp), intent(inout) :: kinked
     !> Of tension and compression
-    type(softening_t) :: signs(2)
-    real(wp) :: size, weights(2), energy
+    type(softening_t), intent(out) :: signs(2)
+    real(wp) :: size, weights(2), energy, stress, exposure
 
     associate (c => band%elasticity, g => band%toughness)
       call find_strain_alone(c, strains, left, 1, size, weights)
       energy = c%e1*size**2/2
+      stress = weights(2)*sqrt(c%compression)*c%e1*size
+      exposure = stress/band%along(2)
+      if (kinked > 0) then
+        exposure = stress/kinked
+      else if (band%kinking .and. stress > 0) then
+        exposure = exposure_to_kinking(band, strains, left, -stress)
+        if (exposure > 1) kinked = stress/exposure
+      end if
       signs(1) = linear_softening_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, &
                                      fibre_tension)
-      signs(2) = linear_softening_of(weights(2)*sqrt(c%compression)*c%e1*size/band%along(2), energy, &
-                                     g(fibre_compression), length, fibre_compression)
+      signs(2) = linear_softening_of(exposure, energy, g(fibre_compression), length, fibre_compression)
     end associate
-  end function fibre_softening
+  end subroutine soften_fibres
+
+  !> Exposure of compressed fibres to kinking. The stresses across the fibres and in shear are those that the damaged
+  !> matrix transfers: a failed matrix leaves XC.
+  pure real(wp) function exposure_to_kinking(band, strains, left, along) result(exposure)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> Remaining fractions of the stiffness along and across the fibres
+    type(remaining_t), intent(in) :: left
+    !> Stress along the fibres, negative
+    real(wp), intent(in) :: along
+    real(wp) :: size, weights(2), across, shear
+
+    associate (c => band%elasticity)
+      call find_strain_alone(c, strains, left, 2, size, weights)
+      across = c%e2*size*(weights(1) - weights(2))
+      across = across*merge(left%open(2), left%closed(2), across > 0)
+      shear = c%g12*sqrt(strains%shear_square)*left%open(2)
+    end associate
+    ! Below 1 its value does not matter.
+    exposure = frame_exposure(band%matrix%larc, along, across, shear)
+    if (exposure >= 1) exposure = kinking_exposure(band%matrix%larc, along, across, shear)
+  end function exposure_to_kinking
 
   !> Softening laws of the matrix.
   pure function matrix_softening(band, length, strains, left) result(signs)

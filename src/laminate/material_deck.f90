@@ -19,7 +19,8 @@ module material_deck
                                          key_density = 'density', &
                                          key_shear_strain = 'shear_failure_strain', &
                                          key_fibre_shear = 'Sf', key_shear_23 = 'Sm23', &
-                                         key_expansion = 'alpha1 alpha2', key_library = 'library'
+                                         key_expansion = 'alpha1 alpha2', key_library = 'library', &
+                                         key_compressive = 'XC'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'

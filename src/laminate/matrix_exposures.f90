@@ -2,9 +2,10 @@
 !> Puck: it is 1 at failure and proportional to the stresses.
 module matrix_exposures
   use kinds, only: wp
+  use larc_criteria, only: larc_t, larc_of, matrix_exposure_of
   use mathematical_constants, only: pi
   use material_parameters, only: material_t
-  use ply_damage_parameters, only: criteria_hashin, criteria_puck
+  use ply_damage_parameters, only: criteria_hashin, criteria_puck, criteria_larc
   implicit none
   private
   public :: matrix_strengths_t, matrix_strengths, matrix_exposure, puck_exposure, plane_exposure, &
@@ -20,8 +21,10 @@ module matrix_exposures
   type :: matrix_strengths_t
     !> Strengths across the fibres in tension and compression, in shear along and across the fibres
     real(wp) :: tension = 0, compression = 0, shear = 0, shear_across = 0
-    !> criteria_hou, criteria_hashin or criteria_puck
+    !> criteria_hou, criteria_hashin, criteria_puck or criteria_larc
     integer :: criteria = 0
+    !> Constants of criteria_larc, and of kinking
+    type(larc_t) :: larc
   end type matrix_strengths_t
 
 contains
@@ -31,13 +34,13 @@ contains
   pure function matrix_strengths(material, criteria) result(strengths)
     !> The material
     type(material_t), intent(in) :: material
-    !> criteria_hou, criteria_hashin or criteria_puck
+    !> criteria_hou, criteria_hashin, criteria_puck or criteria_larc
     integer, intent(in) :: criteria
     !> Its strengths
     type(matrix_strengths_t) :: strengths
 
     strengths = matrix_strengths_t(tension=material%yt, compression=material%yc, shear=material%s12, &
-                                   shear_across=material%s12, criteria=criteria)
+                                   shear_across=material%s12, criteria=criteria, larc=larc_of(material))
     if (criteria /= criteria_hashin) return
     strengths%shear_across = material%yc/2
     if (material%sm23 > 0) strengths%shear_across = material%sm23
@@ -53,6 +56,8 @@ contains
 
     if (strengths%criteria == criteria_puck) then
       exposure = puck_exposure(strengths, across, shear)
+    else if (strengths%criteria == criteria_larc) then
+      exposure = matrix_exposure_of(strengths%larc, across, shear)
     else if (across >= 0) then
       exposure = hypot(across/strengths%tension, shear/strengths%shear)
     else

@@ -3,7 +3,8 @@ module ply_damage_deck
   use deck_choices, only: code_of
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use ply_damage_parameters, only: ply_damage_t, criteria_hou, criteria_hashin, criteria_puck, stress_at_middle, &
+  use ply_damage_parameters, only: ply_damage_t, criteria_hou, criteria_hashin, criteria_puck, criteria_larc, &
+                                   stress_at_middle, &
                                    stress_at_faces
   implicit none
   private
@@ -11,7 +12,8 @@ module ply_damage_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ', &
-                                         key_permanent = 'permanent_shear', key_closure = 'crack_closure'
+                                         key_permanent = 'permanent_shear', key_closure = 'crack_closure', &
+                                         key_compression = 'fibre_compression'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
@@ -23,8 +25,8 @@ module ply_damage_deck
       &Divisor of the elastic constants affected by a mode of failure (Li et al., Table 2).', &
     'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
       &Smallest value of an elastic constant, as a fraction of the undamaged one.', &
-    'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck | &
-      &Set of failure criteria: those of Hou et al. (2000), of Hashin (1980) or of Puck (1998).', &
+    'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck larc | &
+      &Set of failure criteria: of Hou et al. (2000), Hashin (1980), Puck (1998), or LaRC03 (Davila et al. 2005).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
       &Where in a ply stresses are evaluated: its mid-plane, or the face with the higher failure index.', &
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
@@ -32,7 +34,9 @@ module ply_damage_deck
     'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
       &Whether nonlinear shear strain (shear_failure_strain) is permanent after unloading, which leaves a dent.', &
     'ply_damage | crack_closure | logical | 1 | - | .false. | .true. .false. | &
-      &Whether plies that failed in tension, along or across the fibres, carry compression again.']
+      &Whether plies that failed in tension, along or across the fibres, carry compression again.', &
+    'ply_damage | fibre_compression | choice | 1 | - | ''strength'' | strength kinking | &
+      &Failure of compressed fibres: at XC, or by kinking under compression and shear (Davila et al. 2005).']
 
 contains
 
@@ -45,12 +49,13 @@ contains
 
     damage%d = settings%real_of(ply_damage_group, 'd')
     damage%e = settings%real_of(ply_damage_group, 'e')
-    damage%criteria = code_of(settings%text_of(ply_damage_group, 'criteria'), 'hou hashin puck', &
-                              [criteria_hou, criteria_hashin, criteria_puck])
+    damage%criteria = code_of(settings%text_of(ply_damage_group, 'criteria'), 'hou hashin puck larc', &
+                              [criteria_hou, criteria_hashin, criteria_puck, criteria_larc])
     damage%stress = code_of(settings%text_of(ply_damage_group, 'stress'), 'middle faces', &
                             [stress_at_middle, stress_at_faces])
     damage%in_situ = settings%logical_of(ply_damage_group, key_in_situ)
     damage%permanent_shear = settings%logical_of(ply_damage_group, key_permanent)
     damage%crack_closure = settings%logical_of(ply_damage_group, key_closure)
+    damage%kinking = code_of(settings%text_of(ply_damage_group, key_compression), 'strength kinking', [1, 2]) == 2
   end subroutine fill_ply_damage
 end module ply_damage_deck

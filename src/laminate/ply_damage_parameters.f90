@@ -7,9 +7,10 @@ module ply_damage_parameters
 
   !> Ways a ply fails (Table 1 of the paper), and their number.
   integer, parameter, public :: fibre_failure = 1, matrix_cracking = 2, matrix_crushing = 3, failure_modes = 3
-  !> Sets of failure criteria: those of Hou et al. (Table 1), of Hashin (1980), of Puck (1998).
+  !> Sets of failure criteria: those of Hou et al. (Table 1), of Hashin (1980), of Puck (1998), of Davila et
+  !> al. (2005).
   integer, parameter, public :: criteria_hou = 1
-  integer, parameter, public :: criteria_hashin = 2, criteria_puck = 3
+  integer, parameter, public :: criteria_hashin = 2, criteria_puck = 3, criteria_larc = 4
 
   !> Modes in which plies with fracture energies dissipate, the order of their toughnesses, and their number.
   integer, parameter, public :: fibre_tension = 1, fibre_compression = 2, matrix_tension = 3, matrix_compression = 4, &
@@ -21,8 +22,8 @@ module ply_damage_parameters
 
   !> Properties that must be equal in two runs for one to start with the damage of the other, by their names in the
   !> deck.
-  character(len=*), parameter, public :: damage_names(*) = [character(len=15) :: 'd', 'e', 'criteria', 'stress', &
-    'in_situ', 'permanent_shear', 'crack_closure']
+  character(len=*), parameter, public :: damage_names(*) = [character(len=17) :: 'd', 'e', 'criteria', 'stress', &
+    'in_situ', 'permanent_shear', 'crack_closure', 'fibre_compression']
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
@@ -30,7 +31,7 @@ module ply_damage_parameters
     real(wp) :: d = 100
     !> Smallest value of an elastic constant, as a fraction of the undamaged one
     real(wp) :: e = 1.0e-3_wp
-    !> criteria_hou, criteria_hashin or criteria_puck
+    !> criteria_hou, criteria_hashin, criteria_puck or criteria_larc
     integer :: criteria = criteria_hou
     !> stress_at_middle or stress_at_faces
     integer :: stress = stress_at_middle
@@ -40,6 +41,8 @@ module ply_damage_parameters
     logical :: permanent_shear = .false.
     !> True: tensile cracks carry compression
     logical :: crack_closure = .false.
+    !> True: compressed fibres fail by kinking, otherwise at XC
+    logical :: kinking = .false.
   end type ply_damage_t
 
 contains
@@ -51,7 +54,8 @@ contains
     !> One a name
     real(wp) :: numbers(size(damage_names))
 
-    numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, merge(1, 0, [damage%in_situ, &
-                                                          damage%permanent_shear, damage%crack_closure])], wp)]
+    numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, &
+                                         merge(1, 0, [damage%in_situ, damage%permanent_shear, damage%crack_closure, &
+                                                      damage%kinking])], wp)]
   end function numbers_of
 end module ply_damage_parameters

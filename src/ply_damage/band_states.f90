@@ -152,19 +152,21 @@ contains
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer, parameter :: numbers = 3 + energy_modes
-    real(wp), dimension(:, :), allocatable :: table, strains, closed
+    real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked
     integer :: element, ply
 
     ! A column has all plies of the laminate, so that, when an element is split into layers, each layer can read its
     ! plies from the column of the undivided element.
     allocate (table(numbers*size(model%plies), size(self%offset)), strains(2*size(model%plies), size(self%offset)), &
-              closed(2*size(model%plies), size(self%offset)), source=0.0_wp)
+              closed(2*size(model%plies), size(self%offset)), kinked(size(model%plies), size(self%offset)), &
+              source=0.0_wp)
     do element = 1, size(self%offset)
       do ply = self%range(1, element), self%range(2, element)
         associate (state => self%accepted(self%offset(element) + ply))
           table((ply - 1)*numbers + 1:ply*numbers, element) = [state%damage, state%shear_damage, state%dissipated]
           strains(2*ply - 1:2*ply, element) = [state%permanent, state%accumulated]
           closed(2*ply - 1:2*ply, element) = state%closed
+          kinked(ply, element) = state%kinked
         end associate
       end do
     end do
@@ -173,6 +175,8 @@ contains
       call archive%field('ply_failure/permanent_shear', model%distribution%elements, model%mesh%elements(), strains)
     if (model%setup%ply_damage%crack_closure) &
       call archive%field('ply_failure/closed_cracks', model%distribution%elements, model%mesh%elements(), closed)
+    if (model%setup%ply_damage%kinking) &
+      call archive%field('ply_failure/kinked_fibres', model%distribution%elements, model%mesh%elements(), kinked)
     if (.not. archive%loading) return
     do element = 1, size(self%offset)
       do ply = self%range(1, element), self%range(2, element)
@@ -180,7 +184,7 @@ contains
                    shear => strains(2*ply - 1:2*ply, element))
           self%accepted(self%offset(element) + ply) = &
             band_state_t(damage=values(1:2), shear_damage=values(3), dissipated=values(4:), permanent=shear(1), &
-                         accumulated=shear(2), closed=closed(2*ply - 1:2*ply, element))
+                         accumulated=shear(2), closed=closed(2*ply - 1:2*ply, element), kinked=kinked(ply, element))
         end associate
       end do
     end do

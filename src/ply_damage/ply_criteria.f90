@@ -43,7 +43,8 @@ contains
         else
           stresses = spread(middle_stress(ply, elasticity(i), strains(:6), shear(:, i)), 2, 1)
         end if
-        measures(:, i) = chosen_indices(setup%ply_damage%criteria, setup%materials(ply%material), stresses)
+        measures(:, i) = chosen_indices(setup%ply_damage%criteria, setup%materials(ply%material), stresses, &
+                                        setup%ply_damage%kinking)
       end associate
     end do
     measures = sqrt(max(measures, 0.0_wp))

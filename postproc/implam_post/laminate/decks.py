@@ -60,6 +60,13 @@ def _materials(deck: Deck) -> dict[str, Material]:
     return materials
 
 
+def bending_modulus(tension: float, compression: float) -> float:
+    """Return the one modulus of a beam in bending that has two moduli, or the modulus itself if both are equal."""
+    if tension == compression or min(tension, compression) <= 0:
+        return tension
+    return float(4 * tension * compression / (tension**0.5 + compression**0.5) ** 2)
+
+
 def _material(deck: Deck, group: Group) -> Material:
     """Return one ply material, isotropic if the group gives E and nu."""
     def number(key: str, default: float | None = None) -> float:
@@ -82,8 +89,10 @@ def _material(deck: Deck, group: Group) -> Material:
                             expansion=expansion)
     else:
         shear = number("G12")
-        material = Material(density, number("E1"), number("E2"), shear, number("G13", shear), number("G23"),
-                            number("nu12"), name, strengths, expansion=expansion)
+        tension = number("E1")
+        along = bending_modulus(tension, number("E1c", tension))
+        material = Material(density, along, number("E2"), shear, number("G13", shear), number("G23"),
+                            number("nu12") * along / tension if tension else 0.0, name, strengths, expansion=expansion)
     if min(material.e1, material.e2, material.g12, material.g13, material.g23) <= 0 or (
             density < 0 or (moves and density == 0)):
         raise deck.error("material", "density and moduli must be greater than zero.")

@@ -20,7 +20,7 @@ _DIMENSIONS = {**_WORDS,
                **dict.fromkeys(("radius", "thicknesses", "ply_thickness", "patch", "cell", "starter"), "length"),
                **dict.fromkeys(("end", "step", "step_max"), "time"),
                **dict.fromkeys(("g_c", "g_ic", "g_iic"), "toughness")}
-_OF_MATERIAL = dict.fromkeys(("e", "e1", "e2", "g12", "g13", "g23", "xt", "xc", "yt", "yc", "s12"), "stress")
+_OF_MATERIAL = dict.fromkeys(("e", "e1", "e1c", "e2", "g12", "g13", "g23", "xt", "xc", "yt", "yc", "s12"), "stress")
 
 
 def plot_table(table: Table, folder: Path) -> list[Path]:
