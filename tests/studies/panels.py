@@ -9,8 +9,8 @@ Panels, with what was measured, are in panels/panels.toml. A job is one draw of 
 panel has one the compression of the struck plate. Inputs are drawn within their usual tolerances
 (doc/manual/scatter.md), those of a range uniformly within it; the seed decides. A completed job is a row of
 panels/rows.csv, and is not repeated as long as decks and inputs are the same, so that the command can be stopped at any
-time and continued. Rows of other decks are kept, and are not used. The impact is not repeated for a variant that
-changes the compression only."""
+time and continued. Rows of earlier decks are kept; the page shows the last ones, and says so, until there are rows of
+the present decks. The impact is not repeated for a variant that changes the compression only."""
 
 import argparse
 import csv
@@ -56,9 +56,14 @@ def read_rows():
 
 
 def usable(rows, panels):
-    """Return the rows of the present decks and inputs."""
-    return [row for row in rows if row["panel"] in panels
-            and row["inputs"] == digest(panels[row["panel"]], row["variant"])]
+    """Return the rows of the present decks; of a panel without any the last ones, with the mark `earlier`."""
+    found = []
+    for name, panel in panels.items():
+        for variant in ("", *panel.get("variants", {})):
+            own = [row for row in rows if (row["panel"], row["variant"]) == (name, variant)]
+            present = [row for row in own if row["inputs"] == digest(panel, variant)]
+            found += present or [row | {"earlier": "yes"} for row in own if row["inputs"] == own[-1]["inputs"]]
+    return found
 
 
 def append_row(row):

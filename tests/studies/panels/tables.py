@@ -91,13 +91,15 @@ def panel_lines(name, panel, rows):
 def cost_of(rows):
     """Return the number of runs and their cost."""
     if not rows:
-        return "No run of these decks yet."
+        return "No run yet."
     hours = number(sum(float(row["minutes"]) for row in rows) / 60, 2)
-    return f"Runs: {len(rows)}, {hours} hours of one core."
+    state = ", of the decks before their last change" if any("earlier" in row for row in rows) else ""
+    return f"Runs: {len(rows)}, {hours} hours of one core{state}."
 
 
 def variant_lines(name, panel, rows):
     """Return the differences of the variants of a panel from the deck as it is, over pairs of equal seeds."""
+    rows = [row for row in rows if "earlier" not in row]
     base = {row["seed"]: row for row in rows if row["panel"] == name and not row["variant"]}
     quantities = [*(entry["of"] for entry in panel["measured"]), *panel.get("shown", [])]
     lines = []

@@ -64,6 +64,14 @@ class Jobs(unittest.TestCase):
                 self.assertEqual([job.energy for job in panels.jobs_of(options, {"p": panel})], expected)
         self.assertNotEqual(panels.digest(panel, ""), panels.digest(panel | {"set": {"mesh.cell": "1e-3"}}, ""))
 
+    def test_earlier_decks(self):
+        """Rows of earlier decks are used and marked while there are none of the present ones."""
+        panel = {"deck": "hs160_rem_0_90.nml"}
+        old, older = ({"panel": "p", "variant": "", "inputs": inputs} for inputs in ("old", "older"))
+        new = old | {"inputs": panels.digest(panel, "")}
+        self.assertEqual(panels.usable([older, old], {"p": panel}), [old | {"earlier": "yes"}])
+        self.assertEqual(panels.usable([old, new], {"p": panel}), [new])
+
     def test_decks(self):
         """Every panel has decks, its drawn inputs are in them, and equal seeds draw equal decks."""
         from jobs import Job, decks_of
