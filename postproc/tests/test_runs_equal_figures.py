@@ -180,7 +180,7 @@ class EqualFiguresTest(unittest.TestCase):
     def check_log(self, found: Run, summary: Mapping[str, float | None]) -> None:
         """Compare the log."""
         log, = found.base.parent.glob("*.log")
-        block = log.read_text(encoding="utf-8").rpartition("\nSummary, in the units of the deck")[2].splitlines()[1:]
+        block = re.split(r"^Summary", log.read_text(encoding="utf-8"), flags=re.MULTILINE)[-1].splitlines()[1:]
         system, prefix, entries = found.system, "", {str(entry["ply_above"]): place for place, entry in enumerate(
             found.summary.get("interfaces", []))}
         printed_in_units = not re.search(r"at time ", "\n".join(block))

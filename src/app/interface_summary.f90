@@ -27,11 +27,6 @@ contains
     type(run_figures_t), intent(in) :: figures
     integer :: zone
 
-    call json%put('delaminated_area', sum(figures%interfaces%area))
-    call json%put('projected_area', figures%projected_area)
-    call put_first('onset', record%earliest(record%onset))
-    call put_first('first_growth', record%earliest(record%growth))
-    if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
     call json%open_list('interfaces')
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
@@ -50,24 +45,6 @@ contains
       end associate
     end do
     call json%close()
-
-  contains
-
-    !> Time and force of the first event of all interfaces.
-    subroutine put_first(name, event)
-      !> Its name
-      character(len=*), intent(in) :: name
-      !> Time, contact force, deflection; time 0: never
-      real(wp), intent(in) :: event(3)
-
-      if (event(1) > 0) then
-        call json%put(name//'_at', event(1))
-        if (deck%has_impactor) call json%put(name//'_force', event(2))
-      else
-        call json%put_null(name//'_at')
-        if (deck%has_impactor) call json%put_null(name//'_force')
-      end if
-    end subroutine put_first
   end subroutine put_interfaces
 
   !> Time, force and deflection of an event.

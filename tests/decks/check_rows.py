@@ -17,7 +17,7 @@ SRC = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "src"
 # Texts that are no names of keys: file, texts, reason. An entry without its text in the file is a breach, too.
 OTHERS = (
     ("app/material_explain.f90", "materials", "the list of materials that `implam explain` is asked for"),
-    ("app/result_explain.f90", "history fields", "tables of results that `implam explain` is asked for"),
+    ("app/result_explain.f90", "history fields summary", "tables of results that `implam explain` is asked for"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
     ("app/summary_file.f90", "angle at force", "a name in NAME_summary.json"),
