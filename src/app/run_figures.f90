@@ -4,7 +4,7 @@ module run_figures
   use delamination_parameters, only: toughnesses
   use dent_depths, only: dent_depth
   use errors, only: error_t, exit_done, exit_stopped
-  use failed_plies_areas, only: failed_areas
+  use failed_plies_areas, only: failed_areas, failed_counts
   use interface_figures, only: figures_of, interface_figures_t
   use kinds, only: wp
   use line_columns, only: pressed_axis
@@ -64,7 +64,7 @@ contains
     figures%interfaces = figures_of(model, now%interfaces)
     figures%projected_area = now%interfaces%projected_area(model)
     figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
-    figures%failures = now%plies%counts(model)
+    figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)
     along = pressed_axis(model)
     if (along > 0) then
@@ -73,7 +73,7 @@ contains
       figures%thickness = model%thickness
     end if
     zones = size(figures%interfaces)
-    bending = effective_bending_stiffness(model%section%stiffness)
+    bending = effective_bending_stiffness(model%bending_section%stiffness)
     allocate (figures%threshold(zones))
     do zone = 1, zones
       toughness = toughnesses(model%setup%delaminations(zone))

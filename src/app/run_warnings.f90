@@ -1,7 +1,7 @@
 !> Warnings of a run that exceeds limits of the model. Each is given once, in the log at that time and in the summary at
 !> the end.
 module run_warnings
-  use failed_plies_areas, only: failed_areas
+  use failed_plies_areas, only: failed_areas, failed_counts
   use deck_contents, only: deck_t
   use delamination_parameters, only: delamination_t
   use energy_checks, only: energy_check_t, energy_created, energy_dissipated, energy_imbalance
@@ -272,7 +272,7 @@ contains
     real(wp), allocatable :: areas(:, :)
 
     is_perforated = .false.
-    counts = now%plies%counts(model)
+    counts = failed_counts(model, now%plies)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
     is_perforated = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounding))
@@ -289,7 +289,7 @@ contains
 
     has_fibre_failure = .false.
     if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
-    counts = now%plies%counts(model)
+    counts = failed_counts(model, now%plies)
     has_fibre_failure = counts(fibre_failure) > 0
   end function has_fibre_failure
 

@@ -17,6 +17,7 @@ module deck_process_zones
   use plies, only: ply_t
   use process_zones, only: process_zone_t, process_zone_warning, resolved_part
   use scale_tables, only: length_unit, length_unit_size
+  use mean_stiffnesses, only: in_bending
   use stacking, only: stacked_plies, section_stiffness
   implicit none
   private
@@ -105,7 +106,7 @@ contains
     type(ply_t), allocatable :: plies(:), layer(:)
     real(wp) :: toughness(2), bending(6), cells(2), extents(2)
 
-    plies = stacked_plies(deck%laminate, deck%materials)
+    plies = in_bending(stacked_plies(deck%laminate, deck%materials))
     layer = plies(:delamination%below_ply)
     zone%thickness = thickness_of(layer)
     if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)

@@ -15,6 +15,7 @@ module element_steps
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use setups, only: setup_t
+  use section_bounds, only: largest_stiffness
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   implicit none
   private
@@ -43,10 +44,10 @@ contains
     if (allocated(error)) return
     plies = new_ply_failure(model)
     scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
-    call highest_element_frequency(model, plies%stiffness, scaling, frequency, element, of_elements)
+    call highest_element_frequency(model, largest_stiffness(plies), scaling, frequency, element, of_elements)
     if (present(slope)) then
       do direction = 1, 2
-        frequency = max(frequency, stiffened_frequency(model, plies%stiffness, of_elements, &
+        frequency = max(frequency, stiffened_frequency(model, largest_stiffness(plies), of_elements, &
                                                        sloped_motion(model, slope, direction)))
       end do
     end if

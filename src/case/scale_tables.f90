@@ -5,7 +5,8 @@ module scale_tables
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use material_parameters, only: material_t
-  use plies, only: ply_t
+  use mean_stiffnesses, only: bending_error_of
+  use plies, only: is_bimodular, ply_t
   use ply_blocks, only: block_of
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
@@ -57,6 +58,7 @@ contains
     end if
     associate (o => deck%expected, scales => deck%expected%scales)
       call put('thickness of the laminate', scales%thickness, length)
+      call put_sub_plies(stacked_plies(deck%laminate, deck%materials))
       call put('mass of the plate', scales%plate_mass, mass)
       call put('period of the first bending mode', scales%first_period, time)
       call put('delamination threshold force (closed form)', scales%threshold, force)
@@ -100,6 +102,17 @@ contains
       end if
       call append(lines, table_line(name, number, unit_of(deck, dimension)))
     end subroutine put
+
+    !> Adds the number of sub-plies where moduli in tension and compression differ, and the error that is left.
+    subroutine put_sub_plies(plies)
+      !> The plies
+      type(ply_t), intent(in) :: plies(:)
+
+      if (.not. any(is_bimodular(plies%elasticity))) return
+      call put('sub-plies of the ply that has most (E1c)', real(maxval(plies%sub_plies), wp), bare)
+      call put('error of the bending stiffness by their thickness', &
+               100*maxval(bending_error_of(plies, deck%expected%scales%thickness)), percent)
+    end subroutine put_sub_plies
   end function scale_lines
 
   !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a

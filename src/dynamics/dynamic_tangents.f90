@@ -51,6 +51,8 @@ contains
       tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
                                                                                 .or. model%has_point_stiffness)
       tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)
+      ! The operator has the compressive modulus for all strains of a compressed ply, the tangent for their mean.
+      tangent%elements = tangent%elements .or. model%setup%is_bimodular()
       if (model%has_point_stiffness) &
         call tangent%set_jump_stiffness(operator%added, current_stiffness, new%interfaces%cohesive%cohesive, &
                                         factors(1)*new%interfaces%cohesive%tangents_at( &
@@ -75,6 +77,7 @@ contains
     tangent%displacement => at%new%motion%displacement
     tangent%stiffness => at%new%plies%stiffness
     if (allocated(at%new%plies%free)) tangent%free => at%new%plies%free
+    if (allocated(at%new%plies%mean_change)) tangent%mean_change => at%new%plies%mean_change
     tangent%stiffness_factor = factors(1)
     tangent%mass_factor = factors(2)
     if (abs(factors(2)/at%operator%mass_factor - 1) > mass_precision) &
@@ -90,7 +93,7 @@ contains
     !> Factor of mass in the tangent
     real(wp), intent(in) :: mass_factor
 
-    exact = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_ply_damage
+    exact = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_variable_sections()
     if (exact) exact = abs(operator%mass_factor/mass_factor - 1) <= mass_precision
   end function is_exact
 

@@ -21,6 +21,7 @@ module central_differences
   use rank_totals, only: total_of
   use rig_steps, only: add_clamp_forces, create_rig_steps
   use plate_options, only: kinematics_von_karman
+  use section_bounds, only: largest_stiffness
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
   use stack_motions, only: move_stacks, new_workspaces
@@ -103,7 +104,8 @@ contains
     scaling = create_inertia_scaling(model%setup, parameters%mass_scaling)
     self%inertia = create_nodal_inertia(model, scaling)
     call self%inertia%invert(0.0_wp)
-    call highest_element_frequency(model, now%plies%stiffness, scaling, self%frequency, self%element, self%of_elements)
+    call highest_element_frequency(model, largest_stiffness(now%plies), scaling, self%frequency, self%element, &
+                                   self%of_elements)
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%workspaces = new_workspaces(self%stacks)
@@ -145,7 +147,7 @@ contains
     real(wp) :: frequency, square
 
     if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, steps_between_frequencies) == 0) then
-      frequency = stiffened_frequency(model, now%plies%stiffness, self%of_elements, self%motion)
+      frequency = stiffened_frequency(model, largest_stiffness(now%plies), self%of_elements, self%motion)
       if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
         self%stiffened = stiffened_reserve*frequency
     end if
@@ -242,6 +244,7 @@ contains
     call self%circles%prepare(model, self%inertia%inverse(7, :))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
+    if (allocated(self%intact)) deallocate (self%intact)
     self%prepared = self%steps
   end subroutine prepare
 
@@ -356,6 +359,7 @@ contains
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
+    if (allocated(self%intact)) deallocate (self%intact)
     call separate_constrained_points(self)
     self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()

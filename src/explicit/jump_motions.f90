@@ -18,7 +18,7 @@ module jump_motions
   use weighted_jumps, only: memory
   implicit none
   private
-  public :: advance_intact, advance_points
+  public :: advance_intact, advance_points, start_damage
 
 contains
 
@@ -35,8 +35,7 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    type(cohesive_surfaces_t) :: surfaces
-    real(wp) :: change(3), k(3), jump(3), traction(3)
+    real(wp) :: change(3), jump(3)
     integer :: j, p
 
     associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps)
@@ -44,15 +43,37 @@ contains
         p = stacks%first(i) + j
         change = steps%now*v(1:3, p)
         jump = u(1:3, p) + change
-        k = stacks%stiffness([1, 1, 2], p)
         ! Work beyond the stored energy k (jump**2 - u**2)/2.
         history%lost(2, p) = history%lost(2, p) + work_of(stacks, p, steps, forces(:, j), change) &
-                             - sum(k*change*(u(1:3, p) + jump))/2
+                             - sum(stacks%stiffness([1, 1, 2], p)*change*(u(1:3, p) + jump))/2
         u(1:3, p) = jump
         call history%record(p, forces(:, j), change)
-        if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
-        surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
-        associate (point => cohesive%points(p))
+      end do
+      call start_damage(stacks, i, model, cohesive, u)
+    end associate
+  end subroutine advance_intact
+
+  !> Finds the onset of damage of a stack at the jumps at the end of a step.
+  subroutine start_damage(stacks, i, model, cohesive, u)
+    !> The stacks; the stack is damaged if an interface is
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> Index of the stack
+    integer, intent(in) :: i
+    type(model_t), intent(in) :: model
+    !> The interfaces
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    type(cohesive_surfaces_t) :: surfaces
+    real(wp) :: k(3), traction(3)
+    integer :: p
+
+    associate (history => stacks%history, from => stacks%first(i) + 1, to => stacks%first(i) + stacks%layers(i) - 1)
+      do p = from, to
+        k = stacks%stiffness([1, 1, 2], p)
+        associate (jump => u(1:3, p), point => cohesive%points(p))
+          if (k(1)*(jump(1)**2 + jump(2)**2) + k(3)*max(jump(3), 0.0_wp)**2 < stacks%min_onset(p)) cycle
+          surfaces = cohesive%surfaces_of(model, model%zone(p), cohesive%strength(p))
           point%sliding%slip = jump(1:2)
           call surfaces%traction(jump, cohesive_point_t(sliding=point%sliding), traction, point)
           history%lost(2, p) = history%lost(2, p) + sum(k*jump**2)/2 &
@@ -61,15 +82,14 @@ contains
         end associate
       end do
       if (.not. stacks%damaged(i)) return
-      do j = 1, size(forces, 2)
-        p = stacks%first(i) + j
+      do p = from, to
         cohesive%points(p)%sliding%slip = u(1:2, p)
         associate (last => history%change(:, p))
           history%work(p) = sum(stacks%stiffness([1, 1, 2], p)*last*(u(1:3, p) - last/2))
         end associate
       end do
     end associate
-  end subroutine advance_intact
+  end subroutine start_damage
 
   !> Updates jumps, damage and friction of a damaged stack, and records the work of the tractions.
   subroutine advance_points(nodes, i, model, forces, cohesive, u, v)

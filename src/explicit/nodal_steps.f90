@@ -1,6 +1,7 @@
 !> Data that determine the motion of the nodes in a step by central differences: inertia, forces, interfaces, and
 !> constraints.
 module nodal_steps
+  use intact_stacks, only: intact_batch_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use line_steps, only: line_steps_t
@@ -20,6 +21,12 @@ module nodal_steps
     real(wp), allocatable :: force(:, :)
     !> Nodes with several layers
     type(interface_stacks_t) :: stacks
+    !> Undamaged stacks on no frame and no line; unallocated: to be found for the step
+    type(intact_batch_t), allocatable :: intact(:)
+    !> Indices of the other stacks
+    integer, allocatable :: others(:)
+    !> Number of damaged stacks when both were found
+    integer :: damaged = 0
     !> Work arrays of stacks, one for each number of interfaces
     type(stack_t), allocatable :: workspaces(:)
     !> Lines

@@ -2,8 +2,10 @@
 module stack_motions
   use cohesive_interfaces, only: cohesive_interfaces_t
   use damaged_stacks, only: load_stack, solve_damaged
+  use element_batches, only: lanes
+  use intact_stacks, only: create_intact_batches, move_intact
   use interface_stacks, only: interface_stacks_t
-  use jump_motions, only: advance_intact, advance_points
+  use jump_motions, only: advance_intact, advance_points, start_damage
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, traction_resultant, accelerate_by_tractions, to_layers
   use line_steps, only: line_steps_t
@@ -43,13 +45,46 @@ contains
     !> The interfaces; receive the growth of damage
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
-    real(wp), intent(inout) :: u(:, :), v(:, :)
-    integer :: i
+    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
+    logical :: reaches_onset(lanes)
+    integer :: i, b, lane
 
-    do i = 1, size(nodes%stacks%first)
-      call move_stack(nodes, i, model, cohesive, u, v)
+    if (allocated(nodes%intact) .and. count(nodes%stacks%damaged) > nodes%damaged) deallocate (nodes%intact)
+    if (.not. allocated(nodes%intact)) call separate_stacks(nodes)
+    do b = 1, size(nodes%intact)
+      call move_intact(nodes%intact(b), nodes%steps, nodes%force, nodes%stacks, u, v, reaches_onset)
+      if (.not. any(reaches_onset)) cycle
+      do lane = 1, lanes
+        if (.not. reaches_onset(lane)) cycle
+        if (lane > 1) then
+          if (nodes%intact(b)%stack(lane) == nodes%intact(b)%stack(lane - 1)) exit
+        end if
+        call start_damage(nodes%stacks, nodes%intact(b)%stack(lane), model, cohesive, u)
+      end do
+    end do
+    do i = 1, size(nodes%others)
+      call move_stack(nodes, nodes%others(i), model, cohesive, u, v)
     end do
   end subroutine move_stacks
+
+  !> Separates undamaged stacks on no frame and no line from the others.
+  pure subroutine separate_stacks(nodes)
+    !> The nodes
+    type(nodal_steps_t), intent(inout) :: nodes
+    logical :: is_other(size(nodes%stacks%first))
+    integer :: i, p
+
+    do i = 1, size(is_other)
+      associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
+        is_other(i) = nodes%stacks%damaged(i) .or. nodes%rigs%on_frame(first)
+        if (size(nodes%lines%dofs) == 0) cycle
+        is_other(i) = is_other(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
+      end associate
+    end do
+    nodes%damaged = count(nodes%stacks%damaged)
+    nodes%others = pack([(i, i=1, size(is_other))], is_other)
+    nodes%intact = create_intact_batches(nodes%stacks, nodes%inertia, pack([(i, i=1, size(is_other))], .not. is_other))
+  end subroutine separate_stacks
 
   !> Updates one stack.
   subroutine move_stack(nodes, i, model, cohesive, u, v)

@@ -9,7 +9,7 @@ module weighted_jumps
   use kinds, only: wp
   implicit none
   private
-  public :: memory, newest, past_jumps, past_openings
+  public :: memory, newest, past_weights, past_jumps, past_openings
 
   !> Factor per step by which motions of stiff springs decay, the spectral radius. With 0.5 and 0.8 instead of 0.9
   !> `energy_algorithmic` is up to 3 and 1.5 times larger, with the same areas and forces
@@ -21,6 +21,9 @@ module weighted_jumps
   real(wp), parameter :: weights(0:3) = [1.0_wp, 2*r + q, r**2 + 2*r*q, r**2*q]/((1 + r)**2*(1 + q))
   !> Weight of the jumps at the end of the step
   real(wp), parameter :: newest = weights(0)
+  !> Contribution of earlier jumps to the weighted mean: factor of the jump at the start of the step, and minus those of
+  !> its changes in the two steps before
+  real(wp), parameter :: past_weights(3) = [1 - weights(0), weights(2) + weights(3), weights(3)]
   !> Number of steps whose forces depend on a jump
   integer, parameter :: memory = size(weights)
 
@@ -31,7 +34,7 @@ contains
     !> Jump at the start of the step, its change in the step before, and its change in the step before that
     real(wp), intent(in) :: start, change, earlier
 
-    past_jumps = (1 - weights(0))*start - (weights(2) + weights(3))*change - weights(3)*earlier
+    past_jumps = past_weights(1)*start - past_weights(2)*change - past_weights(3)*earlier
   end function past_jumps
 
   !> The same for openings. Negative openings are carried by contact and do not contribute.

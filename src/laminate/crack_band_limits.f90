@@ -24,7 +24,7 @@ contains
 
     nu12 = abs(band%elasticity%nu12)
     nu21 = nu12*band%elasticity%e2/band%elasticity%e1
-    exposure = band%elasticity%e1*sqrt(1 + nu21**2)/minval(band%along)
+    exposure = max(1.0_wp, band%elasticity%compression)*band%elasticity%e1*sqrt(1 + nu21**2)/minval(band%along)
     do i = 1, directions
       angle = pi*(i - 0.5_wp)/directions
       exposure = max(exposure, matrix_exposure(band%matrix, cos(angle)*band%elasticity%e2*sqrt(1 + nu12**2), &
@@ -47,7 +47,7 @@ contains
     real(wp) :: energies(energy_modes)
 
     associate (c => band%elasticity, m => band%matrix)
-      energies(:2) = band%along**2/(2*c%e1)
+      energies(:2) = band%along**2/(2*c%e1*[1.0_wp, c%compression])
       energies(matrix_tension) = m%tension**2/(2*c%e2)
       energies(matrix_compression) = max(m%compression**2/(2*c%e2), m%shear**2/(2*c%g12) + &
                                                                     band%shear_beta*m%shear**4/2)

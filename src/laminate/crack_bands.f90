@@ -9,8 +9,8 @@
 !> 897-908, for the energy and its variables). Before the matrix cracks, nonlinear shear may reduce G12 throughout the
 !> element by the law of Hahn and Tsai.
 module crack_bands
-  use crack_closures, only: band_strains_t, remaining_t, remaining_stiffness_under, find_strain_alone, &
-                            compressed_share, find_recovered
+  use crack_closures, only: band_strains_t, remaining_t, fractions_under, find_strain_alone, compressed_share, &
+                            find_recovered
   use hahn_tsai, only: shear_loss, energy_of_loss, shear_flow, energy_of_flow
   use kinds, only: wp
   use material_parameters, only: material_t
@@ -22,7 +22,7 @@ module crack_bands
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, flow_band, soften_band, &
-            degraded_elasticity, energy_of_shear, is_damaged, stiffness_lost
+            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, stiffness_lost
 
   !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
   !> iterations are usual.
@@ -141,7 +141,7 @@ contains
 
     do round = 1, max_iterations
       before = new%damage
-      left = remaining_fractions(band, strains, new)
+      left = remaining_fractions(band, new)
       signs(:, 1) = fibre_softening(band, lengths(1), strains, left)
       signs(:, 2) = matrix_softening(band, lengths(2), strains, left)
       do i = 1, 2
@@ -163,7 +163,7 @@ contains
       new%dissipated = new%dissipated + recorded
     end do
     if (band%crack_closure) &
-      new%recovered = find_recovered(band%elasticity, strains%mean, remaining_fractions(band, strains, new))
+      new%recovered = find_recovered(band%elasticity, strains, remaining_fractions(band, new))
   end subroutine find_damage
 
   !> Energy per volume dissipated by permanent shear strains of a ply.
@@ -225,8 +225,7 @@ contains
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 
-      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, &
-                               remaining_fractions(band, strains, old))
+      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, remaining_fractions(band, old))
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
@@ -292,22 +291,37 @@ contains
     left = 1 - (1 - band%remainder)*damage
   end function remaining_stiffness
 
-  !> Remaining fractions of the stiffness of a state under strains.
-  pure function remaining_fractions(band, strains, state) result(left)
+  !> Remaining fractions of the stiffness of a state.
+  pure function remaining_fractions(band, state) result(left)
     !> The law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the ply
-    type(band_strains_t), intent(in) :: strains
     !> The ply
     type(band_state_t), intent(in) :: state
     !> The parts
     type(remaining_t) :: left
 
     left = remaining_t(remaining_stiffness(band, state%damage), remaining_stiffness(band, state%damage))
-    if (band%crack_closure) &
-      left = remaining_stiffness_under(band%elasticity, strains%mean, left%open, &
-                                       remaining_stiffness(band, state%closed))
+    if (band%crack_closure) left%closed = remaining_stiffness(band, state%closed)
   end function remaining_fractions
+
+  !> Elastic constants of a state for mean strains.
+  pure function mean_elasticity(band, state, mean) result(elasticity)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> The ply
+    type(band_state_t), intent(in) :: state
+    !> Mean strains along and across the fibres
+    real(wp), intent(in) :: mean(2)
+    !> The constants
+    type(elasticity_t) :: elasticity
+    real(wp) :: left(2)
+
+    left = fractions_under(band%elasticity, mean, remaining_fractions(band, state))
+    elasticity = degraded_elasticity(band, state)
+    elasticity%e1 = band%elasticity%e1*left(1)
+    elasticity%nu12 = band%elasticity%nu12*left(1)
+    elasticity%e2 = band%elasticity%e2*left(2)
+  end function mean_elasticity
 
   !> Softening laws of the fibres.
   pure function fibre_softening(band, length, strains, left) result(signs)
@@ -328,8 +342,8 @@ contains
       energy = c%e1*size**2/2
       signs(1) = linear_softening_of(weights(1)*c%e1*size/band%along(1), energy, g(fibre_tension), length, &
                                      fibre_tension)
-      signs(2) = linear_softening_of(weights(2)*c%e1*size/band%along(2), energy, g(fibre_compression), length, &
-                                     fibre_compression)
+      signs(2) = linear_softening_of(weights(2)*sqrt(c%compression)*c%e1*size/band%along(2), energy, &
+                                     g(fibre_compression), length, fibre_compression)
     end associate
   end function fibre_softening
 

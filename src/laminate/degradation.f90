@@ -35,6 +35,7 @@ contains
     elasticity%g13 = original%g13*fibre
     elasticity%g23 = original%g23*fibre
     elasticity%nu12 = original%nu12*matrix
+    elasticity%compression = original%compression
   end function degraded
 
   !> Fraction of a constant that is left.

@@ -20,7 +20,7 @@ module laminate_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses', &
-                                         key_correction = 'shear_correction'
+                                         key_correction = 'shear_correction', key_bending_error = 'bending_error'
   !> Names used here more than once.
   character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking', key_ply_thickness = 'ply_thickness'
   !> Row of the group.
@@ -39,7 +39,9 @@ module laminate_deck
     'laminate | ply_thickness | real | 1 | length | none | > 0 | &
       &Thickness of every ply of stacking.', &
     'laminate | shear_correction | choice | 1 | - | = energy if shear moduli differ tenfold, else 5/6 | 5/6 energy | &
-      &Correction of the transverse shear stiffness: the factor 5/6, or equal shear energy.']
+      &Correction of the transverse shear stiffness: the factor 5/6, or equal shear energy.', &
+    'laminate | bending_error | real | 1 | - | 0.005 | >= 1e-6, <= 1 | &
+      &Error of the bending stiffness, by which plies with E1c are divided into sub-plies.']
 
 contains
 
@@ -73,6 +75,7 @@ contains
     call check_number(settings, key_thicknesses, size(thicknesses), plies, problems)
     call check_number(settings, 'materials', size(names), plies, problems)
     laminate%angle = angles
+    laminate%bending_error = settings%real_of(laminate_group, key_bending_error)
     if (size(thicknesses) == plies .or. size(thicknesses) == 1) &
       laminate%thickness = [(thicknesses(min(i, size(thicknesses))), i=1, plies)]
     if (any(indices == 0)) return

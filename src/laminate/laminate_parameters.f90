@@ -18,5 +18,7 @@ module laminate_parameters
     real(wp), allocatable :: thickness(:)
     !> shear_five_sixths or shear_energy
     integer :: shear_correction = shear_five_sixths
+    !> Relative error of the bending stiffness by plies of which a part is in tension, a part in compression
+    real(wp) :: bending_error = 0.005_wp
   end type laminate_t
 end module laminate_parameters

@@ -35,7 +35,9 @@ module material_deck
     'material | nu | real | 1 | - | none | > -1, < 0.5 | &
       &Poisson''s ratio of an isotropic material.', &
     'material | E1 | real | 1 | pressure | none | > 0 | &
-      &Young''s modulus along the fibres.', &
+      &Young''s modulus along the fibres, in tension.', &
+    'material | E1c | real | 1 | pressure | = E1 | > 0 | &
+      &Young''s modulus along the fibres in compression.', &
     'material | E2 | real | 1 | pressure | none | > 0 | &
       &Transverse Young''s modulus.', &
     'material | G12 | real | 1 | pressure | none | > 0 | &
@@ -85,7 +87,7 @@ module material_deck
   character(len=*), parameter, public :: toughness_keys(4) = [character(len=4) :: 'G_ft', 'G_fc', 'G_mt', 'G_mc']
 
   !> Keys that an orthotropic material requires, and all of them.
-  character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23'
+  character(len=*), parameter :: needed_keys = 'E1 E2 G12 G23 nu12', orthotropic_keys = needed_keys//' G13 nu23 E1c'
   !> Largest ratio of two moduli of a material; beyond it round-off dominates the result: together with the slenderness
   !> of a plate few of sixteen digits remain.
   real(wp), parameter :: max_contrast = 1.0e6_wp
@@ -161,9 +163,10 @@ contains
   pure real(wp) function contrast(material)
     !> The material
     type(material_t), intent(in) :: material
-    real(wp) :: moduli(5)
+    real(wp) :: moduli(6)
 
-    moduli = [material%e1, material%e2, material%g12, material%g13, material%g23]
+    moduli = [material%e1, merge(material%e1c, material%e1, material%e1c > 0), material%e2, material%g12, &
+              material%g13, material%g23]
     contrast = maxval(moduli)/minval(moduli)
   end function contrast
 
@@ -268,6 +271,9 @@ contains
     type(material_t), intent(inout) :: material
 
     material%e1 = settings%real_of(material_group, 'E1', place)
+    if (.not. settings%is_given(material_group, 'E1c', place)) &
+      call settings%derive(material_group, 'E1c', to_text(material%e1), .false., place)
+    material%e1c = settings%real_of(material_group, 'E1c', place)
     material%e2 = settings%real_of(material_group, 'E2', place)
     material%g12 = settings%real_of(material_group, 'G12', place)
     if (.not. settings%is_given(material_group, 'G13', place)) &

@@ -3,16 +3,16 @@ module material_parameters
   use kinds, only: wp
   implicit none
   private
-  public :: material_t, first_alike, constants_of
+  public :: material_t, first_alike, constants_of, modulus_differs
 
   !> Largest strain regarded as small: at 5 % the logarithmic strain differs from it by 2.5 %. Thermal strains of
   !> polymers, 1e-4 per degree, reach it at 500 degrees; fibres fail at far smaller strains.
   real(wp), parameter, public :: largest_strain = 0.05_wp
   !> Constants of a material, and their names in the deck in the order of the type.
-  integer, parameter, public :: constants = 22
-  character(len=*), parameter, public :: constant_names(constants) = [character(len=10) :: 'density', 'E1', 'E2', &
-    'G12', 'G13', 'G23', 'nu12', 'nu23', 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', 'Sm23', 'shear_beta', 'G_ft', 'G_fc', &
-    'G_mt', 'G_mc', 'alpha1', 'alpha2']
+  integer, parameter, public :: constants = 23
+  character(len=*), parameter, public :: constant_names(constants) = [character(len=10) :: 'density', 'E1', 'E1c', &
+    'E2', 'G12', 'G13', 'G23', 'nu12', 'nu23', 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', 'Sm23', 'shear_beta', 'G_ft', &
+    'G_fc', 'G_mt', 'G_mc', 'alpha1', 'alpha2']
 
   !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less. It has many
   !> components because the deck gives that many constants.
@@ -23,6 +23,8 @@ module material_parameters
     real(wp) :: density = 0
     !> Young's moduli along and across the fibres
     real(wp) :: e1 = 0, e2 = 0
+    !> Young's modulus along the fibres in compression; 0: E1
+    real(wp) :: e1c = 0
     !> Shear moduli
     real(wp) :: g12 = 0, g13 = 0, g23 = 0
     !> Poisson's ratios; nu21 follows from reciprocity
@@ -42,6 +44,14 @@ module material_parameters
   end type material_t
 
 contains
+
+  !> True: the moduli along the fibres in tension and in compression differ.
+  elemental logical function modulus_differs(material)
+    !> The material
+    type(material_t), intent(in) :: material
+
+    modulus_differs = material%e1c > 0 .and. abs(material%e1c - material%e1) > 0
+  end function modulus_differs
 
   !> First material with equal constants: two names with equal constants are one material.
   pure integer function first_alike(materials, index) result(first)
@@ -64,8 +74,8 @@ contains
     real(wp) :: values(constants)
 
     associate (m => material)
-      values = [m%density, m%e1, m%e2, m%g12, m%g13, m%g23, m%nu12, m%nu23, m%xt, m%xc, m%yt, m%yc, m%s12, m%sf, &
-                   m%sm23, m%shear_beta, m%toughness, m%expansion]
+      values = [m%density, m%e1, merge(m%e1c, m%e1, m%e1c > 0), m%e2, m%g12, m%g13, m%g23, m%nu12, m%nu23, m%xt, &
+                m%xc, m%yt, m%yc, m%s12, m%sf, m%sm23, m%shear_beta, m%toughness, m%expansion]
     end associate
   end function constants_of
 end module material_parameters

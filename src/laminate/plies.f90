@@ -6,7 +6,7 @@ module plies
   use text, only: listed
   implicit none
   private
-  public :: elasticity_t, ply_t, elasticity_of, material_objection
+  public :: elasticity_t, ply_t, elasticity_of, is_bimodular, compressed, uniaxial_strain, material_objection
   public :: reduced_stiffness, in_plane_stiffness, shear_stiffness, set_angle, plies_text
 
   !> Elastic constants of a ply in plane stress; damage reduces them (nu23 has no effect).
@@ -17,6 +17,8 @@ module plies
     real(wp) :: g12 = 0, g13 = 0, g23 = 0
     !> Poisson's ratio; nu21 = nu12 E2/E1 by reciprocity
     real(wp) :: nu12 = 0
+    !> Modulus along the fibres in compression over that in tension, E1c/E1
+    real(wp) :: compression = 1
   end type elasticity_t
 
   !> A ply of the laminate. z is measured downwards from the mid-plane of the laminate.
@@ -35,6 +37,8 @@ module plies
     real(wp) :: z_top = 0, z_bottom = 0
     !> Stress-free strains: along and across the fibres, as by cooling, and the permanent shear strain
     real(wp) :: free_strain(3) = 0
+    !> Number of sub-plies of equal thickness, each with its own sign of the stress along the fibres
+    integer :: sub_plies = 1
   end type ply_t
 
 contains
@@ -47,7 +51,40 @@ contains
     type(elasticity_t) :: elasticity
 
     elasticity = elasticity_t(material%e1, material%e2, material%g12, material%g13, material%g23, material%nu12)
+    if (material%e1c > 0) elasticity%compression = material%e1c/material%e1
   end function elasticity_of
+
+  !> True: the moduli along the fibres in tension and in compression differ.
+  elemental logical function is_bimodular(elasticity)
+    !> The constants
+    type(elasticity_t), intent(in) :: elasticity
+
+    is_bimodular = abs(elasticity%compression - 1) > 0
+  end function is_bimodular
+
+  !> Constants under compression along the fibres, theory (M22): nu12 is proportional to E1, so that the compliance that
+  !> couples both directions is that in tension.
+  elemental function compressed(elasticity) result(constants)
+    !> Constants in tension
+    type(elasticity_t), intent(in) :: elasticity
+    !> The same with E1c
+    type(elasticity_t) :: constants
+
+    constants = elasticity
+    constants%e1 = elasticity%e1*elasticity%compression
+    constants%nu12 = elasticity%nu12*elasticity%compression
+    constants%compression = 1
+  end function compressed
+
+  !> Strain with the sign of the stress along the fibres, with E1 as with E1c: e1 + nu21 e2.
+  pure real(wp) function uniaxial_strain(elasticity, strains)
+    !> Constants of the ply
+    type(elasticity_t), intent(in) :: elasticity
+    !> Strains along and across the fibres
+    real(wp), intent(in) :: strains(2)
+
+    uniaxial_strain = strains(1) + elasticity%nu12*elasticity%e2/elasticity%e1*strains(2)
+  end function uniaxial_strain
 
   !> Objection to the elastic constants of a material, or an empty text: the strain energy must be positive for any
   !> strain, in plane stress and, where nu23 is given, also in three dimensions with E3 = E2 and nu13 = nu12.
@@ -65,6 +102,8 @@ contains
         objection = 'the density must not be negative'
       else if (.not. m%nu12**2 < m%e1/m%e2) then
         objection = 'nu12 must lie between -sqrt(E1/E2) and sqrt(E1/E2)'
+      else if (.not. m%nu12**2*m%e1c < m%e1**2/m%e2) then
+        objection = 'E1c must be below E1**2/(E2 nu12**2)'
       else if (.not. abs(m%nu23) < 1) then
         objection = 'nu23 must lie between -1 and 1'
       else if (abs(m%nu23) > 0 .and. .not. 1 - m%nu23 - 2*m%nu12**2*m%e2/m%e1 > 0) then

@@ -90,6 +90,9 @@ contains
                     dot_product(across, moments%mean(1:3) + middle*moments%mean(4:6))]
     strains%square = [dot_product(along, matmul(squares, along)), dot_product(across, matmul(squares, across)), &
                       dot_product(along, matmul(squares, across))]
+    strains%rise = (ply%z_bottom - ply%z_top)*[dot_product(along, moments%mean(4:6)), &
+                                               dot_product(across, moments%mean(4:6))]
+    strains%sub_plies = ply%sub_plies
     associate (mean => strains%mean, free => ply%free_strain(:2))
       strains%square = strains%square - [(2*mean(1) - free(1))*free(1), (2*mean(2) - free(2))*free(2), &
                                          mean(1)*free(2) + mean(2)*free(1) - free(1)*free(2)]

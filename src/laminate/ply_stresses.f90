@@ -4,7 +4,7 @@
 !> averages over the ply, by equilibrium (see `ply_shear`): in a plate of one ply the true peak is 3/2 of them.
 module ply_stresses
   use kinds, only: wp
-  use plies, only: ply_t, elasticity_t, reduced_stiffness
+  use plies, only: ply_t, elasticity_t, reduced_stiffness, compressed, is_bimodular, uniaxial_strain
   implicit none
   private
   public :: ply_stress, middle_stress, face_stresses
@@ -28,11 +28,17 @@ contains
     real(wp) :: in_plane(3), along, across, distortion, q(4)
 
     in_plane = strains(1:3) + z*strains(4:6)
-    q = reduced_stiffness(elasticity)
     associate (c => ply%cosine, s => ply%sine)
       along = c*c*in_plane(1) + s*s*in_plane(2) + c*s*in_plane(3) - ply%free_strain(1)
       across = s*s*in_plane(1) + c*c*in_plane(2) - c*s*in_plane(3) - ply%free_strain(2)
       distortion = 2*c*s*(in_plane(2) - in_plane(1)) + (c*c - s*s)*in_plane(3) - ply%free_strain(3)
+      if (.not. is_bimodular(elasticity)) then
+        q = reduced_stiffness(elasticity)
+      else if (uniaxial_strain(elasticity, [along, across]) < 0) then
+        q = reduced_stiffness(compressed(elasticity))
+      else
+        q = reduced_stiffness(elasticity)
+      end if
       stress(1) = q(1)*along + q(2)*across
       stress(2) = q(2)*along + q(3)*across
       stress(3) = q(4)*distortion

@@ -4,6 +4,7 @@ module stacking
   use kinds, only: wp
   use laminate_parameters, only: laminate_t, shear_energy
   use material_parameters, only: material_t, first_alike
+  use mean_stiffnesses, only: sub_plies_of
   use plies, only: ply_t, elasticity_t, elasticity_of, set_angle, in_plane_stiffness, shear_stiffness
   use transverse_shear, only: layer_stiffness_from_energy, shear_stiffness_from_energy
   implicit none
@@ -42,6 +43,7 @@ contains
       z = z + laminate%thickness(i)
       plies(i)%z_bottom = z
     end do
+    plies%sub_plies = sub_plies_of(plies, sum(laminate%thickness), laminate%bending_error)
   end function stacked_plies
 
   !> Section of a range of plies without damage.

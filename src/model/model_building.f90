@@ -7,6 +7,7 @@ module model_building
   use batch_strains, only: set_initial_shape
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
+  use mean_stiffnesses, only: in_bending
   use ply_shear, only: shear_shares_of
   use stacking, only: section_t, stacked_plies, section_of, layer_stiffness, section_mass
   use mesh_parameters, only: edge_free, initial_deflection, symmetry_quarter
@@ -60,9 +61,10 @@ contains
         self%plies(ply)%free_strain(:2) = setup%temperature_change*setup%materials(self%plies(ply)%material)%expansion
       end do
     end if
-    self%shear_shares = shear_shares_of(self%plies)
+    self%shear_shares = shear_shares_of(in_bending(self%plies))
     self%thickness = sum(setup%laminate%thickness)
     self%section = section_of(self%plies, setup%laminate%shear_correction)
+    self%bending_section = section_of(in_bending(self%plies), setup%laminate%shear_correction)
     zones = zones_of(setup)
     self%mesh = create_mesh(setup%plate, setup%mesh, size(self%plies), zones)
     self%membrane_idle = is_membrane_idle(setup, size(zones), self%section)
@@ -94,7 +96,7 @@ contains
     !> The laminate's section
     type(section_t), intent(in) :: section
 
-    idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_ply_damage &
+    idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
              .or. setup%has_thermal)
     if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)
     idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))

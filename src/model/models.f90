@@ -32,8 +32,8 @@ module models
     type(ply_t), allocatable :: plies(:)
     !> Transverse shear stresses of its plies under unit shear forces, (2, 2, plies)
     real(wp), allocatable :: shear_shares(:, :, :)
-    !> Section of the full laminate
-    type(section_t) :: section
+    !> Section of the full laminate, and the same with the bending moduli of plies with E1c
+    type(section_t) :: section, bending_section
     !> Thickness of the laminate
     real(wp) :: thickness = 0
     !> Resultants of the thermal strains of undamaged plies, and their energy per area, (lanes, 7, batches); allocated

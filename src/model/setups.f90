@@ -4,7 +4,7 @@ module setups
   use mesh_parameters, only: plate_t, mesh_t
   use gauges, only: gauge_t
   use load_cases, only: load_case_t
-  use material_parameters, only: material_t
+  use material_parameters, only: material_t, modulus_differs
   use laminate_parameters, only: laminate_t
   use ply_damage_parameters, only: ply_damage_t
   use delamination_parameters, only: delamination_t
@@ -35,6 +35,9 @@ module setups
   contains
     !> True: plies soften by their fracture energies.
     procedure :: has_crack_bands
+    !> True: moduli along the fibres in tension and in compression differ; sections change in a run.
+    procedure :: is_bimodular
+    procedure :: has_variable_sections
   end type setup_t
 
 contains
@@ -50,4 +53,24 @@ contains
     has_crack_bands = all([(all(self%materials(self%laminate%material(i))%toughness > 0), &
                             i=1, size(self%laminate%material))])
   end function has_crack_bands
+
+  !> True: the moduli along the fibres in tension and in compression of a ply differ.
+  pure logical function is_bimodular(self)
+    !> The setup
+    class(setup_t), intent(in) :: self
+    integer :: i
+
+    is_bimodular = .false.
+    if (.not. (allocated(self%laminate%material) .and. allocated(self%materials))) return
+    is_bimodular = any([(modulus_differs(self%materials(self%laminate%material(i))), &
+                         i=1, size(self%laminate%material))])
+  end function is_bimodular
+
+  !> True: the sections of the elements depend on their state, by failure of plies or the sign of their stresses.
+  pure logical function has_variable_sections(self)
+    !> The setup
+    class(setup_t), intent(in) :: self
+
+    has_variable_sections = self%has_ply_damage .or. self%is_bimodular()
+  end function has_variable_sections
 end module setups

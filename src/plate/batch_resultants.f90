@@ -4,7 +4,7 @@ module batch_resultants
   use element_batches, only: lanes
   implicit none
   private
-  public :: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
+  public :: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants, element_means, mean_resultants
 
 contains
 
@@ -46,6 +46,56 @@ contains
       end do
     end do
   end subroutine in_plane_resultants
+
+  !> Means of the strains of the elements of a batch.
+  pure function element_means(weight, strains) result(means)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    !> The means, (lane, component)
+    real(wp) :: means(lanes, 6)
+    real(wp) :: area(lanes)
+    integer :: i, g
+
+    area = tiny(area)
+    do g = 1, 9
+      area = area + weight(:, g)
+    end do
+    means = 0
+    do i = 1, 6
+      do g = 1, 9
+        means(:, i) = means(:, i) + weight(:, g)*strains(:, g, i)
+      end do
+      means(:, i) = means(:, i)/area
+    end do
+  end function element_means
+
+  !> Forces and moments of mean strains.
+  pure function mean_resultants(c, e) result(f)
+    !> Changes of the sections against mean strains: A, B, D
+    real(wp), intent(in) :: c(lanes, 18)
+    !> Mean strains
+    real(wp), intent(in) :: e(lanes, 6)
+    !> Nxx to Mxy
+    real(wp) :: f(lanes, 6)
+    integer :: i
+
+    do i = 1, lanes
+      f(i, 1) = c(i, 1)*e(i, 1) + c(i, 2)*e(i, 2) + c(i, 3)*e(i, 3) + c(i, 7)*e(i, 4) + c(i, 8)*e(i, 5) &
+                + c(i, 9)*e(i, 6)
+      f(i, 2) = c(i, 2)*e(i, 1) + c(i, 4)*e(i, 2) + c(i, 5)*e(i, 3) + c(i, 8)*e(i, 4) + c(i, 10)*e(i, 5) &
+                + c(i, 11)*e(i, 6)
+      f(i, 3) = c(i, 3)*e(i, 1) + c(i, 5)*e(i, 2) + c(i, 6)*e(i, 3) + c(i, 9)*e(i, 4) + c(i, 11)*e(i, 5) &
+                + c(i, 12)*e(i, 6)
+      f(i, 4) = c(i, 7)*e(i, 1) + c(i, 8)*e(i, 2) + c(i, 9)*e(i, 3) + c(i, 13)*e(i, 4) + c(i, 14)*e(i, 5) &
+                + c(i, 15)*e(i, 6)
+      f(i, 5) = c(i, 8)*e(i, 1) + c(i, 10)*e(i, 2) + c(i, 11)*e(i, 3) + c(i, 14)*e(i, 4) + c(i, 16)*e(i, 5) &
+                + c(i, 17)*e(i, 6)
+      f(i, 6) = c(i, 9)*e(i, 1) + c(i, 11)*e(i, 2) + c(i, 12)*e(i, 3) + c(i, 15)*e(i, 4) + c(i, 17)*e(i, 5) &
+                + c(i, 18)*e(i, 6)
+    end do
+  end function mean_resultants
 
   !> Adds the contribution of stress-free strains to the strain energy.
   pure subroutine add_free_energy(free, weight, s, energies)

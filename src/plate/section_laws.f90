@@ -1,4 +1,4 @@
-!> Sections with a stiffness that depends on their strains within the equilibrium iteration, such as softening plies.
+!> Sections with a response that depends on their strains within the equilibrium iteration, such as softening plies.
 module section_laws
   use kinds, only: wp
   use element_batches, only: lanes
@@ -6,47 +6,19 @@ module section_laws
   private
   public :: section_law_t
 
-  !> History variables of the element sections, and their response to trial strains.
+  !> History variables of the element sections, and their response to trial strains. By default no element has common
+  !> strains with others.
   type, abstract :: section_law_t
   contains
     !> True for a batch with elements that soften by common strains; accumulates these strains; sends them to all ranks.
-    procedure(needs_batch), deferred :: needs_joined_strains
-    procedure(take_batch), deferred :: accumulate_strains
-    procedure(share_with_ranks), deferred :: exchange
+    procedure :: needs_joined_strains
+    procedure :: accumulate_strains
+    procedure :: exchange
     !> Stiffness of the sections of a batch under trial strains.
     procedure(soften_batch), deferred :: soften
   end type section_law_t
 
   abstract interface
-    !> True for a batch with elements that soften by common strains, which must be known before any section softens.
-    pure logical function needs_batch(self, b)
-      import :: section_law_t
-      !> The law
-      class(section_law_t), intent(in) :: self
-      !> Number of the batch
-      integer, intent(in) :: b
-    end function needs_batch
-
-    !> Adds the trial strains of a batch to the common strains.
-    subroutine take_batch(self, b, weight, strains)
-      import :: section_law_t, wp, lanes
-      !> The law
-      class(section_law_t), intent(inout) :: self
-      !> Number of the batch
-      integer, intent(in) :: b
-      !> Area of each Gauss point
-      real(wp), intent(in) :: weight(lanes, 9)
-      !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
-      real(wp), intent(in) :: strains(lanes, 9, 6)
-    end subroutine take_batch
-
-    !> Sends the strains set to all ranks. Collective.
-    subroutine share_with_ranks(self)
-      import :: section_law_t
-      !> The law
-      class(section_law_t), intent(inout) :: self
-    end subroutine share_with_ranks
-
     !> Stiffness of the sections of a batch under trial strains.
     subroutine soften_batch(self, b, weight, strains, stiffness, free)
       import :: section_law_t, wp, lanes
@@ -64,4 +36,34 @@ module section_laws
       real(wp), intent(inout), optional :: free(lanes, 7)
     end subroutine soften_batch
   end interface
+
+contains
+
+  !> True for a batch with elements that soften by common strains, which must be known before any section softens.
+  pure logical function needs_joined_strains(self, b)
+    !> The law
+    class(section_law_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+
+    needs_joined_strains = .false.
+  end function needs_joined_strains
+
+  !> Adds the trial strains of a batch to the common strains.
+  subroutine accumulate_strains(self, b, weight, strains)
+    !> The law
+    class(section_law_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+  end subroutine accumulate_strains
+
+  !> Sends the common strains to all ranks. Collective.
+  subroutine exchange(self)
+    !> The law
+    class(section_law_t), intent(inout) :: self
+  end subroutine exchange
 end module section_laws

@@ -7,7 +7,7 @@ module tangent_forces
   use internal_forces, only: turn_into_forces
   use reference_fields, only: gather, scatter, add_gradient_forces
   use batch_strains, only: in_plane_strains, strains_of_batch
-  use batch_resultants, only: in_plane_resultants, take_free_resultants
+  use batch_resultants, only: in_plane_resultants, take_free_resultants, element_means, mean_resultants
   implicit none
   private
   public :: add_tangent_force
@@ -15,7 +15,7 @@ module tangent_forces
 contains
 
   !> Adds the tangent stiffness at a displacement times a motion to the forces on the points.
-  subroutine add_tangent_force(batches, stiffness, kinematics, u, v, f, free)
+  subroutine add_tangent_force(batches, stiffness, kinematics, u, v, f, free, mean_change)
     !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
@@ -28,8 +28,10 @@ contains
     real(wp), contiguous, intent(inout) :: f(:, :)
     !> Resultants Nxx to Mxy of stress-free strains, and their energy per area, (lanes, 7, batches)
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
+    !> Changes of the sections against mean strains, packed as the section stiffness, (lanes, 18 or more, batches)
+    real(wp), contiguous, intent(in), optional :: mean_change(:, :, :)
     real(wp) :: at(lanes, 9, 5), r(lanes, 9, 5), forces(lanes, 9, 6), strains(lanes, 9, 6)
-    real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes)
+    real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes), means(lanes, 7)
     integer :: b
 
     unused = 0
@@ -49,7 +51,13 @@ contains
         else
           call in_plane_strains(inverse, kinematics_linear, r, strains, change)
         end if
-        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, unused)
+        if (present(mean_change)) then
+          means(:, :6) = mean_resultants(mean_change(:, :18, b), element_means(weight, strains))
+          means(:, 7) = 0
+          call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, unused, -means)
+        else
+          call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, unused)
+        end if
         if (kinematics == kinematics_von_karman) call add_turned_forces(inverse, forces, change, r(:, :, 3))
         call scatter(batches%targets(:, :, b), r, f)
       end associate

@@ -4,10 +4,12 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
+  use band_energies, only: changed_by_signs, dissipated_in_trial, dissipated_so_far
+  use batch_resultants, only: element_means
   use band_states, only: band_states_t, new_band_states
   use crack_closures, only: closing_resultants
-  use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, &
-                         degraded_elasticity, energy_of_shear, is_damaged, stiffness_lost
+  use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
+                         is_damaged, stiffness_lost
   use crack_band_limits, only: onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
@@ -15,6 +17,7 @@ module crack_band_sections
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
+  use mean_sections, only: mean_sections_t, new_mean_sections
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
@@ -34,6 +37,12 @@ module crack_band_sections
     real(wp), allocatable :: stiffness(:, :, :)
     !> Resultants of stress-free strains in the trial, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
+    !> Sections against mean strains, where plies have E1c; unallocated: they have not
+    type(mean_sections_t), allocatable :: signs
+    !> True while plies keep their damage, during the transfer of a state to other layers
+    logical :: keeps_damage = .false.
+    !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
+    real(wp), allocatable, private :: tensile(:, :, :)
     !> Plies of the laminate
     type(ply_t), allocatable, private :: plies(:)
     !> Their laws
@@ -67,6 +76,7 @@ module crack_band_sections
     !> Adjacent plies of an element with their permanent strains; resultants of stress-free strains.
     procedure :: strained
     procedure, private :: free_resultants_of
+    procedure, private :: signed_resultants
     !> Saves or loads.
     procedure :: visit
   end type crack_band_sections_t
@@ -88,8 +98,13 @@ contains
     end do
     if (allocated(model%free)) then
       self%free = model%free
-    else if (model%setup%ply_damage%permanent_shear .or. model%setup%ply_damage%crack_closure) then
+    else if (model%setup%ply_damage%permanent_shear .or. model%setup%ply_damage%crack_closure &
+             .or. model%setup%is_bimodular()) then
       allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
+    end if
+    if (model%setup%is_bimodular()) then
+      self%signs = new_mean_sections(model)
+      self%tensile = self%free
     end if
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
                  - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
@@ -171,12 +186,51 @@ contains
       element = first_element(b) + lane - 1
       if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
       if (.not. self%touched(element) .and. bounds(lane) < self%onset) cycle
-      call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
-      if (present(free)) free(lane, :) = self%free_resultants_of(element)
+      if (.not. self%keeps_damage) &
+        call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
+      if (allocated(self%signs)) then
+        self%tensile(lane, :, b) = self%free_resultants_of(element)
+      else if (present(free)) then
+        free(lane, :) = self%free_resultants_of(element)
+      end if
     end do
+    if (allocated(self%signs)) free = self%signed_resultants(b, weight, strains)
     if (present(free)) self%free(:, :, b) = free
     self%stiffness(:, :, b) = stiffness
   end subroutine soften
+
+  !> Resultants of stress-free strains of a batch in the trial, where plies have E1c.
+  function signed_resultants(self, b, weight, strains) result(resultants)
+    !> The plies
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    !> Of the sections, and their energy per area
+    real(wp) :: resultants(lanes, 7)
+    real(wp) :: means(lanes, 6)
+    real(wp), allocatable :: common(:)
+    logical :: undamaged(lanes)
+    integer :: lane, element
+
+    means = element_means(weight, strains)
+    undamaged = .true.
+    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
+      element = first_element(b) + lane - 1
+      if (self%joined%shares(element)) then
+        common = self%joined%means_of(element)
+        means(lane, :) = common(:6)
+      end if
+      undamaged(lane) = .not. self%touched(element)
+      if (self%touched(element)) call self%signs%set_element(element, &
+        changed_by_signs(self%plies, self%bands, self%states, element, means(lane, :)))
+    end do
+    call self%signs%update(b, means, undamaged)
+    resultants = self%tensile(:, :, b) + self%signs%resultants(b, means)
+  end function signed_resultants
 
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness)
@@ -256,34 +310,9 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes
     type(exact_sum_t) :: energies(energy_modes)
-    real(wp) :: dissipated(energy_modes)
-    integer :: element, ply, mode
 
-    do element = 1, size(self%touched)
-      if (.not. self%touched(element)) cycle
-      do ply = self%states%range(1, element), self%states%range(2, element)
-        dissipated = dissipated_in(self, ply, element)
-        do mode = 1, energy_modes
-          call energies(mode)%add(dissipated(mode))
-        end do
-      end do
-    end do
+    energies = dissipated_in_trial(self%states, self%plies, self%area, self%touched)
   end function dissipation_sums
-
-  !> Energy that the trial dissipates in each mode in one ply of an element.
-  pure function dissipated_in(self, ply, element) result(energies)
-    !> The plies
-    class(crack_band_sections_t), intent(in) :: self
-    !> Ply of the laminate, and element of this rank
-    integer, intent(in) :: ply, element
-    !> In the order of the modes
-    real(wp) :: energies(energy_modes)
-
-    associate (state => self%states%offset(element) + ply)
-      energies = self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top) &
-                 *(self%states%trial(state)%dissipated - self%states%accepted(state)%dissipated)
-    end associate
-  end function dissipated_in
 
   !> Energy dissipated so far in each mode and by permanent shear, of this rank's elements, as exact sums.
   pure function dissipated(self) result(energies)
@@ -291,20 +320,8 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes, then permanent shear
     type(exact_sum_t) :: energies(energy_modes + 1)
-    integer :: element, ply, mode
 
-    do element = 1, size(self%touched)
-      if (.not. self%touched(element)) cycle
-      do ply = self%states%range(1, element), self%states%range(2, element)
-        associate (volume => self%area(element)*(self%plies(ply)%z_bottom - self%plies(ply)%z_top), &
-                   state => self%states%accepted(self%states%offset(element) + ply))
-          do mode = 1, energy_modes
-            call energies(mode)%add(volume*state%dissipated(mode))
-          end do
-          call energies(energy_modes + 1)%add(volume*energy_of_shear(self%bands(ply), state))
-        end associate
-      end do
-    end do
+    energies = dissipated_so_far(self%states, self%plies, self%bands, self%area, self%touched)
   end function dissipated
 
   !> Reduced elastic constants of a ply of an element.
@@ -349,7 +366,7 @@ contains
                offset => self%states%offset(element))
       resultants = free_resultants(self%strained(first, last, element), &
                                    [(self%elasticity(ply, element), ply=first, last)])
-      if (self%bands(first)%crack_closure) resultants = resultants &
+      if (self%bands(first)%crack_closure .and. .not. allocated(self%signs)) resultants = resultants &
         + closing_resultants(self%plies(first:last), reshape([(self%states%trial(offset + ply)%recovered, &
                                                                ply=first, last)], [3, last - first + 1]))
     end associate

@@ -1,4 +1,4 @@
-!> Areas in which plies have failed.
+!> Areas in which plies have failed, and numbers of failed plies.
 module failed_plies_areas
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
@@ -8,7 +8,7 @@ module failed_plies_areas
   use rank_totals, only: totals_of
   implicit none
   private
-  public :: failed_areas
+  public :: failed_areas, failed_counts
 
 contains
 
@@ -39,4 +39,27 @@ contains
     end do
     areas = reshape(totals_of(model%communicator, [sums]), shape(areas))*model%mesh%multiplicity
   end function failed_areas
+
+  !> Number of ply elements failed in each mode, of the full plate. Collective.
+  function failed_counts(model, failures) result(counts)
+    type(model_t), intent(in) :: model
+    !> The failures
+    type(ply_failure_t), intent(in) :: failures
+    !> Fibre failure, matrix cracking, matrix crushing
+    integer :: counts(failure_modes)
+    integer :: element, ply, mode
+
+    counts = 0
+    if (.not. model%setup%has_ply_damage) return
+    do element = 1, model%elements%elements
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        do ply = range(1), range(2)
+          where (failures%failed(ply, element)) counts = counts + model%mesh%multiplicity
+        end do
+      end associate
+    end do
+    do mode = 1, failure_modes
+      call model%communicator%sum(counts(mode))
+    end do
+  end function failed_counts
 end module failed_plies_areas

@@ -1,5 +1,6 @@
 !> Columns of the history for failed plies.
 module ply_columns
+  use failed_plies_areas, only: failed_counts
   use kinds, only: wp
   use models, only: model_t
   use ply_failures, only: ply_failure_t
@@ -34,7 +35,7 @@ contains
     !> One value per column, the same on every rank
     real(wp) :: values(size(ply_rows))
 
-    values = [real(plies%counts(model), wp), plies%dissipated]
+    values = [real(failed_counts(model, plies), wp), plies%dissipated]
   end function ply_values
 
   !> Energies of permanent strains.

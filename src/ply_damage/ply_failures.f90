@@ -4,6 +4,7 @@ module ply_failures
   use internal_forces, only: add_internal_force
   use kinds, only: wp
   use archives, only: archive_t
+  use bimodular_sections, only: bimodular_sections_t, new_bimodular_sections
   use crack_band_sections, only: crack_band_sections_t, new_crack_band_sections
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t, ply_t
@@ -29,10 +30,14 @@ module ply_failures
     type(failed_modes_t) :: modes
     !> Softening plies; unallocated: failure is sudden
     type(crack_band_sections_t), allocatable :: bands
+    !> Sections of plies with E1c without softening; unallocated: there are none
+    type(bimodular_sections_t), allocatable :: signs
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
     !> Resultants of stress-free strains with this stiffness, (lanes, 7, batches); unallocated: there are none
     real(wp), allocatable :: free(:, :, :)
+    !> Changes of the sections against mean strains, (lanes, change_values, batches); unallocated: there are none
+    real(wp), allocatable :: mean_change(:, :, :)
     !> True if failures have reduced the stiffness after the last step
     logical :: softened = .false.
     !> Energy dissipated in each mode by softening plies, of the full plate
@@ -66,8 +71,6 @@ module ply_failures
     procedure :: grow
     !> Computes the stiffness of elements split into layers.
     procedure :: restack
-    !> Number of ply elements failed in each mode, of the full plate.
-    procedure :: counts
     !> Saves or loads.
     procedure :: visit
   end type ply_failure_t
@@ -85,8 +88,13 @@ contains
     if (model%setup%has_crack_bands()) then
       self%bands = new_crack_band_sections(model)
       if (allocated(self%bands%free)) self%free = self%bands%free
+      if (allocated(self%bands%signs)) self%mean_change = self%bands%signs%change
     else
       self%modes = new_failed_modes(model)
+      if (.not. model%setup%is_bimodular()) return
+      self%signs = new_bimodular_sections(model)
+      self%free = self%signs%free
+      self%mean_change = self%signs%signs%change
     end if
   end function new_ply_failure
 
@@ -102,11 +110,18 @@ contains
     !> Strain energy of this rank's elements
     real(wp), intent(out) :: energy
 
-    if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
+    if (allocated(self%bands) .and. (allocated(self%mean_change) .or. .not. self%keeps_stiffness)) then
+      self%bands%keeps_damage = self%keeps_stiffness
       ! Unallocated resultants are passed on as an absent argument.
       call model%internal(self%stiffness, displacement, force, energy, self%bands, free=self%free)
+      self%bands%keeps_damage = .false.
       self%stiffness = self%bands%stiffness
       if (allocated(self%free)) self%free = self%bands%free
+      if (allocated(self%mean_change)) self%mean_change = self%bands%signs%change
+    else if (allocated(self%signs)) then
+      call model%internal(self%stiffness, displacement, force, energy, self%signs, free=self%free)
+      self%free = self%signs%free
+      self%mean_change = self%signs%signs%change
     else
       call model%internal(self%stiffness, displacement, force, energy, free=self%free)
     end if
@@ -130,6 +145,9 @@ contains
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       call self%bands%commit_sections(self%stiffness, self%free)
+    else if (allocated(self%signs)) then
+      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+                              self%signs, self%free, energies)
     else
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)
@@ -314,6 +332,8 @@ contains
                         model%setup%laminate%shear_correction)
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
         free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
+      if (allocated(self%signs)) call self%signs%reduce(element, self%elasticities(model, element), &
+                                                        self%free(lane_of(element), :, batch_of(element)))
     end associate
   end subroutine soften
 
@@ -342,29 +362,6 @@ contains
     end do
   end subroutine restack
 
-  !> Number of ply elements failed in each mode, of the full plate.
-  function counts(self, model)
-    !> The failures
-    class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> Fibre failure, matrix cracking, matrix crushing
-    integer :: counts(failure_modes)
-    integer :: element, ply, mode
-
-    counts = 0
-    if (.not. model%setup%has_ply_damage) return
-    do element = 1, model%elements%elements
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        do ply = range(1), range(2)
-          where (self%failed(ply, element)) counts = counts + model%mesh%multiplicity
-        end do
-      end associate
-    end do
-    do mode = 1, failure_modes
-      call model%communicator%sum(counts(mode))
-    end do
-  end function counts
-
   !> Saves or loads the failures.
   subroutine visit(self, archive, model)
     !> The failures
@@ -372,7 +369,7 @@ contains
     !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer :: mode, element
+    integer :: mode, element, ply
 
     call self%modes%visit(archive, model)
     if (allocated(self%bands)) then
@@ -389,6 +386,10 @@ contains
       associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
         self%free(lane_of(element), :, batch_of(element)) = &
           free_resultants(self%strained_plies(model, range(1), range(2), element), self%elasticities(model, element))
+        if (.not. allocated(self%signs)) cycle
+        if (any([(self%modes%failed(ply, element), ply=range(1), range(2))])) &
+          call self%signs%reduce(element, self%elasticities(model, element), &
+                                 self%free(lane_of(element), :, batch_of(element)))
       end associate
     end do
   end subroutine visit

@@ -10,6 +10,7 @@ module setup_scales
   use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
   use setups, only: setup_t
+  use mean_stiffnesses, only: in_bending
   use stacking, only: section_t, stacked_plies, section_of
   use support_parameters, only: window_none, window_rectangle, window_circle
   use threshold_forces, only: effective_bending_stiffness, threshold_force
@@ -89,7 +90,7 @@ contains
     type(section_t) :: section
     real(wp) :: extension(3, 3), coupling(3, 3), bending(3, 3)
 
-    section = section_of(stacked_plies(setup%laminate, setup%materials), setup%laminate%shear_correction)
+    section = section_of(in_bending(stacked_plies(setup%laminate, setup%materials)), setup%laminate%shear_correction)
     extension = unpacked(section%stiffness(1:6))
     coupling = unpacked(section%stiffness(7:12))
     bending = unpacked(section%stiffness(13:18)) - matmul(coupling, matmul(inverse(extension), coupling))
@@ -201,7 +202,7 @@ contains
     real(wp) :: decrease, index
 
     force = 0
-    plies = stacked_plies(setup%laminate, setup%materials)
+    plies = in_bending(stacked_plies(setup%laminate, setup%materials))
     if (size(plies) < 2 .or. .not. setup%mesh%patch > 0) return
     unit = unit_stresses_of(plies)
     ! Q = P/(2 pi r): its derivative is -Q/r along the radius, and +Q/r for the component normal to it.

@@ -38,7 +38,7 @@ contains
     ! The twist of a plate with mirror symmetry vanishes at the struck point, but not in the mean over the elements of
     ! the modelled part.
     if (any(model%mesh%mirrored)) curvature(3) = 0
-    associate (d => model%section%stiffness(13:18))
+    associate (d => model%bending_section%stiffness(13:18))
       moment = [d(1)*curvature(1) + d(2)*curvature(2) + d(3)*curvature(3), &
                 d(2)*curvature(1) + d(4)*curvature(2) + d(5)*curvature(3), &
                 d(3)*curvature(1) + d(5)*curvature(2) + d(6)*curvature(3)]

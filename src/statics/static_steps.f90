@@ -47,7 +47,7 @@ contains
     !> The problem
     type(static_step_t) :: self
 
-    self%may_be_shortened = model%setup%kinematics /= kinematics_linear
+    self%may_be_shortened = model%setup%kinematics /= kinematics_linear .or. model%setup%is_bimodular()
     self%time = time
     self%load_factor = load_factor
   end function new_static_step
@@ -162,7 +162,7 @@ contains
     ! Plies may have failed since the step before; later only contacts change.
     if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%setup%has_ply_damage &
                                                                         .or. model%map%layered)
-    tangent_changes = tangent_changes .or. model%setup%has_crack_bands()
+    tangent_changes = tangent_changes .or. model%setup%has_crack_bands() .or. model%setup%is_bimodular()
     if (tangent_changes .or. .not. model%map%layered) return
     tangent_changes = any(model%setup%delaminations%contact /= contact_none)
   end function tangent_changes

@@ -5,6 +5,7 @@ module tangent_operators
   use kinds, only: wp
   use archives, only: archive_t
   use errors, only: error_t
+  use section_bounds, only: uniform_stiffness
   use section_stiffnesses, only: visit_stiffness
   use timers, only: timer_set_t
   use contact_patches, only: contact_patch_t
@@ -131,7 +132,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     self%displacement = state%motion%displacement
-    self%stiffness = state%plies%stiffness
+    self%stiffness = uniform_stiffness(state%plies)
     self%stiffness_factor = stiffness_factor
     self%mass_factor = mass_factor
     call self%timers%start('assembly')
@@ -280,7 +281,7 @@ contains
       if (model%has_point_stiffness) &
         call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
     end associate
-    if (model%setup%has_ply_damage) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
+    if (model%setup%has_variable_sections()) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
     if (archive%loading .and. self%ready) then
       call model%halo%update(self%displacement)
       call assemble(self, model, error)

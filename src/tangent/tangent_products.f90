@@ -27,6 +27,8 @@ module tangent_products
     !> Section stiffness of the elements, (lanes, 21, batches), and resultants of stress-free strains,
     !> if there are any
     real(wp), pointer, contiguous :: stiffness(:, :, :) => null(), free(:, :, :) => null()
+    !> Changes of the sections against mean strains, (lanes, change_values, batches); null: none
+    real(wp), pointer, contiguous :: mean_change(:, :, :) => null()
     !> Stiffness of the jumps of each point: all of it with element tangents, else its increase over that in the
     !> factored operator, (3, 3, points); unallocated: none
     real(wp), allocatable :: jumps(:, :, :)
@@ -214,7 +216,8 @@ contains
     associate (model => self%model)
       allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
       call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
-                             model%motion_of(self%displacement), model%motion_of(motion), columns, self%free)
+                             model%motion_of(self%displacement), model%motion_of(motion), columns, self%free, &
+                             self%mean_change)
       call model%borders%add(columns)
       force = columns(:, :size(force, 2))
       if (model%map%layered) call model%map%to_unknowns(force)

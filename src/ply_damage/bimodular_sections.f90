@@ -1,0 +1,126 @@
+!> Sections of plies whose moduli along the fibres in tension and in compression differ, without softening plies.
+module bimodular_sections
+  use batch_resultants, only: element_means
+  use element_batches, only: batch_of, first_element, lane_of, lanes
+  use kinds, only: wp
+  use mean_sections, only: mean_sections_t, new_mean_sections
+  use mean_stiffnesses, only: change_values, mean_change, sub_ply_middle, mean_strains_at
+  use models, only: model_t
+  use plies, only: ply_t, elasticity_t, compressed, uniaxial_strain
+  use section_laws, only: section_law_t
+  implicit none
+  private
+  public :: bimodular_sections_t, new_bimodular_sections
+
+  !> The sections.
+  type, extends(section_law_t) :: bimodular_sections_t
+    !> Their changes by compressed sub-plies
+    type(mean_sections_t) :: signs
+    !> Resultants of stress-free strains with these changes, (lanes, 7, batches)
+    real(wp), allocatable :: free(:, :, :)
+    !> The same with the moduli in tension
+    real(wp), allocatable, private :: tensile(:, :, :)
+    !> Plies of the laminate
+    type(ply_t), allocatable, private :: plies(:)
+    !> Constants of the plies of elements with failed plies, (plies, elements); allocated where plies may fail
+    type(elasticity_t), allocatable, private :: constants(:, :)
+    !> True for these elements
+    logical, allocatable, private :: failed(:)
+    !> First and last ply of each element, (2, elements)
+    integer, allocatable, private :: range(:, :)
+  contains
+    !> Resultants of a batch under trial strains.
+    procedure :: soften
+    !> Takes over the reduced constants of an element.
+    procedure :: reduce
+  end type bimodular_sections_t
+
+contains
+
+  !> Sections without strains.
+  function new_bimodular_sections(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The sections
+    type(bimodular_sections_t) :: self
+
+    self%signs = new_mean_sections(model)
+    self%plies = model%plies
+    allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
+    if (allocated(model%free)) self%free = model%free
+    self%tensile = self%free
+    self%range = model%mesh%element_plies(:, model%distribution%elements)
+    allocate (self%failed(model%elements%elements), source=.false.)
+    if (model%setup%has_ply_damage) allocate (self%constants(size(model%plies), model%elements%elements))
+  end function new_bimodular_sections
+
+  !> Takes over the reduced constants of the plies of an element.
+  subroutine reduce(self, element, constants, tensile)
+    !> The sections
+    class(bimodular_sections_t), intent(inout) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Its constants in tension
+    type(elasticity_t), intent(in) :: constants(:)
+    !> Resultants of stress-free strains with them
+    real(wp), intent(in) :: tensile(7)
+
+    self%failed(element) = .true.
+    self%constants(self%range(1, element):self%range(2, element), element) = constants
+    self%tensile(lane_of(element), :, batch_of(element)) = tensile
+  end subroutine reduce
+
+  !> Resultants of a batch under trial strains. The stiffness is that of tension.
+  subroutine soften(self, b, weight, strains, stiffness, free)
+    !> The sections; store the resultants
+    class(bimodular_sections_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    !> Section stiffness
+    real(wp), intent(inout) :: stiffness(lanes, 21)
+    !> Resultants of stress-free strains
+    real(wp), intent(inout), optional :: free(lanes, 7)
+    real(wp) :: means(lanes, 6)
+    logical :: undamaged(lanes)
+    integer :: lane, element
+
+    means = element_means(weight, strains)
+    undamaged = .true.
+    do lane = 1, min(lanes, size(self%failed) - first_element(b) + 1)
+      element = first_element(b) + lane - 1
+      undamaged(lane) = .not. self%failed(element)
+      if (self%failed(element)) call self%signs%set_element(element, change_of(self, element, means(lane, :)))
+    end do
+    call self%signs%update(b, means, undamaged)
+    self%free(:, :, b) = self%tensile(:, :, b) + self%signs%resultants(b, means)
+    if (present(free)) free = self%free(:, :, b)
+  end subroutine soften
+
+  !> Change of the section of an element with failed plies.
+  pure function change_of(self, element, means) result(change)
+    !> The sections
+    type(bimodular_sections_t), intent(in) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> Its mean strains
+    real(wp), intent(in) :: means(6)
+    !> The change
+    real(wp) :: change(change_values)
+    real(wp) :: z
+    integer :: ply, number
+
+    change = 0
+    do ply = self%range(1, element), self%range(2, element)
+      do number = 1, self%plies(ply)%sub_plies
+        z = sub_ply_middle(self%plies(ply), number)
+        associate (constants => self%constants(ply, element))
+          if (uniaxial_strain(constants, mean_strains_at(self%plies(ply), means, z)) < 0) &
+            change = change + mean_change(self%plies(ply), constants, compressed(constants), z)
+        end associate
+      end do
+    end do
+  end function change_of
+end module bimodular_sections

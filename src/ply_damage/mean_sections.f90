@@ -1,0 +1,193 @@
+!> Sections of the elements against their mean strains, where plies have another modulus along the fibres in
+!> compression: the changes by compressed sub-plies, which are updated where a sign changes.
+module mean_sections
+  use batch_resultants, only: mean_resultants
+  use element_batches, only: batch_of, lane_of, lanes
+  use kinds, only: wp
+  use mean_stiffnesses, only: change_values, mean_change, sub_ply_middle, mean_strains_at
+  use models, only: model_t
+  use plies, only: ply_t, compressed, uniaxial_strain
+  implicit none
+  private
+  public :: mean_sections_t, new_mean_sections
+
+  !> The sections.
+  type :: mean_sections_t
+    !> Change of each section by its compressed sub-plies, (lanes, change_values, batches)
+    real(wp), allocatable :: change(:, :, :)
+    !> Uniaxial strain of each undamaged sub-ply: factors of the six mean strains, and a constant, (7, sub-plies)
+    real(wp), allocatable, private :: factors(:, :)
+    !> Change by each undamaged sub-ply in compression, (change_values, sub-plies)
+    real(wp), allocatable, private :: contributions(:, :)
+    !> True for compressed sub-plies, (lanes, sub-plies, batches)
+    logical, allocatable, private :: compressed(:, :, :)
+    !> First and last sub-ply of each element, (lanes, 2, batches); 1, 0 in unused lanes
+    integer, allocatable, private :: range(:, :, :)
+    !> True for elements whose change is not that of their undamaged sub-plies, (lanes, batches)
+    logical, allocatable, private :: is_set(:, :)
+  contains
+    !> Updates the undamaged elements of a batch.
+    procedure :: update
+    !> Sets a damaged element.
+    procedure :: set_element
+    !> Adds the stiffness of compressed sub-plies that are stiffer than in tension.
+    procedure :: add_excess
+    !> Contribution of the mean strains to resultants of stress-free strains.
+    procedure :: resultants
+  end type mean_sections_t
+
+contains
+
+  !> Sections with all sub-plies in tension.
+  function new_mean_sections(model) result(self)
+    type(model_t), intent(in) :: model
+    !> The sections
+    type(mean_sections_t) :: self
+    integer :: last(0:size(model%plies)), ply, number, k, element
+
+    last(0) = 0
+    do ply = 1, size(model%plies)
+      last(ply) = last(ply - 1) + model%plies(ply)%sub_plies
+    end do
+    allocate (self%factors(7, last(size(model%plies))), self%contributions(change_values, last(size(model%plies))))
+    do ply = 1, size(model%plies)
+      do number = 1, model%plies(ply)%sub_plies
+        k = last(ply - 1) + number
+        self%factors(:, k) = uniaxial_factors(model%plies(ply), sub_ply_middle(model%plies(ply), number))
+        self%contributions(:, k) = mean_change(model%plies(ply), model%plies(ply)%elasticity, &
+                                               compressed(model%plies(ply)%elasticity), &
+                                               sub_ply_middle(model%plies(ply), number))
+      end do
+    end do
+    associate (batches => model%elements%batches)
+      allocate (self%change(lanes, change_values, batches), source=0.0_wp)
+      allocate (self%compressed(lanes, size(self%factors, 2), batches), source=.false.)
+      allocate (self%range(lanes, 2, batches), self%is_set(lanes, batches))
+      self%is_set = .false.
+      self%range(:, 1, :) = 1
+      self%range(:, 2, :) = 0
+    end associate
+    do element = 1, model%elements%elements
+      associate (its => model%mesh%element_plies(:, model%distribution%elements(element)))
+        self%range(lane_of(element), :, batch_of(element)) = [last(its(1) - 1) + 1, last(its(2))]
+      end associate
+    end do
+  end function new_mean_sections
+
+  !> Factors of the mean strains of an element in the uniaxial strain of an undamaged ply at a height, and a constant.
+  pure function uniaxial_factors(ply, z) result(factors)
+    !> The ply
+    type(ply_t), intent(in) :: ply
+    !> The height
+    real(wp), intent(in) :: z
+    !> The factors
+    real(wp) :: factors(7)
+    real(wp) :: unit(6)
+    integer :: i
+
+    unit = 0
+    factors(7) = uniaxial_strain(ply%elasticity, mean_strains_at(ply, unit, z))
+    do i = 1, 6
+      unit = 0
+      unit(i) = 1
+      factors(i) = uniaxial_strain(ply%elasticity, mean_strains_at(ply, unit, z) + ply%free_strain(:2))
+    end do
+  end function uniaxial_factors
+
+  !> Finds the compressed sub-plies of the undamaged elements of a batch; sections change where a sign changes.
+  pure subroutine update(self, b, means, undamaged)
+    !> The sections
+    class(mean_sections_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Mean strains of its elements, (lanes, 6)
+    real(wp), intent(in) :: means(lanes, 6)
+    !> False for elements that are set otherwise
+    logical, intent(in) :: undamaged(lanes)
+    real(wp) :: strain(lanes)
+    logical :: changed(lanes)
+    integer :: k, lane
+
+    changed = .false.
+    do k = minval(self%range(:, 1, b), self%range(:, 2, b) > 0), maxval(self%range(:, 2, b))
+      associate (f => self%factors(:, k))
+        strain = f(1)*means(:, 1) + f(2)*means(:, 2) + f(3)*means(:, 3) &
+               + f(4)*means(:, 4) + f(5)*means(:, 5) + f(6)*means(:, 6) + f(7)
+      end associate
+      changed = changed .or. (strain < 0 .neqv. self%compressed(:, k, b))
+      self%compressed(:, k, b) = strain < 0
+    end do
+    changed = (changed .or. self%is_set(:, b)) .and. undamaged
+    if (.not. any(changed)) return
+    do lane = 1, lanes
+      if (changed(lane)) self%change(lane, :, b) = sum_of_compressed(self, lane, b)
+    end do
+    self%is_set(:, b) = self%is_set(:, b) .and. .not. changed
+  end subroutine update
+
+  !> Change of the section of an undamaged element.
+  pure function sum_of_compressed(self, lane, b) result(change)
+    !> The sections
+    type(mean_sections_t), intent(in) :: self
+    !> Lane and batch of the element
+    integer, intent(in) :: lane, b
+    !> The change
+    real(wp) :: change(change_values)
+    integer :: k
+
+    change = 0
+    do k = self%range(lane, 1, b), self%range(lane, 2, b)
+      if (self%compressed(lane, k, b)) change = change + self%contributions(:, k)
+    end do
+  end function sum_of_compressed
+
+  !> Sets the change of the section of a damaged element.
+  pure subroutine set_element(self, element, change)
+    !> The sections
+    class(mean_sections_t), intent(inout) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+    !> The change
+    real(wp), intent(in) :: change(change_values)
+
+    self%change(lane_of(element), :, batch_of(element)) = change
+    self%is_set(lane_of(element), batch_of(element)) = .true.
+  end subroutine set_element
+
+  !> Adds the stiffness of undamaged sub-plies in compression where it exceeds that in tension: an upper bound.
+  pure subroutine add_excess(self, stiffness)
+    !> The sections
+    class(mean_sections_t), intent(in) :: self
+    !> Section stiffness, (lanes, 21, batches)
+    real(wp), intent(inout) :: stiffness(:, :, :)
+    integer :: b, lane, k
+
+    do b = 1, size(stiffness, 3)
+      do lane = 1, lanes
+        do k = self%range(lane, 1, b), self%range(lane, 2, b)
+          associate (c => self%contributions(:18, k))
+            if (c(1) + c(4) > 0) stiffness(lane, :18, b) = stiffness(lane, :18, b) + c
+          end associate
+        end do
+      end do
+    end do
+  end subroutine add_excess
+
+  !> Contribution of the mean strains to the resultants of stress-free strains of a batch.
+  pure function resultants(self, b, means)
+    !> The sections
+    class(mean_sections_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Mean strains of its elements, (lanes, 6)
+    real(wp), intent(in) :: means(lanes, 6)
+    !> Nxx to Mxy, energy, (lanes, 7)
+    real(wp) :: resultants(lanes, 7)
+
+    associate (change => self%change(:, :, b), forces => resultants(:, :6))
+      forces = mean_resultants(change(:, :18), means)
+      resultants(:, 7) = change(:, 25) - sum(forces*means, 2)/2
+      forces = change(:, 19:24) - forces
+    end associate
+  end function resultants
+end module mean_sections
