@@ -25,7 +25,7 @@ contains
     !> The parsed command line
     character(len=*), intent(in) :: topic
 
-    is_result_topic = any(lower_case(topic) == [character(len=7) :: 'history', 'fields', 'summary'])
+    is_result_topic = index(' '//result_topics//' ', ' '//lower_case(topic)//' ') > 0 .and. len_trim(topic) > 0
   end function is_result_topic
 
   !> A column of the history or a field by name, also with a number for its N; no lines if there is none.

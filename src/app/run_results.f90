@@ -4,7 +4,7 @@ module run_results
   use json_text, only: json_t
   use kinds, only: wp
   use summary_rows, only: label_of_result, type_of_result, unit_of_result
-  use usual_units, only: in_usual_unit
+  use usual_units, only: in_usual_unit, time_kind
   implicit none
   private
   public :: results_t, new_results
@@ -21,6 +21,7 @@ module run_results
 
   !> All of them.
   type :: results_t
+    !> Those that the run has, in order
     type(result_t), allocatable, private :: list(:)
     !> System of units of the deck; empty: not known
     character(len=:), allocatable :: system
@@ -179,7 +180,7 @@ contains
     character(len=:), allocatable :: dimension_now
 
     dimension_now = kind
-    if (kind == 'time' .and. self%by_load_steps) dimension_now = '-'
+    if (kind == time_kind .and. self%by_load_steps) dimension_now = '-'
     words = in_usual_unit(value, dimension_now, self%system, digits)
   end function with_unit
 

@@ -12,6 +12,7 @@ module summary_lines
   use run_warnings, only: reported_warnings
   use summary_rows, only: label_of_result, unit_of_result
   use text, only: line_t, append, counted, rounded_text, to_text
+  use usual_units, only: area_kind, energy_kind, force_kind, length_kind, time_kind, velocity_kind
   implicit none
   private
   public :: lines_of_summary
@@ -23,6 +24,7 @@ contains
 
   !> The summary as lines of the log.
   function lines_of_summary(deck, results, record, figures, errors, unknown_because) result(lines)
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -83,6 +85,7 @@ contains
 
   !> Time with its unit; without a known system of units, and in load steps, with its name.
   pure function instant(deck, results, time) result(words)
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -92,7 +95,7 @@ contains
     character(len=:), allocatable :: words
 
     words = moment(deck, time)
-    if (deck%units /= '' .and. .not. deck%is_static()) words = results%with_unit(time, 'time')
+    if (deck%units /= '' .and. .not. deck%is_static()) words = results%with_unit(time, time_kind)
   end function instant
 
   !> Adds a line.
@@ -111,6 +114,7 @@ contains
   subroutine add_impact(lines, deck, results, record, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -125,7 +129,7 @@ contains
                     instant(deck, results, results%value('peak_force_at'))// &
                     within(results, 'peak_force_at', errors%peak_time))
     if (record%filter%frequency > 0) &
-      call add_figure(lines, 'filtered', results%with_unit(record%peak_filtered, 'force')//' at '// &
+      call add_figure(lines, 'filtered', results%with_unit(record%peak_filtered, force_kind)//' at '// &
                       instant(deck, results, record%peak_filtered_time)//' after the low-pass filter of '// &
                       rounded_text(record%filter%frequency))
     until = ', until '//results%shown('contact_until')
@@ -146,6 +150,7 @@ contains
   subroutine add_dent(lines, deck, results)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -176,7 +181,7 @@ contains
     clause = ''
     if (error < 0) return
     value = abs(results%value(name))
-    if (unit_of_result(name) == 'time' .or. unit_of_result(name) == 'length/time') then
+    if (any(unit_of_result(name) == [character(len=11) :: time_kind, velocity_kind])) then
       clause = ' (+-'//results%with_unit(error, unit_of_result(name), 2)//')'
     else if (value > 0) then
       clause = ' (+-'//rounded_text(100*error/value, 2)//' %)'
@@ -207,7 +212,7 @@ contains
     lost = energy_input - results%value('energy_impactor')
     clause = ', absorbed '
     if (results%value('in_contact') > 0) clause = ', still in contact, transferred so far '
-    clause = results%shown('energy_impact')//clause//results%with_unit(lost, 'energy')
+    clause = results%shown('energy_impact')//clause//results%with_unit(lost, energy_kind)
     ! Of an impact with next to no energy the weight of the impactor may transfer more.
     if (energy_input > 0 .and. lost <= energy_input*(1 + rounding)) &
       clause = clause//' ('//rounded_text(100*lost/energy_input, 3)//' %)'
@@ -255,12 +260,13 @@ contains
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
         call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
-                  results%with_unit(figure%area, 'area')//', x '//range_of(figure%bounds(:, 1))//', y '// &
-                  range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, 'energy'))
+                  results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
+                  range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, energy_kind))
         call add_event('onset', record%onset(:, zone))
         call add_event('first growth', record%growth(:, zone))
         if (deck%has_impactor) &
-          call add_figure(lines, '', 'threshold force (closed form) '//results%with_unit(figures%threshold(zone), 'force')// &
+          call add_figure(lines, '', 'threshold force (closed form) '// &
+                          results%with_unit(figures%threshold(zone), force_kind)// &
                           ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
                           of_starter())
       end associate
@@ -280,7 +286,8 @@ contains
       else if (.not. event(1) > 0) then
         call add_figure(lines, '', 'no '//name)
       else if (deck%has_impactor) then
-        call add_figure(lines, '', name//' at force '//results%with_unit(event(2), 'force')//', '//instant(deck, results, event(1)))
+        call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
+                        instant(deck, results, event(1)))
       else
         call add_figure(lines, '', name//' at '//instant(deck, results, event(1)))
       end if
@@ -292,7 +299,7 @@ contains
       character(len=:), allocatable :: clause
 
       clause = ''
-      if (errors%area >= 0) clause = ' (+-'//results%with_unit(errors%area, 'area', 2)//')'
+      if (errors%area >= 0) clause = ' (+-'//results%with_unit(errors%area, area_kind, 2)//')'
     end function error_of_area
 
     !> Least and greatest.
@@ -302,7 +309,7 @@ contains
       !> Such as -12 mm to 12 mm
       character(len=:), allocatable :: words
 
-      words = results%with_unit(bounds(1), 'length')//' to '//results%with_unit(bounds(2), 'length')
+      words = results%with_unit(bounds(1), length_kind)//' to '//results%with_unit(bounds(2), length_kind)
     end function range_of
 
     !> The closed form with the radius of the starter.

@@ -18,6 +18,7 @@ contains
 
   !> All results.
   function results_of(deck, now, record, figures) result(results)
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
@@ -29,7 +30,8 @@ contains
     type(results_t) :: results
 
     results = new_results(deck%units, deck%is_static())
-    call results%add(trim(merge('load_factor_reached', 'time_reached       ', deck%is_static())), shown_time(record%time))
+    call results%add(trim(merge('load_factor_reached', 'time_reached       ', deck%is_static())), &
+                     shown_time(record%time))
     call results%add('accepted_steps', now%step)
     if (deck%moves_impactor() .or. deck%presses_impactor()) then
       call results%add('peak_force', record%peak_force)
@@ -53,6 +55,7 @@ contains
   subroutine add_impact(results, deck, now, record, figures)
     !> Results are added
     type(results_t), intent(inout) :: results
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> The state reached
     type(state_t), intent(in) :: now
@@ -133,6 +136,7 @@ contains
   subroutine add_compression(results, deck, record)
     !> Results are added
     type(results_t), intent(inout) :: results
+    !> The deck
     type(deck_t), intent(in) :: deck
     !> Record of the run
     type(run_record_t), intent(in) :: record

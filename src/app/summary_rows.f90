@@ -14,23 +14,25 @@ module summary_rows
   !> The results, in the order of the summary.
   character(len=result_row_length), parameter, public :: summary_table(*) = [character(len=result_row_length) :: &
     'time_reached | real | time | time | Time at the end of the run; load_factor_reached in load steps.', &
-    'load_factor_reached | real | - | load factor | Load at the end of a run in load steps, relative to the full load.', &
+    'load_factor_reached | real | - | load factor | Load at the end of load steps, relative to the full load.', &
     'accepted_steps | integer | - | steps | Accepted steps.', &
     'peak_force | real | force | peak force | Largest contact force of all steps.', &
     'peak_force_at | real | time | time of peak force | Its time; in load steps the fraction of the run, as for all &
       &times below.', &
     'contacts | integer | - | contacts | Number of contacts.', &
-    'contact_duration | real | time | time in contact | Total time of all contacts, which begin and end at mid-step.', &
+    'contact_duration | real | time | time in contact | Total time of contacts, which begin and end at mid-step.', &
     'contact_until | real | time | end of contact | End of the last contact.', &
     'in_contact | logical | - | contact at the end | Whether the last contact continues.', &
-    'dent_depth | real | length | dent | Depth of the dent below the surface around it, with the remaining vibration of &
+    'dent_depth | real | length | dent | Depth of the dent below the surface around it, with the remaining &
+      &vibration of &
       &the plate, damped by settle of &time.', &
     'dent_indentation | real | length | permanent indentation | Part of dent_depth by the indentation law.', &
     'impactor_displacement | real | length | displacement | Displacement of the impactor at the end, towards the &
       &plate.', &
     'impactor_velocity | real | length/time | velocity at the end | Velocity of the impactor at the end, positive &
       &towards the plate.', &
-    'rebound_velocity | real | length/time | rebound velocity | Velocity of the impactor at the end of the last contact, &
+    'rebound_velocity | real | length/time | rebound velocity | Velocity of the impactor at the end of the &
+      &last contact, &
       &positive away from the plate; null in contact, or if it does not leave.', &
     'largest_deflection | real | length | largest deflection | Deflection of the struck point, largest in magnitude.', &
     'largest_deflection_at | real | time | time of deflection | Its time.', &
@@ -57,7 +59,8 @@ module summary_rows
     'onset_force | real | force | force at onset | Contact force then.', &
     'first_growth_at | real | time | time of first growth | Time of the first growth of all interfaces.', &
     'first_growth_force | real | force | force at first growth | Contact force then.', &
-    'threshold_force_at_starter | real | force | threshold force | Closed form with the starter; for a single interface &
+    'threshold_force_at_starter | real | force | threshold force | Closed form with the starter; for a single &
+      &interface &
       &with a starter.', &
     'fibre_failures | integer | - | fibres | Failed plies, counted in each element: fibres.', &
     'matrix_cracks | integer | - | matrix cracked | Plies with matrix cracks, counted in each element.', &

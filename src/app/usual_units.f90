@@ -7,10 +7,16 @@ module usual_units
   private
   public :: in_usual_unit
 
+  !> Kinds of units, as in the tables of results.
+  character(len=*), parameter, public :: length_kind = 'length', area_kind = 'area', time_kind = 'time', &
+                                         velocity_kind = 'length/time', force_kind = 'force', &
+                                         pressure_kind = 'pressure', energy_kind = 'energy'
+
   !> A unit.
   type :: unit_t
-    !> Name, and the kind as in tables of results
+    !> Name
     character(len=3) :: name
+    !> Kind, as in tables of results
     character(len=11) :: kind
     !> Size in SI, and the least value in it
     real(wp) :: si, from
@@ -19,12 +25,12 @@ module usual_units
   !> Of each kind the largest one is used that gives at least the least value, else the first one. Moduli are in GPa,
   !> strengths in MPa.
   type(unit_t), parameter :: units(*) = [ &
-    unit_t('um', 'length', 1.0e-6_wp, 0.0_wp), unit_t('mm', 'length', 1.0e-3_wp, 0.1_wp), &
-    unit_t('us', 'time', 1.0e-6_wp, 0.0_wp), unit_t('ms', 'time', 1.0e-3_wp, 0.1_wp), &
-    unit_t('mm2', 'area', 1.0e-6_wp, 0.0_wp), unit_t('m/s', 'length/time', 1.0_wp, 0.0_wp), &
-    unit_t('N', 'force', 1.0_wp, 0.0_wp), unit_t('kN', 'force', 1.0e3_wp, 0.1_wp), &
-    unit_t('MPa', 'pressure', 1.0e6_wp, 0.0_wp), unit_t('GPa', 'pressure', 1.0e9_wp, 5.0_wp), &
-    unit_t('mJ', 'energy', 1.0e-3_wp, 0.0_wp), unit_t('J', 'energy', 1.0_wp, 0.1_wp)]
+    unit_t('um', length_kind, 1.0e-6_wp, 0.0_wp), unit_t('mm', length_kind, 1.0e-3_wp, 0.1_wp), &
+    unit_t('us', time_kind, 1.0e-6_wp, 0.0_wp), unit_t('ms', time_kind, 1.0e-3_wp, 0.1_wp), &
+    unit_t('mm2', area_kind, 1.0e-6_wp, 0.0_wp), unit_t('m/s', velocity_kind, 1.0_wp, 0.0_wp), &
+    unit_t('N', force_kind, 1.0_wp, 0.0_wp), unit_t('kN', force_kind, 1.0e3_wp, 0.1_wp), &
+    unit_t('MPa', pressure_kind, 1.0e6_wp, 0.0_wp), unit_t('GPa', pressure_kind, 1.0e9_wp, 5.0_wp), &
+    unit_t('mJ', energy_kind, 1.0e-3_wp, 0.0_wp), unit_t('J', energy_kind, 1.0_wp, 0.1_wp)]
 
 contains
 
@@ -63,19 +69,19 @@ contains
 
     associate (length => base(1), mass => base(2), time => base(3))
       select case (kind)
-      case ('length')
+      case (length_kind)
         si = length
-      case ('area')
+      case (area_kind)
         si = length**2
-      case ('time')
+      case (time_kind)
         si = time
-      case ('length/time')
+      case (velocity_kind)
         si = length/time
-      case ('force')
+      case (force_kind)
         si = mass*length/time**2
-      case ('energy')
+      case (energy_kind)
         si = mass*length**2/time**2
-      case ('pressure')
+      case (pressure_kind)
         si = mass/(length*time**2)
       case default
         si = 1
