@@ -23,9 +23,8 @@ module summary_rows
     'contact_duration | real | time | time in contact | Total time of contacts, which begin and end at mid-step.', &
     'contact_until | real | time | end of contact | End of the last contact.', &
     'in_contact | logical | - | contact at the end | Whether the last contact continues.', &
-    'dent_depth | real | length | dent | Depth of the dent below the surface around it, with the remaining &
-      &vibration of &
-      &the plate, damped by settle of &time.', &
+    'dent_depth | real | length | dent | Depth of the dent below the surface around it, with the remaining vibration &
+      &of the plate.', &
     'dent_indentation | real | length | permanent indentation | Part of dent_depth by the indentation law.', &
     'impactor_displacement | real | length | displacement | Displacement of the impactor at the end, towards the &
       &plate.', &
