@@ -58,7 +58,10 @@ LINES = (
     ("", rf"contact {NUMBER}, friction {NUMBER}, layers {NUMBER}(?:, damping {NUMBER})?, "
      rf"algorithmic dissipation {NUMBER}",
      ("energy_contact", "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic")),
-    ("delaminated area", rf"{NUMBER} of all interfaces, projected {NUMBER}", ("delaminated_area", "projected_area")),
+    ("delaminated area", rf"{NUMBER} of all interfaces", ("delaminated_area",)),
+    ("projected", rf"{NUMBER} by dissipated fractions, as in a C-scan; failed points {NUMBER}, "
+     rf"with process zones {NUMBER}",
+     ("projected_area", "projected_area_failed", "projected_area_softened")),
     ("failed plies", r"fibres (\d+)()(), matrix cracked (\d+)()(), crushed (\d+)()()",
      ("fibre_failures", "matrix_cracks", "matrix_crushings")))
 OF_INTERFACE = (

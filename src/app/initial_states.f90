@@ -7,6 +7,7 @@ module initial_states
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
   use deck_initial_states, only: inheritance_objection, is_mapped
+  use deck_plate_cuts, only: cut_of, moved_centre
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck_text
   use errors, only: error_t, exit_deck, exit_files, fail
@@ -20,12 +21,13 @@ module initial_states
   use kinds, only: wp
   use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
-  use mapped_figures, only: after_mapping, before_mapping, mapped_figures_t
+  use mapped_figures, only: after_mapping, before_cutting, before_mapping, mapped_figures_t
   use mapped_interfaces, only: put_fractions, set_damage, set_slips
   use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
   use model_building, only: create_model
   use models, only: model_t
+  use plate_cuts, only: plate_cut_t
   use root_output, only: print_lines
   use run_records, only: run_record_t
   use states, only: new_state, state_t, time_item
@@ -85,7 +87,7 @@ contains
     end if
     do i = 1, size(deck%delaminations)
       if (.not. deck%delaminations(i)%is_adaptive) cycle
-      if (is_mapped(deck, old) .or. any(abs(deck%mesh%struck - old%mesh%struck) > 0)) &
+      if (is_mapped(deck, old) .or. any(moved_centre(deck, old) > 0)) &
         old%delaminations(i)%zone = covering_extents(deck, old, i)
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
@@ -167,12 +169,14 @@ contains
     integer, intent(in) :: zone
     !> Full extents along x and y
     real(wp) :: extents(2)
+    real(wp) :: distance(2)
     integer :: direction
 
+    distance = moved_centre(deck, old)
     do direction = 1, 2
       associate (before => cell_edges(old%plate, old%mesh, direction) - old%mesh%struck(direction))
         extents(direction) = extent_of_cells(before, old%delaminations(zone)%zone(direction)) + &
-                             2*abs(deck%mesh%struck(direction) - old%mesh%struck(direction))
+                             2*distance(direction)
       end associate
       extents(direction) = widened_extent(cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction), &
                                           extents(direction), 1)
@@ -229,6 +233,7 @@ contains
     call record%inherit(model, stepper%now)
     if (is_mapped(deck, old)) then
       call record%mapping%note(model, stepper%now, after_mapping)
+      if (record%mapping%is_cut()) call log%note(record%mapping%cut_line(deck%delaminations%below_ply))
       call log%note(record%mapping%line(deck%delaminations%below_ply))
       if (record%mapping%first_loss() > 0) then
         call refuse(deck, 'the interface below ply '// &
@@ -263,6 +268,7 @@ contains
     type(checkpoint_archive_t) :: archive
     type(model_t), allocatable :: old_model
     type(state_t), allocatable :: state
+    type(mesh_transfer_t) :: mapped
 
     call open_checkpoint(deck%initial%from, model%communicator, archive, old, error)
     if (allocated(error)) return
@@ -274,8 +280,9 @@ contains
     call archive%close(error)
     if (allocated(error)) return
     if (is_mapped(deck, old)) then
-      allocate (mesh_transfer_t :: transfer)
-      call mapping%note(old_model, state, before_mapping)
+      mapped%origin = deck%initial%cut_at
+      allocate (transfer, source=mapped)
+      call note_before(cut_of(deck), old_model, state, mapping)
       call put_fractions(state%interfaces%cohesive, old_model)
     else
       allocate (layer_transfer_t :: transfer)
@@ -290,4 +297,28 @@ contains
       call set_slips(now%interfaces%cohesive, model, now%motion%displacement)
     end associate
   end subroutine load_transfer
+
+  !> Stores the quantities of the other run's plate, and of the part that is cut from it. Collective.
+  subroutine note_before(cut, old_model, state, mapping)
+    !> The part; the full plate: nothing is cut
+    type(plate_cut_t), intent(in) :: cut
+    !> The other run's model; points and elements keep the areas inside of the part
+    type(model_t), intent(inout) :: old_model
+    !> Its state
+    type(state_t), intent(inout) :: state
+    !> Receives the quantities
+    type(mapped_figures_t), intent(inout) :: mapping
+    real(wp), allocatable :: parts(:)
+
+    if (.not. cut%is_whole(old_model%setup%plate%length)) then
+      call mapping%note(old_model, state, before_cutting)
+      parts = cut%of_nodes(old_model%mesh)
+      if (allocated(old_model%contact_area)) &
+        old_model%contact_area = old_model%contact_area*parts(old_model%mesh%point_node(old_model%distribution%points))
+      parts = cut%of_cells(old_model%mesh)
+      if (allocated(state%plies%bands)) state%plies%bands%area = &
+        state%plies%bands%area*parts(old_model%mesh%element_cell(old_model%distribution%elements))
+    end if
+    call mapping%note(old_model, state, before_mapping)
+  end subroutine note_before
 end module initial_states

@@ -4,6 +4,7 @@ module interface_summary
   use delamination_parameters, only: law_cohesive
   use json_text, only: json_t
   use kinds, only: wp
+  use projected_areas, only: projected_rule
   use run_figures, only: run_figures_t
   use run_records, only: run_record_t
   use states, only: state_t
@@ -27,6 +28,7 @@ contains
     type(run_figures_t), intent(in) :: figures
     integer :: zone
 
+    call json%put('projected_area_rule', projected_rule)
     call json%open_list('interfaces')
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
@@ -60,6 +62,7 @@ contains
 
     if (.not. event(1) > 0) then
       call json%put_null(name)
+      call json%put(name//'_before_run', event(1) < 0)
       return
     end if
     call json%open_object(name)

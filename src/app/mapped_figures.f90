@@ -1,5 +1,5 @@
 !> Conservation in mapping to another mesh: areas and energies of interfaces, damage and energy of plies, before and
-!> after.
+!> after, and of a plate that is cut from a larger one those before the cut.
 module mapped_figures
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
@@ -7,31 +7,35 @@ module mapped_figures
   use kinds, only: wp
   use models, only: model_t
   use rank_totals, only: totals_of
+  use roundings, only: rounding
   use states, only: state_t
   use text, only: rounded_text, to_text
   implicit none
   private
   public :: mapped_figures_t
 
-  !> Before the mapping and after it.
-  integer, parameter, public :: before_mapping = 1, after_mapping = 2
+  !> Before the mapping and after it, and before a smaller plate is cut out.
+  integer, parameter, public :: before_mapping = 1, after_mapping = 2, before_cutting = 3
   !> Relative loss of an area or an energy above which it is reported: the area of one of 1e6 elements, the largest
   !> number of a mesh. Round-off of the sums is a thousand times smaller.
   real(wp), parameter :: tolerance = 1.0e-6_wp
 
   !> Quantities of the full plate, the same on every rank; unallocated: no mapping.
   type :: mapped_figures_t
-    !> Area and energy dissipated of each interface, (zones, before and after)
+    !> Area and energy dissipated of each interface, (zones, before and after); a third column of a plate that is cut
     real(wp), allocatable :: area(:, :), energy(:, :)
-    !> Areas of all plies times the damage of fibres and of the matrix, and energy of plies, (3, before and after)
+    !> Areas of all plies times the damage of fibres and of the matrix, and energy of plies, in the same columns
     real(wp), allocatable :: plies(:, :)
   contains
     !> Stores the quantities of a state.
     procedure :: note
+    !> True for a plate cut from a larger one.
+    procedure :: is_cut
     !> First interface with a loss of area or energy; 0: none.
     procedure :: first_loss
-    !> One line for the log.
+    !> Lines for the log.
     procedure :: line
+    procedure :: cut_line
     !> Adds them to the summary.
     procedure :: put
     !> Saves or loads.
@@ -40,19 +44,22 @@ module mapped_figures
 
 contains
 
-  !> Stores the quantities of a state. Collective.
+  !> Stores the quantities of a state; of a plate that is cut, the first time before the cut. Collective.
   subroutine note(self, model, state, moment)
     !> The quantities
     class(mapped_figures_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state
     type(state_t), intent(inout) :: state
-    !> before_mapping or after_mapping
+    !> before_mapping, after_mapping or before_cutting
     integer, intent(in) :: moment
+    integer :: columns
 
     if (.not. allocated(self%plies)) then
-      allocate (self%area(size(model%mesh%zones), 2), self%energy(size(model%mesh%zones), 2), self%plies(3, 2), &
-                source=0.0_wp)
+      columns = max(moment, after_mapping)
+      associate (zones => size(model%mesh%zones))
+        allocate (self%area(zones, columns), self%energy(zones, columns), self%plies(3, columns), source=0.0_wp)
+      end associate
     end if
     self%area(:, moment) = state%interfaces%cohesive%area(model)
     self%energy(:, moment) = state%interfaces%cohesive%energy(model)
@@ -70,12 +77,11 @@ contains
     !> Of fibres and of the matrix
     real(wp) :: areas(2)
     type(exact_sum_t) :: fibres, matrix
-    real(wp) :: damage(2), area
+    real(wp) :: damage(2)
     integer :: i, ply
 
     do i = 1, model%elements%elements
-      associate (mesh => model%mesh, element => model%distribution%elements(i))
-        area = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
+      associate (mesh => model%mesh, element => model%distribution%elements(i), area => state%plies%bands%area(i))
         do ply = mesh%element_plies(1, element), mesh%element_plies(2, element)
           damage = state%plies%bands%states%accepted_damage(ply, i)
           call fibres%add(area*damage(1))
@@ -85,6 +91,15 @@ contains
     end do
     areas = totals_of(model%communicator, [fibres, matrix])*model%mesh%multiplicity
   end function damage_of_plies
+
+  !> True for a plate cut from a larger one.
+  pure logical function is_cut(self)
+    !> The quantities
+    class(mapped_figures_t), intent(in) :: self
+
+    is_cut = .false.
+    if (allocated(self%plies)) is_cut = size(self%plies, 2) == before_cutting
+  end function is_cut
 
   !> First interface with a loss of area or energy, as its zone is too small; 0: none.
   pure integer function first_loss(self)
@@ -114,10 +129,41 @@ contains
            both(self%plies(1, :))//', of the matrix '//both(self%plies(2, :))//', energy '//both(self%plies(3, :))//'.'
   end function line
 
+  !> One line for the log of a plate cut from a larger one: the damage that is cut away; interfaces without are left
+  !> out.
+  pure function cut_line(self, below_plies) result(line)
+    !> The quantities
+    class(mapped_figures_t), intent(in) :: self
+    !> Ply above each interface
+    integer, intent(in) :: below_plies(:)
+    !> Quantities before the cut minus those of the plate that is cut out
+    character(len=:), allocatable :: line
+    integer :: i
+
+    line = ''
+    do i = 1, size(below_plies)
+      if (.not. (cut_away(self%area(i, :)) > 0 .or. cut_away(self%energy(i, :)) > 0)) cycle
+      line = line//'below ply '//to_text(below_plies(i))//' area '//rounded_text(cut_away(self%area(i, :)))// &
+             ', energy '//rounded_text(cut_away(self%energy(i, :)))//'; '
+    end do
+    line = 'Cut away, and not in the energy ledger: '//line//'plies: damage of fibres times area '// &
+           rounded_text(cut_away(self%plies(1, :)))//', of the matrix '//rounded_text(cut_away(self%plies(2, :)))// &
+           ', energy '//rounded_text(cut_away(self%plies(3, :)))//'.'
+  end function cut_line
+
+  !> Part of a quantity that is cut away; round-off of the sums counts as nothing.
+  pure real(wp) function cut_away(values)
+    !> Of the part, after mapping, and before the cut
+    real(wp), intent(in) :: values(before_cutting)
+
+    cut_away = values(before_cutting) - values(before_mapping)
+    if (cut_away < rounding*values(before_cutting)) cut_away = 0
+  end function cut_away
+
   !> Both values.
   pure function both(values) result(text)
-    !> Before and after
-    real(wp), intent(in) :: values(2)
+    !> Before and after, and before a cut
+    real(wp), intent(in) :: values(:)
     !> The text
     character(len=:), allocatable :: text
 
@@ -156,11 +202,12 @@ contains
     subroutine put_both(name, values)
       !> Their name
       character(len=*), intent(in) :: name
-      !> Before and after
-      real(wp), intent(in) :: values(2)
+      !> Before and after, and before a cut
+      real(wp), intent(in) :: values(:)
 
       call json%put(name//'_before', values(1))
       call json%put(name//'_after', values(2))
+      if (self%is_cut()) call json%put(name//'_cut_away', cut_away(values))
     end subroutine put_both
   end subroutine put
 

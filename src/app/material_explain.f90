@@ -1,5 +1,6 @@
 !> Published materials for the terminal and for the manual.
 module material_explain
+  use fibre_toughnesses, only: fibre_toughness_lines
   use material_library, only: library_lines
   use text, only: append, line_t, lower_case
   implicit none
@@ -34,6 +35,11 @@ contains
     if (.not. markdown) call append(lines, '&material library names one of these; keys that the deck leaves out '// &
                                     'get its values, in the units of &case units. In SI:')
     call library_lines(markdown, table)
+    lines = [lines, table]
+    call append(lines, '')
+    call append(lines, 'Fracture energies of fibres, measured; they depend on the thickness of the block of plies:')
+    if (markdown) call append(lines, '')
+    call fibre_toughness_lines(markdown, table)
     lines = [lines, table]
   end subroutine explain_materials
 end module material_explain

@@ -32,7 +32,7 @@ module rig_decks
     '', &
     '&impactor     mass=5.5  energy=28.1          ! 6.7 J/mm times 4.19 mm', &
     '              radius=8e-3  contact_area=''sphere'' /', &
-    '&indentation  law=''thornton''  alpha_cr=24.5e-6 /   ! (0.8 pi YC/E2)**2 R', &
+    '&indentation  law=''thornton''  face=''laminate'' /   ! stiffness and strength through its thickness', &
     '', &
     '&ply_damage   criteria=''hashin''  in_situ=.true. /', &
     '&delamination below_ply=''between_angles''     ! toughness is that of the library', &

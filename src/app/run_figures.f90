@@ -10,6 +10,7 @@ module run_figures
   use line_columns, only: pressed_axis
   use models, only: model_t
   use ply_damage_parameters, only: failure_modes
+  use projected_areas, only: area_rules, projected_areas_of
   use states, only: state_t
   use threshold_forces, only: effective_bending_stiffness, patch_factor, threshold_force
   implicit none
@@ -30,8 +31,8 @@ module run_figures
   type :: run_figures_t
     !> Each interface
     type(interface_figures_t), allocatable :: interfaces(:)
-    !> Projected delaminated area
-    real(wp) :: projected_area = 0
+    !> Projected delaminated areas, by what counts as delaminated
+    real(wp) :: projected_areas(area_rules) = 0
     !> Depth of the dent, and the permanent indentation in it
     real(wp) :: dent(2) = 0
     !> Plies of elements failed in each mode
@@ -62,7 +63,7 @@ contains
     integer :: zone, zones, along
 
     figures%interfaces = figures_of(model, now%interfaces)
-    figures%projected_area = now%interfaces%projected_area(model)
+    figures%projected_areas = projected_areas_of(model, now%interfaces)
     figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
     figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)

@@ -17,13 +17,14 @@ module run_warnings
   use roundings, only: rounding
   use run_records, only: run_record_t, warning_border, warning_contact, warning_core, warning_energy, &
                          warning_perforation, warning_indentation, warning_kinetic, warning_ledger, warning_loss, &
-                         warning_scaled, warning_slopes, warning_steps, warning_membrane
+                         warning_scaled, warning_slopes, warning_steps, warning_membrane, warning_below_nose
   use run_moments, only: moment
   use stepping_parameters, only: is_explicit
   use states, only: state_t
   use text, only: line_t, append
   use time_stepping, only: time_stepper_t
-  use warning_texts, only: warning_text, max_contact, max_deflection_ratio, max_kinetic, max_scaled
+  use warning_texts, only: warning_text, max_contact, max_deflection_ratio, max_hollow, &
+                           max_kinetic, max_scaled
   implicit none
   private
   public :: report_warnings, report_last_warnings, reported_warnings
@@ -127,6 +128,7 @@ contains
       if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, 0)
     end do
     if (now%indentation%alpha > max_indentation(deck)) call add(warning_indentation, 0)
+    if (now%force > 0 .and. now%depth_below_impactor(model) > max_hollow*thickness) call add(warning_below_nose, 0)
     if (step_errs) call add(warning_steps, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call add(warning_slopes, 0)
@@ -262,8 +264,8 @@ contains
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > max_slope)
   end function is_steep
 
-  !> True: the fibres of every ply have failed over an area as large as the contact, so that the contact force has no
-  !> support. Collective.
+  !> True: the fibres of every ply have failed over an area as large as patch and contact, so that the contact force has
+  !> no support. Collective.
   logical function is_perforated(model, now)
     type(model_t), intent(in) :: model
     !> The step reached
@@ -275,7 +277,8 @@ contains
     counts = failed_counts(model, now%plies)
     if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
     areas = failed_areas(model, now%plies)
-    is_perforated = all(areas(fibre_failure, :) >= now%pressed_area(model)*(1 - rounding))
+    is_perforated = all(areas(fibre_failure, :) >= &
+      max(model%setup%mesh%patch**2, now%pressed_area(model))*(1 - rounding))
   end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.

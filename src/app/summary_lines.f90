@@ -256,7 +256,11 @@ contains
     integer :: zone
 
     call add_figure(lines, label_of_result('delaminated_area'), results%shown('delaminated_area')// &
-                    ' of all interfaces, '//results%labelled('projected_area')//error_of_area())
+                    ' of all interfaces'//error_of_area())
+    call add_figure(lines, '  projected', results%shown('projected_area')// &
+                    ' by dissipated fractions, as in a C-scan; failed points '// &
+                    results%shown('projected_area_failed')//', with process zones '// &
+                    results%shown('projected_area_softened'))
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
         call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &

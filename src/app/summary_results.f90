@@ -6,6 +6,7 @@ module summary_results
   use kinds, only: wp
   use output_clocks, only: shown_time
   use placed_gauges, only: back_to_back
+  use projected_areas, only: area_dissipated, area_failed, area_softened
   use run_figures, only: run_figures_t
   use run_records, only: run_record_t
   use run_results, only: new_results, results_t
@@ -113,7 +114,9 @@ contains
     type(run_figures_t), intent(in) :: figures
 
     call results%add('delaminated_area', sum(figures%interfaces%area))
-    call results%add('projected_area', figures%projected_area)
+    call results%add('projected_area', figures%projected_areas(area_dissipated))
+    call results%add('projected_area_failed', figures%projected_areas(area_failed))
+    call results%add('projected_area_softened', figures%projected_areas(area_softened))
     call add_first('onset', record%earliest(record%onset))
     call add_first('first_growth', record%earliest(record%growth))
     if (figures%starter_threshold > 0) call results%add('threshold_force_at_starter', figures%starter_threshold)

@@ -30,9 +30,8 @@ module summary_rows
       &plate.', &
     'impactor_velocity | real | length/time | velocity at the end | Velocity of the impactor at the end, positive &
       &towards the plate.', &
-    'rebound_velocity | real | length/time | rebound velocity | Velocity of the impactor at the end of the &
-      &last contact, &
-      &positive away from the plate; null in contact, or if it does not leave.', &
+    'rebound_velocity | real | length/time | rebound velocity | Velocity of the impactor at the end of the last &
+      &contact, positive away from the plate; null in contact, or if it does not leave.', &
     'largest_deflection | real | length | largest deflection | Deflection of the struck point, largest in magnitude.', &
     'largest_deflection_at | real | time | time of deflection | Its time.', &
     'scaled_kinetic_share | real | - | scaled inertia | With mass_scaling: largest kinetic energy of motions with &
@@ -53,14 +52,17 @@ module summary_rows
     'energy_algorithmic | real | energy | algorithmic dissipation | Algorithmic (numerical) dissipation.', &
     'energy_error | real | energy | energy error | Energy imbalance.', &
     'delaminated_area | real | area | delaminated area | Delaminated area of all interfaces, as in the history.', &
-    'projected_area | real | area | projected | Projected delaminated area, as in the history.', &
+    'projected_area | real | area | projected | Projected delaminated area, by dissipated fractions, as in a C-scan.', &
+    'projected_area_failed | real | area | failed | The same of points that have lost 99 % of the stiffness of the &
+      &cohesive law.', &
+    'projected_area_softened | real | area | softened | The same of points that have lost half of it, with process &
+      &zones.', &
     'onset_at | real | time | time of onset | Time of the first onset of all interfaces; null if there is none.', &
     'onset_force | real | force | force at onset | Contact force then.', &
     'first_growth_at | real | time | time of first growth | Time of the first growth of all interfaces.', &
     'first_growth_force | real | force | force at first growth | Contact force then.', &
     'threshold_force_at_starter | real | force | threshold force | Closed form with the starter; for a single &
-      &interface &
-      &with a starter.', &
+      &interface with a starter.', &
     'fibre_failures | integer | - | fibres | Failed plies, counted in each element: fibres.', &
     'matrix_cracks | integer | - | matrix cracked | Plies with matrix cracks, counted in each element.', &
     'matrix_crushings | integer | - | crushed | Plies crushed, counted in each element.', &

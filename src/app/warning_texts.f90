@@ -5,7 +5,7 @@ module warning_texts
   use kinds, only: wp
   use run_records, only: warning_border, warning_contact, warning_core, warning_energy, warning_perforation, &
                          warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
-                         warning_slopes, warning_steps, warning_membrane
+                         warning_slopes, warning_steps, warning_membrane, warning_below_nose
   use plate_options, only: max_slope
   use short_numbers, only: short_text
   use stepping_parameters, only: is_explicit
@@ -28,6 +28,9 @@ module warning_texts
   !> Permitted fraction of energy that contact dissipates by central differences: 1 % of force, as above. In the impacts
   !> of input/ it is at most .8 % (input/experiments/im7_8552_d7136_30J.nml).
   real(wp), parameter, public :: max_contact = 0.02_wp
+  !> Permitted depth of the struck point below the impactor during contact, relative to the thickness: a plate that is
+  !> pressed ahead of the nose by more has lost its stiffness there, or is too coarse to follow the nose.
+  real(wp), parameter, public :: max_hollow = 0.05_wp
 
 contains
 
@@ -89,6 +92,10 @@ contains
     case (warning_perforation)
       text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
              ': the impactor perforates the plate, which is not modelled; later results are not valid.'
+    case (warning_below_nose)
+      text = 'The struck point has been deeper than the impactor, during contact, by more than '// &
+             to_text(100*max_hollow)//' % of the thickness since '//at// &
+             ': '//hollow_remedy(deck)
     end select
 
   contains
@@ -130,4 +137,17 @@ contains
     if (any(deck%delaminations%is_adaptive)) &
       cure = 'use a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
   end function dissipation_remedy
+
+  !> Cause and remedy of a struck point deeper than the impactor.
+  pure function hollow_remedy(deck) result(cure)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> End of a sentence
+    character(len=:), allocatable :: cure
+
+    cure = 'the force on the patch presses its middle ahead of the nose; use &impactor contact_area=''sphere'', or '// &
+           'a smaller patch.'
+    if (deck%impactor%spreads) cure = 'the plate bends away from the nose, on broken fibres or on cells too large '// &
+                                      'to follow it; use shorter cells. The largest deflection includes this.'
+  end function hollow_remedy
 end module warning_texts

@@ -212,12 +212,6 @@ contains
       end if
       if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
         call report(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
-      ! The force acts on the full patch, also beyond the nose.
-      if (deck%impactor%spreads .and. deck%impactor%radius > 0 .and. &
-          deck%mesh%patch/sqrt(2.0_wp) > deck%impactor%radius) &
-        call remark(s, problems, mesh_group, key_patch, 'extends beyond the nose of the impactor: its corners '// &
-                    'are '//short_text(deck%mesh%patch/sqrt(2.0_wp))//' from the struck point, and the radius is '// &
-                    short_text(deck%impactor%radius)//'; make the patch smaller.')
       call check_dent(deck, problems)
       if (any([(deck%supports(i)%carries(deck%impactor%at), i=1, size(deck%supports))]) .and. &
           are_clear(s, problems, impactor_group, key_at) .and. .not. problems%concern(support_group)) &

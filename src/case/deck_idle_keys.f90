@@ -7,7 +7,9 @@ module deck_idle_keys
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, remark_idle
   use interface_places, only: interfaces_between
+  use impact_parameters, only: law_thornton
   use impactor_deck, only: impactor_group, key_rise, key_travel
+  use indentation_deck, only: takes_laminate
   use material_deck, only: material_group, key_expansion, key_fibre_shear, key_shear_23, key_shear_strain, &
                            of_interfaces, strength_keys, toughness_keys
   use output_deck, only: output_group, key_force_filter
@@ -83,7 +85,8 @@ contains
     end if
     call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
                      'has no effect without &'//ply_damage_group//': shear is linear.', place)
-    call remark_first(deck, place, pack(strength_keys, .not. (of_interfaces .and. has_interfaces(deck))), 'strengths', &
+    call remark_first(deck, place, pack(strength_keys, .not. ((of_interfaces .and. has_interfaces(deck)) .or. &
+      (has_yield_pressure(deck) .and. (strength_keys == 'YC' .or. strength_keys == key_shear_23)))), 'strengths', &
                       problems)
     call remark_first(deck, place, toughness_keys, 'fracture energies', problems)
   end subroutine check_material
@@ -104,6 +107,15 @@ contains
       call remark_idle(deck%settings, problems, material_group, key_shear_23, &
                        'has no effect with criteria = ''puck''.', place)
   end subroutine remark_strengths
+
+  !> True: strengths of the plies determine the yield pressure of the struck face.
+  logical function has_yield_pressure(deck)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+
+    has_yield_pressure = deck%has_impactor .and. deck%indentation%law == law_thornton .and. &
+                         takes_laminate(deck%settings)
+  end function has_yield_pressure
 
   !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.
   pure logical function has_interfaces(deck)

@@ -1,7 +1,9 @@
 !> Checks of a deck that starts from the end of another run: whether it can, and whether the plate is the same.
 module deck_initial_states
   use cell_grids, only: cell_edges
+  use deck_comparisons, only: both, differ, integer_list, short_list
   use deck_contents, only: deck_t
+  use deck_plate_cuts, only: cut_objection, has_same_length, moved_centre
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, remark_idle, report
   use delamination_deck, only: key_starter, key_zone
@@ -21,14 +23,11 @@ module deck_initial_states
   use static_deck, only: static_group
   use stepping_parameters, only: is_explicit
   use support_deck, only: support_group, key_unilateral
-  use text, only: rounded_text, to_text
+  use text, only: to_text
   use time_deck, only: key_settle, time_group
   implicit none
   private
   public :: check_initial_state, inheritance_objection, is_mapped
-
-  !> Digits of numbers in a list, for numbers with a relative difference above 1e-9.
-  integer, parameter :: digits = 10
 
 contains
 
@@ -79,9 +78,11 @@ contains
     objection = ''
     if (deck%kinematics /= old%kinematics) then
       objection = both('&case kinematics', strains_name(deck%kinematics), strains_name(old%kinematics))
-    else if (any(differ(deck%plate%length, old%plate%length))) then
-      objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))
-    else if (differ(deck%plate%imperfection, old%plate%imperfection)) then
+    else if (.not. has_same_length(deck, old) .or. any(abs(deck%initial%cut_at) > 0)) then
+      objection = cut_objection(deck, old)
+    end if
+    if (objection /= '') return
+    if (differ(deck%plate%imperfection, old%plate%imperfection)) then
       objection = both('&plate imperfection', to_text(deck%plate%imperfection), to_text(old%plate%imperfection))
     else if (abs(deck%plate%imperfection) > 0 .and. any(deck%plate%half_waves /= old%plate%half_waves)) then
       objection = both('&plate half_waves', integer_list(deck%plate%half_waves), integer_list(old%plate%half_waves))
@@ -94,7 +95,7 @@ contains
     if (objection == '') objection = laminate_objection(deck, old)
     if (objection == '') objection = damage_objection(deck, old)
     if (objection == '') objection = interface_objection(deck, old)
-    if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck)
+    if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck, old)
   end function inheritance_objection
 
   !> True if the meshes differ, so that the state is mapped.
@@ -106,16 +107,18 @@ contains
   end function is_mapped
 
   !> States that cannot be mapped.
-  pure function mapping_objection(deck) result(objection)
-    !> The deck, with the plate and the damage of the other run
-    type(deck_t), intent(in) :: deck
+  pure function mapping_objection(deck, old) result(objection)
+    !> The deck, with the plate and the damage of the other run, and the deck of that
+    type(deck_t), intent(in) :: deck, old
     !> One clause; empty: nothing
     character(len=:), allocatable :: objection
 
     objection = ''
     if (deck%has_ply_damage .and. .not. deck%has_crack_bands()) &
       objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) fail '// &
-                  'at once, so that their state cannot be averaged; give the same &mesh in both decks'
+                  'at once, so that their state cannot be averaged; give '// &
+                  trim(merge('the same &mesh in both decks', 'these energies              ', &
+                             has_same_length(deck, old)))
   end function mapping_objection
 
   !> First difference of plies and materials.
@@ -241,13 +244,14 @@ contains
     real(wp) :: needed(2)
 
     objection = ''
-    needed = min(its%zone + 2*abs(deck%mesh%struck - old%mesh%struck), max(its%zone, deck%plate%length))
+    needed = min(its%zone + 2*moved_centre(deck, old), max(its%zone, old%plate%length))
+    if (.not. has_same_length(deck, old)) needed = min(needed, deck%plate%length)
     if (.not. any(mine%zone < needed*(1 - rounding))) return
     objection = both('&delamination '//key_zone//' below ply '//to_text(mine%below_ply), short_list(mine%zone), &
                      short_list(its%zone))
-    if (any(differ(deck%mesh%struck, old%mesh%struck))) objection = objection//', centred on '// &
-                                                                short_list(deck%mesh%struck)//' and '// &
-                                                                short_list(old%mesh%struck)
+    if (any(differ(deck%initial%cut_at + deck%mesh%struck, old%mesh%struck))) &
+      objection = objection//', centred on '//short_list(deck%initial%cut_at + deck%mesh%struck)//' and '// &
+                  short_list(old%mesh%struck)
     objection = objection//'; allowed: '//short_list(needed)//' or larger'
   end function zone_objection
 
@@ -327,50 +331,4 @@ contains
 
     name = ''''//trim(names(symmetry))//''''
   end function part_name
-
-  !> A clause with both values.
-  pure function both(what, here, there) result(clause)
-    !> The quantity
-    character(len=*), intent(in) :: what
-    !> Value in the deck, and in that of the other run
-    character(len=*), intent(in) :: here, there
-    !> The clause
-    character(len=:), allocatable :: clause
-
-    clause = what//': '//here//' here and '//there//' there'
-  end function both
-
-  !> True where two numbers differ by more than rounding.
-  elemental logical function differ(here, there)
-    !> The numbers
-    real(wp), intent(in) :: here, there
-
-    differ = abs(here - there) > rounding*max(abs(here), abs(there))
-  end function differ
-
-  !> Numbers as text.
-  pure function short_list(numbers) result(list)
-    !> The numbers
-    real(wp), intent(in) :: numbers(:)
-    !> Separated by blanks
-    character(len=:), allocatable :: list
-    integer :: i
-
-    list = ''
-    do i = 1, size(numbers)
-      list = list//' '//rounded_text(numbers(i), digits)
-    end do
-    list = list(min(2, len(list) + 1):)
-  end function short_list
-
-  !> Integers as text.
-  pure function integer_list(numbers) result(list)
-    !> The numbers
-    integer, intent(in) :: numbers(:)
-    !> Separated by blanks
-    character(len=:), allocatable :: list
-
-    list = short_list(real(numbers, wp))
-    if (size(numbers) == 0) list = 'none'
-  end function integer_list
 end module deck_initial_states

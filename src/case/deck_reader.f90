@@ -46,7 +46,7 @@ module deck_reader
   use line_deck, only: fill_lines, check_lines
   use delamination_parameters, only: law_cohesive, law_front
   use solver_deck, only: check_petsc_options, fill_equilibrium, fill_linear_solver
-  use material_deck, only: fill_materials, normal_compliance
+  use material_deck, only: fill_materials
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh, check_mesh
   use mesh_parameters, only: add_lines
@@ -58,6 +58,7 @@ module deck_reader
   use rigs, only: window_lines
   use stepping_parameters, only: is_error_controlled, is_explicit
   use support_deck, only: fill_supports, check_rigs
+  use deck_struck_faces, only: check_struck_face, struck_face_of
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
   implicit none
@@ -221,16 +222,11 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
-    real(wp) :: compliance
 
     call fill_impactor(deck%settings, deck%impactor, problems)
     if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
-    if (deck%has_impactor) then
-      compliance = 0
-      if (allocated(deck%laminate%material)) compliance = normal_compliance( &
-        deck%settings, deck%laminate%material(1), deck%materials(deck%laminate%material(1)))
-      call fill_indentation(deck%settings, deck%impactor%radius, compliance, deck%indentation)
-    end if
+    if (deck%has_impactor) &
+      call fill_indentation(deck%settings, deck%impactor%radius, struck_face_of(deck), deck%indentation)
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
@@ -289,6 +285,7 @@ contains
     call check_delaminations(deck%settings, deck%delaminations, problems)
     if (allocated(deck%laminate%angle)) &
       call remark_left_out(deck%settings, size(deck%laminate%angle), changes_of_angle(deck), problems)
+    call check_struck_face(deck, problems)
     if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
     if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
     if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)

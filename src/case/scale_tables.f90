@@ -2,19 +2,21 @@
 !> gives units, values are in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
 module scale_tables
   use deck_contents, only: deck_t
+  use fibre_toughnesses, only: measured_toughness, thick_block
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
-  use material_parameters, only: material_t
+  use material_parameters, only: first_alike, material_t
   use mean_stiffnesses, only: bending_error_of
   use plies, only: is_bimodular, ply_t
-  use ply_blocks, only: block_of
+  use ply_blocks, only: block_of, block_thickness
+  use roundings, only: rounding
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
   use text, only: line_t, append, to_text
   use unit_systems, only: base_units, system_named
   implicit none
   private
-  public :: scale_lines, strength_lines, length_unit, length_unit_size, length_text
+  public :: scale_lines, strength_lines, toughness_lines, length_unit, length_unit_size, length_text
 
   !> Characters before the values, and characters of a value.
   integer, parameter :: name_width = 56, value_width = 12
@@ -38,6 +40,7 @@ module scale_tables
     time = dimension_t('time', 'ms', [0.0_wp, 0.0_wp, 1.0_wp], 1.0e-3_wp), &
     force = dimension_t('force', 'N', [1.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
     energy = dimension_t('energy', 'J', [2.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
+    toughness = dimension_t('energy/area', 'N/mm', [0.0_wp, 1.0_wp, -2.0_wp], 1.0e3_wp), &
     pressure = dimension_t('pressure', 'MPa', [-1.0_wp, 1.0_wp, -2.0_wp], 1.0e6_wp), &
     contact = dimension_t('force/length^1.5', 'N/mm^1.5', [-0.5_wp, 1.0_wp, -2.0_wp], 1.0e3_wp*sqrt(1.0e3_wp))
 
@@ -161,6 +164,50 @@ contains
       line = table_line(line, strengths, unit_of(deck, pressure))
     end function strength_line
   end function strength_lines
+
+  !> Fracture energy of fibres in tension of each material, in thick blocks of plies and in thin ones, with the energy
+  !> measured in such blocks; none without units or without softening plies.
+  function toughness_lines(deck) result(lines)
+    !> The deck, checked
+    type(deck_t), intent(in) :: deck
+    !> The lines
+    type(line_t), allocatable :: lines(:)
+    type(ply_t), allocatable :: plies(:)
+    real(wp), allocatable :: blocks(:)
+    logical, allocatable :: is_thick(:)
+    integer :: place, ply
+
+    allocate (lines(0))
+    if (system_named(deck%units) == 0 .or. .not. deck%has_ply_damage) return
+    plies = stacked_plies(deck%laminate, deck%materials)
+    do place = 1, size(deck%materials)
+      if (.not. deck%materials(place)%toughness(1) > 0 .or. first_alike(deck%materials, place) /= place) cycle
+      blocks = [(block_thickness(plies, ply), ply=1, size(plies))]
+      blocks = pack(blocks, plies%material == place)
+      is_thick = blocks*product(base_units(system_named(deck%units))**length%exponents) >= thick_block*(1 - rounding)
+      call append_line(pack(blocks, .not. is_thick), .false.)
+      call append_line(pack(blocks, is_thick), .true.)
+    end do
+
+  contains
+
+    !> Adds the line of some blocks.
+    subroutine append_line(thicknesses, are_thick)
+      !> Their thicknesses; none: no line
+      real(wp), intent(in) :: thicknesses(:)
+      !> True: they count as thick
+      logical, intent(in) :: are_thick
+      character(len=:), allocatable :: name
+
+      if (size(thicknesses) == 0) return
+      name = read_as(deck, minval(thicknesses), length)
+      if (maxval(thicknesses) > minval(thicknesses)*(1 + rounding)) name = name//' to '// &
+                                                                        read_as(deck, maxval(thicknesses), length)
+      name = 'G_ft, blocks of '//name//' mm (T300/920: '//measured_toughness(are_thick)//')'
+      call append(lines, table_line(name, read_as(deck, deck%materials(place)%toughness(1), toughness), &
+                                    unit_of(deck, toughness)))
+    end subroutine append_line
+  end function toughness_lines
 
   !> A line of the table.
   pure function table_line(name, value, unit) result(line)

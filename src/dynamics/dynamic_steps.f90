@@ -1,4 +1,4 @@
-!> One time step of plate and impactor together, theory (T1), (T2) and (F10). Each equilibrium iteration solves for the
+!> One time step of plate and impactor together, theory (T1), (T2) and (F14). Each equilibrium iteration solves for the
 !> contact force by the compliance of impactor and plate.
 module dynamic_steps
   use kinds, only: wp

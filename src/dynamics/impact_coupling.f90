@@ -1,4 +1,4 @@
-!> Coupling of the impactor to the plate in a step, theory (F2) and (F10).
+!> Coupling of the impactor to the plate in a step, theory (F2) and (F14).
 module impact_coupling
   use kinds, only: wp
   use errors, only: error_t

@@ -135,6 +135,8 @@ contains
     ! The impactor starts at first contact with the deflected plate.
     if (model%setup%has_impactor) &
       state%contact%offset = -state%contact%mean(model%communicator, state%motion%displacement)
+    if (allocated(model%nose)) &
+      state%contact%touched_at = model%nose%first_contact(model%communicator, state%motion%displacement(3, :))
     state%patch_mean = state%contact_deflection(model)
     operator%ready = .false.
   end subroutine equilibrate

@@ -114,7 +114,7 @@ contains
     self%lines = create_line_steps(model, self%inertia)
     call separate_constrained_points(self)
     self%impact = create_impactor_steps(model, now%impactor%velocity)
-    self%impact%patch%offset = now%contact%offset
+    self%impact%patch%offset = merge(-now%contact%touched_at, now%contact%offset, allocated(model%nose))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     allocate (self%force(5, size(model%distribution%points)), self%motion(5, size(model%distribution%points)), &
               self%field(5, model%borders%columns), self%strain(lanes, model%elements%batches), source=0.0_wp)

@@ -55,19 +55,25 @@ contains
   end function create_impactor_steps
 
   !> Square of the frequency of the contact spring between the impactor and the mass under the patch, with the largest
-  !> stiffness so far times this factor, theory (T6).
+  !> stiffness so far times this factor, theory (T6). The contact with a nose adds the springs of its points, of which
+  !> the stiffest on the lightest mass is a bound.
   real(wp) function contact_frequency_square(self, model, indentation) result(square)
     !> The impactor
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The contact
     type(indentation_t), intent(in) :: indentation
-    real(wp) :: slope, compliance
+    real(wp) :: slope, compliance, inverse_mass
 
-    slope = indentation_stiffness(model%setup%indentation, indentation, indentation%alpha)
+    slope = self%patch%gain**2*indentation_stiffness(model%setup%indentation, indentation, indentation%alpha)
+    inverse_mass = 0
+    if (.not. model%setup%impactor%travel > 0) inverse_mass = 1/model%setup%impactor%mass
+    associate (patch => self%patch, force => indentation_force(model%setup%indentation, indentation, indentation%alpha))
+      compliance = sum(patch%weights**2*patch%inverse)/model%mesh%multiplicity + inverse_mass
+      if (any(patch%slopes > 0)) slope = slope + patch%gain*force/compliance* &
+        (maxval(patch%slopes*patch%inverse)/model%mesh%multiplicity + sum(patch%slopes)*inverse_mass)
+    end associate
     if (slope > self%contact_stiffness) self%contact_stiffness = slope_reserve*slope
-    compliance = sum(self%patch%weights**2*self%patch%inverse)/model%mesh%multiplicity
-    if (.not. model%setup%impactor%travel > 0) compliance = compliance + 1/model%setup%impactor%mass
     square = self%contact_stiffness*compliance
   end function contact_frequency_square
 
@@ -83,8 +89,11 @@ contains
     real(wp) :: alpha, before, change, w(size(self%patch%local))
 
     call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
-    now%patch_mean = self%patch%mean(w)
-    if (.not. model%setup%has_impactor) return
+    if (.not. model%setup%has_impactor) then
+      call self%patch%find_indentation(w, 0.0_wp, alpha)
+      now%patch_mean = -alpha
+      return
+    end if
     associate (impactor => now%impactor, parameters => model%setup%impactor)
       before = now%force
       if (parameters%travel > 0) then
@@ -96,11 +105,11 @@ contains
         change = steps%now*self%velocity
       end if
       impactor%displacement = impactor%displacement + change
-      alpha = impactor%displacement - now%patch_mean
-      now%force = indentation_force(model%setup%indentation, now%indentation, alpha)
+      call self%patch%find_indentation(w, impactor%displacement, alpha)
+      now%patch_mean = impactor%displacement - alpha
+      now%force = self%patch%gain*indentation_force(model%setup%indentation, now%indentation, alpha)
       call commit_indentation(model%setup%indentation, now%indentation, alpha)
       impactor%force = now%force
-      call self%patch%update_weights(w, alpha)
       impactor%velocity = self%velocity
       if (parameters%travel > 0) then
         self%work = self%work + (before + now%force)/2*change

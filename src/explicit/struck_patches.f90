@@ -1,13 +1,13 @@
 !> Contact area of the impactor in central differences: the patch of the deck, or the contact area of a nose.
 !>
 !> The points are listed in the order of the mesh on every rank, so that mean deflection and force distribution are
-!> identical on any number of ranks. The force of a nose is distributed by the deflection at the end of each step
-!> (`contact_areas`): a lagged distribution would add energy to the motion.
+!> identical on any number of ranks. The contact of a nose is that with the deflection at the end of each step
+!> (`nose_contacts`): a lagged distribution would add energy to the motion.
 module struck_patches
   use archives, only: archive_t
-  use contact_areas, only: edge_gap
   use kinds, only: wp
   use models, only: model_t
+  use nose_contacts, only: nose_contact_t, nose_t
   implicit none
   private
   public :: struck_patch_t, create_struck_patch
@@ -16,26 +16,21 @@ module struck_patches
   type :: struck_patch_t
     !> Index of each point among those of this rank; 0: on another rank, (reached)
     integer, allocatable :: local(:)
-    !> Weights of the deck's patch, area of the point outside the patch, and height of the nose's surface above its tip,
-    !> (reached)
-    real(wp), allocatable, private :: under(:), beside(:), rise(:)
-    !> Weights of the force distribution, and inverse inertia of w, (reached)
-    real(wp), allocatable :: weights(:), inverse(:)
-    !> Offset of the mean deflection due to earlier changes of the weights
+    !> Weights of the force distribution, their increase with the local depth, and inverse inertia of w, (reached)
+    real(wp), allocatable :: weights(:), slopes(:), inverse(:)
+    !> Force relative to that of a flat face with the same indentation, and area under pressure
+    real(wp) :: gain = 1, area = 0
+    !> Offset of the deflection under the impactor: minus that at first contact
     real(wp) :: offset = 0
-    !> True: the distribution follows the shape of the nose
-    logical, private :: depends_on_deflection = .false.
-    !> Area of the modelled part of the deck's patch
-    real(wp), private :: area = 0
+    !> The nose; unallocated: the patch
+    type(nose_t), allocatable, private :: nose
   contains
     !> Deflections of the points.
     procedure :: find_deflections
     !> Gathers the inverse inertia of the points.
     procedure :: gather
-    !> Deflection under the impactor.
-    procedure :: mean
-    !> Updates the force distribution.
-    procedure :: update_weights
+    !> Indentation at a position of the impactor.
+    procedure :: find_indentation
     !> Adds the nodal forces of a force.
     procedure :: add_force
     !> Weights at this rank's points.
@@ -51,39 +46,26 @@ contains
     type(model_t), intent(in) :: model
     !> The points
     type(struck_patch_t) :: self
-    real(wp) :: fields(4, model%mesh%points()), list(4*model%mesh%points())
+    real(wp) :: weights(model%mesh%points())
     integer, allocatable :: reached(:)
     integer :: i
 
-    fields = 0
-    associate (partition => model%distribution)
-      do i = 1, partition%owned
-        if (allocated(model%nose)) then
-          associate (nose => model%nose)
-            fields(1:3, partition%points(i)) = [nose%under(i), nose%beside(i), nose%rise(i)]
-          end associate
-        else
-          fields(1, partition%points(i)) = model%patch%weights(i)
-        end if
-        fields(4, partition%points(i)) = i
-      end do
-      list = reshape(fields, [size(list)])
-      where (.not. abs(list) > 0) list = 0
-      if (model%communicator%size > 1) then
-        list(4::4) = 0
-        call model%communicator%sum(list)
-      end if
-      fields = reshape(list, shape(fields))
-      reached = pack([(i, i=1, size(fields, 2))], abs(fields(1, :)) + abs(fields(2, :)) > 0)
-      self%local = partition%local(reached)
-      where (self%local > partition%owned) self%local = 0
-    end associate
-    self%under = fields(1, reached)
-    self%beside = fields(2, reached)
-    self%rise = fields(3, reached)
-    self%weights = self%under
-    self%depends_on_deflection = allocated(model%nose)
-    if (self%depends_on_deflection) self%area = model%nose%area
+    if (allocated(model%nose)) then
+      self%nose = model%nose%nose
+      self%local = model%nose%local
+      allocate (self%weights(size(self%local)), source=0.0_wp)
+    else
+      weights = 0
+      associate (partition => model%distribution)
+        weights(partition%points(:partition%owned)) = model%patch%weights(:partition%owned)
+        call model%communicator%sum(weights)
+        reached = pack([(i, i=1, size(weights))], abs(weights) > 0)
+        self%local = partition%local(reached)
+        where (self%local > partition%owned) self%local = 0
+      end associate
+      self%weights = weights(reached)
+    end if
+    self%slopes = 0*self%weights
   end function create_struck_patch
 
   !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.
@@ -127,37 +109,30 @@ contains
     call model%communicator%sum(self%inverse)
   end subroutine gather
 
-  !> Deflection under the impactor.
-  pure real(wp) function mean(self, w)
-    !> The points
-    class(struck_patch_t), intent(in) :: self
-    !> Their deflections, (reached)
-    real(wp), intent(in) :: w(:)
-
-    mean = dot_product(self%weights, w) + self%offset
-  end function mean
-
-  !> Updates the force distribution by the contact of the nose with the deflected plate. The indentation remains
-  !> continuous.
-  pure subroutine update_weights(self, w, indentation)
+  !> Indentation at a position of the impactor: from the mean deflection of the patch, or by the contact of the nose,
+  !> with which the force distribution changes.
+  pure subroutine find_indentation(self, w, position, indentation)
     !> The points
     class(struck_patch_t), intent(inout) :: self
     !> Their deflections, (reached)
     real(wp), intent(in) :: w(:)
-    !> The indentation; without it the patch is loaded
-    real(wp), intent(in) :: indentation
-    real(wp) :: pressure(size(w)), weights(size(w)), sums(2)
+    !> Displacement of the impactor
+    real(wp), intent(in) :: position
+    !> The indentation
+    real(wp), intent(out) :: indentation
+    type(nose_contact_t) :: contact
 
-    if (.not. self%depends_on_deflection) return
-    weights = self%under
-    if (indentation > 0) then
-      pressure = max(0.0_wp, edge_gap*indentation + minval(w + self%rise) - (w + self%rise))
-      sums = [self%area*dot_product(self%under, pressure), dot_product(self%beside, pressure)]
-      if (sum(sums) > 0) weights = (sums(1)*self%under + self%beside*pressure)/sum(sums)
+    if (allocated(self%nose)) then
+      call self%nose%press(w + self%offset, position, contact)
+      self%weights = contact%weights
+      self%slopes = contact%slopes
+      self%gain = contact%gain
+      self%area = contact%area
+      indentation = contact%indentation
+    else
+      indentation = position - (dot_product(self%weights, w) + self%offset)
     end if
-    self%offset = self%offset - dot_product(weights - self%weights, w)
-    self%weights = weights
-  end subroutine update_weights
+  end subroutine find_indentation
 
   !> Adds the nodal forces of a force on the full plate.
   pure subroutine add_force(self, multiplicity, force, forces)
@@ -200,6 +175,9 @@ contains
     class(archive_t), intent(inout) :: archive
 
     call archive%item('explicit/patch_weights', self%weights)
+    call archive%item('explicit/patch_slopes', self%slopes)
+    call archive%item('explicit/patch_gain', self%gain)
+    call archive%item('explicit/patch_area', self%area)
     call archive%item('explicit/patch_offset', self%offset)
   end subroutine visit
 end module struck_patches

@@ -1,4 +1,4 @@
-!> The contact force of a step, the scalar unknown that couples impactor and plate, theory (F10).
+!> The contact force of a step, the scalar unknown that couples impactor and plate, theory (F14).
 module impact_force
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
   use errors, only: error_t, fail, exit_internal

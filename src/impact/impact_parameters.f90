@@ -27,7 +27,7 @@ module impact_parameters
     real(wp) :: radius = 0
     !> Acceleration of gravity along the impact direction; 0: none
     real(wp) :: gravity = 0
-    !> True: its force is distributed over the contact area of the nose; false: over the patch
+    !> True: its force acts where the nose touches the face; false: on the patch
     logical :: spreads = .false.
     !> The struck point, from the plate's centre
     real(wp) :: at(2) = 0

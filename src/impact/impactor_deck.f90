@@ -39,7 +39,7 @@ module impactor_deck
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k is not given.', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
-      &Area on which the contact force acts: the patch, or that in contact with a spherical nose if it is larger.', &
+      &Area on which the contact force acts: the patch, or that in contact with a spherical nose, point by point.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
       &Acceleration of gravity along the impact, positive towards the plate.', &
     'impactor | integrator | choice | 1 | - | ''gear4'' | gear4 trapezoidal central conserving | &

@@ -7,14 +7,17 @@ module indentation_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, law_thornton, dent_tan_sun, dent_yang_sun
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use hertz_contact, only: sun_stiffness
   use text, only: line_t, append, to_text
   implicit none
   private
-  public :: fill_indentation, check_indentation, echo_without_group
+  public :: fill_indentation, check_indentation, echo_without_group, struck_face_t, takes_laminate
 
   !> Names that checks across groups use.
-  character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k', key_alpha_critical = 'alpha_cr'
+  character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k', &
+                                         key_alpha_critical = 'alpha_cr', &
+                                         key_face = 'face', key_e3 = 'E3', key_yield = 'yield_pressure'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: indentation_group_row = &
     'indentation | optional | Law of contact force and indentation; left out: elastic Hertz, k by Sun''s formula.'
@@ -28,6 +31,12 @@ module indentation_deck
       &Young''s modulus of the impactor in Sun''s formula for k.', &
     'indentation | impactor_nu | real | 1 | - | 0.3 | > -1, < 0.5 | &
       &Poisson''s ratio of the impactor in Sun''s formula for k.', &
+    'indentation | face | choice | 1 | - | ''ply'' | ply laminate | &
+      &Struck face: stiffness of a free ply, or stiffness and strength with held strains in its plane.', &
+    'indentation | E3 | real | 1 | pressure | = E2, or by face | > 0 | &
+      &Modulus of the struck face through the thickness in Sun''s formula for k.', &
+    'indentation | yield_pressure | real | 1 | pressure | = by face | > 0 | &
+      &Largest contact pressure of law = ''thornton'', instead of alpha_cr.', &
     'indentation | q | real | 1 | - | 2.5 | >= 1.5, <= 10 | &
       &Exponent of unloading.', &
     'indentation | reload | real | 1 | - | 1.5 | >= 1.5, <= 10 | &
@@ -35,20 +44,28 @@ module indentation_deck
     'indentation | beta | real | 1 | - | 0.094 | >= 0, < 1 | &
       &Slope of the permanent dent against the largest indentation, after Tan and Sun.', &
     'indentation | alpha_cr | real | 1 | length | none | > 0 | &
-      &Indentation above which a dent remains; needed except with law = ''hertz''.', &
+      &Indentation above which a dent remains; needed except with law = ''hertz'' or a yield pressure.', &
     'indentation | dent | choice | 1 | - | ''tan_sun'' | tan_sun yang_sun | &
       &Formula of the permanent dent.']
+
+  !> The struck face as the laminate has it; 0: not known.
+  type :: struck_face_t
+    !> Compliance of the struck ply for `sun_stiffness`
+    real(wp) :: compliance = 0
+    !> Modulus through the thickness, and pressure at which it yields, with held strains in the plane
+    real(wp) :: modulus = 0, strength = 0
+  end type struck_face_t
 
 contains
 
   !> Indentation law and contact stiffness; without the group elastic Hertz.
-  subroutine fill_indentation(settings, radius, struck_compliance, law)
+  subroutine fill_indentation(settings, radius, face, law)
     !> Keys in effect; receives a default of the contact stiffness
     type(settings_t), intent(inout) :: settings
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> Compliance of the struck ply for `sun_stiffness`; 0: not known
-    real(wp), intent(in) :: struck_compliance
+    !> The struck face
+    type(struck_face_t), intent(in) :: face
     !> Receives the law
     type(indentation_law_t), intent(inout) :: law
 
@@ -62,16 +79,69 @@ contains
       law%beta = settings%real_of(indentation_group, 'beta')
       law%alpha_critical = settings%real_of(indentation_group, key_alpha_critical)
     end if
+    call fill_stiffness(settings, radius, face, law)
+    if (law%law == law_thornton) call fill_yield(settings, radius, face, law)
+  end subroutine fill_indentation
+
+  !> Contact stiffness, by default that of Sun's formula.
+  subroutine fill_stiffness(settings, radius, face, law)
+    !> Keys in effect; receives a default of the contact stiffness
+    type(settings_t), intent(inout) :: settings
+    !> Radius of the impactor's nose
+    real(wp), intent(in) :: radius
+    !> The struck face
+    type(struck_face_t), intent(in) :: face
+    !> Receives the stiffness
+    type(indentation_law_t), intent(inout) :: law
+    real(wp) :: compliance
+
     law%k = settings%real_of(indentation_group, key_k)
-    if (settings%is_given(indentation_group, key_k) .or. struck_compliance <= 0) return
+    if (settings%is_given(indentation_group, key_k)) return
+    compliance = face%compliance
+    if (takes_laminate(settings) .and. face%modulus > 0 .and. .not. settings%is_given(indentation_group, key_e3)) &
+      call settings%derive_numbers(indentation_group, key_e3, [face%modulus])
+    if (settings%is_known(indentation_group, key_e3)) compliance = 1/settings%real_of(indentation_group, key_e3)
+    if (compliance <= 0) return
     if (settings%is_known(indentation_group, 'impactor_E')) then
-      law%k = sun_stiffness(radius, struck_compliance, settings%real_of(indentation_group, 'impactor_E'), &
+      law%k = sun_stiffness(radius, compliance, settings%real_of(indentation_group, 'impactor_E'), &
                             settings%real_of(indentation_group, 'impactor_nu'))
     else
-      law%k = sun_stiffness(radius, struck_compliance)
+      law%k = sun_stiffness(radius, compliance)
     end if
     call settings%derive(indentation_group, key_k, to_text(law%k), .false.)
-  end subroutine fill_indentation
+  end subroutine fill_stiffness
+
+  !> Indentation at which the pressure at the centre of a Hertzian contact, (3/2) k sqrt(alpha)/(pi R), reaches the
+  !> yield pressure.
+  subroutine fill_yield(settings, radius, face, law)
+    !> Keys in effect; receives the yield pressure and the indentation
+    type(settings_t), intent(inout) :: settings
+    !> Radius of the impactor's nose
+    real(wp), intent(in) :: radius
+    !> The struck face
+    type(struck_face_t), intent(in) :: face
+    !> Receives the indentation
+    type(indentation_law_t), intent(inout) :: law
+
+    if (settings%is_given(indentation_group, key_alpha_critical)) return
+    if (.not. (radius > 0 .and. law%k > 0)) return
+    if (takes_laminate(settings) .and. face%strength > 0 .and. .not. &
+        settings%is_given(indentation_group, key_yield)) &
+      call settings%derive_numbers(indentation_group, key_yield, [face%strength])
+    if (.not. settings%is_known(indentation_group, key_yield)) return
+    law%alpha_critical = (2*pi*radius*settings%real_of(indentation_group, key_yield)/(3*law%k))**2
+    call settings%derive_numbers(indentation_group, key_alpha_critical, [law%alpha_critical])
+  end subroutine fill_yield
+
+  !> True: the struck face has the properties of the laminate.
+  logical function takes_laminate(settings)
+    !> Keys in effect
+    type(settings_t), intent(in) :: settings
+
+    takes_laminate = .false.
+    if (settings%is_known(indentation_group, key_face)) &
+      takes_laminate = settings%text_of(indentation_group, key_face) == 'laminate'
+  end function takes_laminate
 
   !> Default law without the group, for the list of keys in effect.
   subroutine echo_without_group(law, lines)
@@ -97,18 +167,25 @@ contains
     if (law%law == law_hertz) then
       call idle('q reload beta alpha_cr dent', 'has no effect with law = ''hertz''.')
     else
-      if (.not. (settings%is_given(indentation_group, key_alpha_critical) .or. &
-                 problems%concern(indentation_group, key_alpha_critical))) &
+      if (.not. (law%alpha_critical > 0 .or. problems%concern(indentation_group, key_alpha_critical) .or. &
+                 problems%concern(indentation_group, key_face))) &
         call report(settings, problems, indentation_group, key_alpha_critical, 'is missing; law = '''// &
-                  settings%text_of(indentation_group, 'law')//''' needs the '// &
-                  'indentation above which a dent remains (law = ''hertz'' leaves none).')
+                  settings%text_of(indentation_group, 'law')//''' needs the indentation above which a dent remains'// &
+                  trim(merge(', or a yield_pressure', '                     ', law%law == law_thornton))// &
+                  ' (law = ''hertz'' leaves none).')
       if (law%law == law_tan_sun) call check_exponents(settings, law, problems)
     end if
-    if (law%law == law_thornton) call idle('q reload beta dent', 'has no effect with law = ''thornton''.')
+    if (law%law == law_thornton) then
+      call idle('q reload beta dent', 'has no effect with law = ''thornton''.')
+      if (settings%is_given(indentation_group, key_alpha_critical)) &
+        call idle('yield_pressure', 'has no effect as alpha_cr is given.')
+    else
+      call idle('yield_pressure', 'has an effect with law = ''thornton'' only.')
+    end if
     if (law%law == law_tan_sun .and. law%dent == dent_yang_sun) &
       call idle('beta', 'has no effect with dent = ''yang_sun''.')
     if (settings%is_given(indentation_group, key_k)) then
-      call idle('impactor_E impactor_nu', 'has no effect as k is given.')
+      call idle('impactor_E impactor_nu E3', 'has no effect as k is given.')
     else if (.not. settings%is_given(indentation_group, 'impactor_E')) then
       call idle('impactor_nu', 'has no effect without impactor_E.')
     end if

@@ -6,6 +6,7 @@ module interface_columns
   use interface_states, only: interface_state_t
   use models, only: model_t
   use motions, only: motion_t
+  use projected_areas, only: projected_areas_of
   use result_tables, only: result_row_length
   implicit none
   private
@@ -32,7 +33,9 @@ module interface_columns
     'border_reached | logical | - | 1 once a front or damage has reached the border of its zone, beyond which it &
       &cannot grow; else 0.', &
     'projected_area | real | area | Delaminated area in projection, as in a C-scan: interfaces above each other &
-      &count once, with the largest delaminated fraction.']
+      &count once, with the largest delaminated fraction.', &
+    'projected_area_failed | real | area | The same of points whose cohesive law has lost 99 % of its stiffness.', &
+    'projected_area_softened | real | area | The same of points that have lost half of it, with the process zones.']
 
   !> Columns per interface: N is its ply.
   character(len=result_row_length), parameter, public :: interface_rows(*) = [character(len=result_row_length) :: &
@@ -81,7 +84,7 @@ contains
               interfaces%contact%complementarity(model, displacement)]
   end function release_values
 
-  !> Zones whose border is reached, and projected area. Collective.
+  !> Zones whose border is reached, and projected areas. Collective.
   function border_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
     !> The interfaces
@@ -89,7 +92,7 @@ contains
     !> One value per column
     real(wp) :: values(size(border_rows))
 
-    values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), interfaces%projected_area(model)]
+    values = [merge(1.0_wp, 0.0_wp, any(interfaces%border_reached)), projected_areas_of(model, interfaces)]
   end function border_values
 
   !> Forces of the rigs. Collective.

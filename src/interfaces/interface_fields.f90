@@ -15,6 +15,7 @@ module interface_fields
   use onset_index, only: onset_of_elements
   use output_parameters, only: output_t, field_gap, field_contact_pressure, field_delamination, field_energy_release, &
                                field_onset
+  use projected_areas, only: area_dissipated, area_rules, projected_areas_of
   use result_tables, only: result_row_length
   implicit none
   private
@@ -91,7 +92,7 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(interface_figures_t) :: figures(size(model%mesh%zones))
-    real(wp) :: bounds(4, size(figures))
+    real(wp) :: bounds(4, size(figures)), areas(area_rules)
     integer :: zone
 
     figures = figures_of(model, interfaces)
@@ -104,7 +105,8 @@ contains
     call fields%write_figures('stage', real(reshape(figures%stage, [1, size(figures)]), wp), error)
     call fields%write_figures('area', reshape(figures%area, [1, size(figures)]), error)
     call fields%write_figures('bounds', bounds, error)
-    call fields%write_figures('projected_area', reshape([interfaces%projected_area(model)], [1, 1]), error)
+    areas = projected_areas_of(model, interfaces)
+    call fields%write_figures('projected_area', reshape([areas(area_dissipated)], [1, 1]), error)
   end subroutine write_figures
 
   !> Writes the onset index of delamination.

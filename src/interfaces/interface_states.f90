@@ -3,14 +3,11 @@
 module interface_states
   use kinds, only: wp
   use archives, only: archive_t
-  use delamination_parameters, only: growth_equilibrium, law_cohesive
-  use load_vectors, only: add_patch_weights
+  use delamination_parameters, only: growth_equilibrium
   use models, only: model_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
-  use exact_sums, only: exact_sum_t
   use interface_flaws, only: visit_flaws
-  use rank_totals, only: total_of
   use cohesive_sliding, only: heat_since, update_friction_limits, visit_friction
   use tie_release, only: tie_release_t, new_tie_release
   use rig_contact, only: rig_contact_t, new_rig_contact
@@ -37,8 +34,6 @@ module interface_states
   contains
     !> Adds the forces of ties and contact to a residual.
     procedure :: add_to_residual
-    !> Projected delaminated area, as in a C-scan.
-    procedure :: projected_area
     !> Sets the multipliers to the contact pressures found.
     procedure :: update_contact
     !> Keeps closed contacts closed in the predictor.
@@ -143,105 +138,6 @@ contains
 
     heat = heat_since(model, old%cohesive, self%cohesive)
   end function friction_heat
-
-  !> Area in which at least one interface has delaminated, of the full plate: sum of nodal areas times the largest
-  !> delaminated fraction of all interfaces at the node: 1 where ties are released, the dissipated fraction of the
-  !> toughness with a cohesive law. All points of a node belong to one rank, so that only the sum is collective.
-  function projected_area(self, model) result(area)
-    !> The state
-    class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    real(wp) :: area
-    real(wp), allocatable :: areas(:)
-    type(exact_sum_t) :: sum
-    real(wp) :: largest
-    integer :: i
-
-    area = 0
-    if (.not. model%map%layered) return
-    areas = largest_areas(self, model)
-    largest = 0
-    do i = 1, model%distribution%owned
-      largest = max(largest, areas(i))
-      if (i < model%distribution%owned) then
-        if (node_of(i + 1) == node_of(i)) cycle
-      end if
-      call sum%add(largest)
-      largest = 0
-    end do
-    area = total_of(model%communicator, sum)*model%mesh%multiplicity
-
-  contains
-
-    !> Node of a point of this rank.
-    pure integer function node_of(i)
-      !> The point
-      integer, intent(in) :: i
-
-      node_of = model%mesh%point_node(model%distribution%points(i))
-    end function node_of
-  end function projected_area
-
-  !> Largest delaminated area of all zones at each point. Collective.
-  function largest_areas(self, model) result(areas)
-    !> The state
-    class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> (local points)
-    real(wp), allocatable :: areas(:)
-
-    if (any(model%setup%delaminations%law /= law_cohesive)) then
-      areas = maxval(delaminated_areas(self, model), dim=1)
-    else
-      ! A point has the cohesive interface below it only.
-      areas = merge(self%cohesive%dissipated_fractions(model)*model%contact_area, 0.0_wp, model%zone > 0)
-    end if
-  end function largest_areas
-
-  !> Delaminated area of each zone at each point: area times dissipated fraction of the toughness with a cohesive law,
-  !> or the point's part of delaminated cells where fronts release ties. Their sums are the areas of the interfaces.
-  !> Collective.
-  function delaminated_areas(self, model) result(areas)
-    !> The state
-    class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
-    !> (zones, local points); at the border of a zone a point of the joined layers has its part
-    real(wp), allocatable :: areas(:, :)
-    real(wp) :: dissipated_fractions(size(model%zone)), field(1, model%borders%columns)
-    integer :: zone, i
-
-    allocate (areas(size(model%mesh%zones), size(model%zone)), source=0.0_wp)
-    do zone = 1, size(areas, 1)
-      if (model%setup%delaminations(zone)%law == law_cohesive) cycle
-      field = 0
-      call add_patch_weights(model%elements, pack([(i, i=1, model%elements%elements)], &
-                                                  [(in_delaminated_cell(i), i=1, model%elements%elements)]), &
-                             field(1, :))
-      call model%borders%add(field)
-      areas(zone, :) = field(1, :size(areas, 2))
-    end do
-    dissipated_fractions = self%cohesive%dissipated_fractions(model)
-    do i = 1, model%distribution%owned
-      zone = model%zone(i)
-      if (zone > 0) areas(zone, i) = areas(zone, i) + dissipated_fractions(i)*model%contact_area(i)
-    end do
-
-  contains
-
-    !> True: an element lies below a delaminated cell of the zone.
-    logical function in_delaminated_cell(i)
-      !> Number of the element on this rank
-      integer, intent(in) :: i
-      integer :: place(2)
-
-      associate (mesh => model%mesh, element => model%distribution%elements(i))
-        in_delaminated_cell = mesh%zones(zone)%below_ply == mesh%element_plies(1, element) - 1
-        if (.not. in_delaminated_cell) return
-        place = mesh%place_of(mesh%element_cell(element))
-        in_delaminated_cell = self%contact%regions(zone)%is_delaminated(place(1), place(2))
-      end associate
-    end function in_delaminated_cell
-  end function delaminated_areas
 
   !> Energy recorded as fracture energy but not yet released by fronts in equilibrium, which is not an error of the
   !> integrator.

@@ -25,6 +25,7 @@ module material_library
   character(len=*), parameter :: rows(*) = [character(len=150) :: &
     'material | density | kg/m^3 | 1600e0 c | 1600e0 c | 1580e0 c | 1560e0 h | 1600e0 i | 2000e0 k', &
     'material | E1 | Pa | 130e9 a | 130e9 b | 171.42e9 d | 126e9 g | 135.1e9 i | 45.6e9 g', &
+    'material | E1c | Pa | 100e9 n | 100e9 n | - | - | - | -', &
     'material | E2 | Pa | 7.7e9 a | 7.7e9 b | 9.08e9 d | 11e9 g | 9.24e9 i | 16.2e9 g', &
     'material | G12 | Pa | 4.8e9 a | 4.8e9 b | 5.29e9 d | 6.6e9 g | 6.27e9 i | 5.83e9 g', &
     'material | G13 | Pa | 4.8e9 a | 4.8e9 b | 5.29e9 j | 6.6e9 j | 6.27e9 j | 5.83e9 j', &
@@ -36,7 +37,7 @@ module material_library
     'material | YT | Pa | 60e6 a | 60e6 b | 62.3e6 d | 48e6 g | 39.0e6 i | 40e6 g', &
     'material | YC | Pa | 290e6 a | 290e6 b | 199.8e6 d | 200e6 g | 207e6 i | 145e6 g', &
     'material | S12 | Pa | 110e6 a | 110e6 b | 92.3e6 d | 79e6 g | 76.5e6 i | 73e6 g', &
-    'material | G_ft | J/m^2 | 133e3 a | 133e3 b | 133.3e3 f | - | - | -', &
+    'material | G_ft | J/m^2 | 133e3 m | 133e3 m | 133.3e3 f | - | - | -', &
     'material | G_fc | J/m^2 | 10e3 a | 40e3 b | 47.5e3 e | - | - | -', &
     'material | G_mt | J/m^2 | 500e0 a | 600e0 b | 277e0 e | - | - | -', &
     'material | G_mc | J/m^2 | 1600e0 a | 2100e0 b | 788e0 e | - | - | -', &
@@ -61,7 +62,10 @@ module material_library
     'i | MIL-HDBK-17-2F (2002), table 4.2.17, means of five specimens at 22 degrees', &
     'j | from isotropy across the fibres: G13 = G12, G23 = E2/(2 (1 + nu23))', &
     'k | of 60 % of glass with 2540 kg/m^3 in a resin of 1200 kg/m^3', &
-    'l | assumed, that of AS4/3501-6']
+    'l | assumed, that of AS4/3501-6', &
+    'm | that of T300/913 (B below), which the papers a and b take; not measured on T700/M21', &
+    'n | from memory, C. Bouvet, S. Rivallant, J. J. Barrau, Composites Science and Technology 72 (2012) 1977; '// &
+    'the bending stiffnesses there are those of the mean, 115 GPa']
 
 contains
 

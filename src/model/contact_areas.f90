@@ -1,99 +1,130 @@
-!> Contact area of a spherical nose, theory (F9): the deck's patch, and points around it where the plate is close to the
-!> nose's surface.
-!>
-!> At the edge of a Hertzian contact the separation of the undeformed surfaces is half the indentation larger than at
-!> first contact (K. L. Johnson, Contact Mechanics, 1985, section 4.2). The pressure is proportional to the difference
-!> from that separation, as on an elastic foundation (section 4.3): on a flat plate up to Hertz's radius, farther where
-!> the plate bends around the nose. On the patch it is uniform, with its mean value.
+!> Points of the struck face within reach of a spherical nose, theory (F12). They are listed in the order of the mesh on
+!> every rank, so that the contact is identical on any number of ranks.
 module contact_areas
   use communicators, only: communicator_t
   use kinds, only: wp
-  use rank_totals, only: total_of
+  use nose_contacts, only: nose_contact_t, nose_t, new_nose
   implicit none
   private
-  public :: contact_area_t, new_contact_area
-
-  !> Additional separation of the surfaces at the edge of a Hertzian contact, relative to the indentation: its radius a
-  !> is sqrt(R alpha), and the nose rises by a**2/(2 R) there.
-  real(wp), parameter, public :: edge_gap = 0.5_wp
   !> Weight relative to the largest from which a point counts as in contact: at the end of contact the weights decrease
   !> to zero. It only affects the area reported.
   real(wp), parameter :: min_weight = 1.0e-3_wp
+  public :: contact_area_t, new_contact_area
 
   !> Struck face and nose.
   type :: contact_area_t
-    !> Weights of the deck's patch, whose product with w is its mean deflection, (local points); ghosts zero
-    real(wp), allocatable :: under(:)
-    !> Area of each point outside the patch within reach of the nose, (local points); ghosts zero
-    real(wp), allocatable :: beside(:)
-    !> Height of the nose's surface above its tip, (local points)
-    real(wp), allocatable :: rise(:)
-    !> Area of the modelled part of the patch
-    real(wp) :: area = 0
+    !> Nose over the points
+    type(nose_t) :: nose
+    !> Index of each point among those of this rank; 0: on another rank, (points)
+    integer, allocatable :: local(:)
   contains
-    !> Weights of the force distribution.
-    procedure :: weights
-    !> Area under pressure.
-    procedure :: touched
+    !> Deflections of the points.
+    procedure :: deflections
+    !> Contact of the nose, from the deflections on this rank.
+    procedure :: find_contact
+    !> Position of the nose at first contact.
+    procedure :: first_contact
+    !> Values of the points at this rank's points.
+    procedure :: to_local
+    !> Area of the points with a weight.
+    procedure :: area_of
   end type contact_area_t
 
 contains
 
-  !> A nose over a patch.
-  pure function new_contact_area(under, area, beside, distance, radius) result(self)
-    !> Weights of the patch, (local points), and area of its modelled part
-    real(wp), intent(in) :: under(:), area
-    !> Area of each point outside the patch, and its distance from the struck point, (local points)
-    real(wp), intent(in) :: beside(:), distance(:)
+  !> A nose over the points of a mesh.
+  pure function new_contact_area(radius, area, distance, local) result(self)
     !> Radius of the nose
     real(wp), intent(in) :: radius
+    !> Area of each point on the full plate, 0 outside the struck face, and its distance from the struck point
+    real(wp), intent(in) :: area(:), distance(:)
+    !> Index of each point among those that this rank owns, or 0
+    integer, intent(in) :: local(:)
     !> The nose
     type(contact_area_t) :: self
+    logical :: is_reached(size(area))
 
-    self%under = under
-    self%area = area
-    self%beside = merge(beside, 0.0_wp, distance < radius)
-    self%rise = radius - sqrt(max(0.0_wp, radius**2 - distance**2))
+    is_reached = area > 0 .and. distance < radius
+    self%nose = new_nose(radius, pack(area, is_reached), pack(distance, is_reached))
+    self%local = pack(local, is_reached)
   end function new_contact_area
 
-  !> Weights of the force distribution, with the sum 1 over the modelled part. Collective.
-  function weights(self, communicator, deflection, indentation)
-    !> The nose
+  !> Deflections of the points, the same on every rank. Collective.
+  function deflections(self, communicator, w)
+    !> The points
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Deflection of the struck face, (local points)
-    real(wp), intent(in) :: deflection(:)
-    !> Indentation; not positive: the patch alone is loaded
-    real(wp), intent(in) :: indentation
-    !> (local points); ghosts zero
-    real(wp), allocatable :: weights(:)
-    real(wp), allocatable :: apart(:), pressure(:)
-    real(wp) :: least, parts(2)
+    real(wp), intent(in) :: w(:)
+    !> (points)
+    real(wp), allocatable :: deflections(:)
+    integer :: i
 
-    weights = self%under
-    if (.not. indentation > 0) return
-    apart = deflection + self%rise
-    least = -minval(apart, mask=self%under > 0 .or. self%beside > 0)
-    call communicator%maximum(least)
-    pressure = max(0.0_wp, edge_gap*indentation - least - apart)
-    parts = [self%area*total_of(communicator, self%under*pressure), total_of(communicator, self%beside*pressure)]
-    ! If the indentation is below the round-off of the deflections, all weights may be zero.
-    if (sum(parts) > 0) weights = (parts(1)*self%under + self%beside*pressure)/sum(parts)
-  end function weights
+    allocate (deflections(size(self%local)), source=0.0_wp)
+    do i = 1, size(deflections)
+      if (self%local(i) > 0) deflections(i) = w(self%local(i))
+    end do
+    call communicator%sum(deflections)
+  end function deflections
 
-  !> Area under pressure in the modelled part. Collective.
-  real(wp) function touched(self, communicator, weights)
-    !> The nose
+  !> Contact of the nose, from the deflections on this rank. Collective.
+  function find_contact(self, communicator, w, position) result(contact)
+    !> The points
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Weights of the force distribution, (local points)
-    real(wp), intent(in) :: weights(:)
-    real(wp) :: largest
+    !> Deflection of the struck face, (local points)
+    real(wp), intent(in) :: w(:)
+    !> Displacement of the nose's tip
+    real(wp), intent(in) :: position
+    !> The contact
+    type(nose_contact_t) :: contact
 
-    largest = maxval(weights)
-    call communicator%maximum(largest)
-    touched = self%area + total_of(communicator, pack(self%beside, weights > min_weight*largest))
-  end function touched
+    call self%nose%press(self%deflections(communicator, w), position, contact)
+  end function find_contact
+
+  !> Position of the nose's tip at first contact. Collective.
+  real(wp) function first_contact(self, communicator, w)
+    !> The points
+    class(contact_area_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> Deflection of the struck face, (local points)
+    real(wp), intent(in) :: w(:)
+
+    first_contact = self%nose%first_contact(self%deflections(communicator, w))
+  end function first_contact
+
+  !> Values of the points at this rank's points.
+  pure function to_local(self, values, points) result(field)
+    !> The points
+    class(contact_area_t), intent(in) :: self
+    !> (points)
+    real(wp), intent(in) :: values(:)
+    !> Number of points of this rank
+    integer, intent(in) :: points
+    !> (local points); ghosts zero
+    real(wp) :: field(points)
+    integer :: i
+
+    field = 0
+    do i = 1, size(self%local)
+      if (self%local(i) > 0) field(self%local(i)) = values(i)
+    end do
+  end function to_local
+
+  !> Area of the points with a weight, on the full plate. Collective.
+  real(wp) function area_of(self, communicator, weights) result(area)
+    !> The points
+    class(contact_area_t), intent(in) :: self
+    !> The ranks
+    type(communicator_t), intent(in) :: communicator
+    !> (local points)
+    real(wp), intent(in) :: weights(:)
+    real(wp), allocatable :: listed(:)
+
+    listed = self%deflections(communicator, weights)
+    area = sum(self%nose%area, mask=listed > min_weight*maxval(listed))
+  end function area_of
 end module contact_areas

@@ -17,6 +17,8 @@ module contact_patches
     !> Offset that keeps the mean deflection continuous when the patch changes, minus the mean deflection at the start,
     !> where the impactor touches the plate
     real(wp) :: offset = 0
+    !> Under a nose: position of its tip at first contact, and area under pressure on the full plate
+    real(wp) :: touched_at = 0, area = 0
   contains
     !> Mean of a deflection, and deflection of the plate under the impactor.
     procedure :: mean

@@ -18,5 +18,7 @@ module initial_state_parameters
     real(wp) :: reached = 0, end = 0
     !> motion_rest or motion_kept
     integer :: motion = motion_rest
+    !> Centre of a smaller plate in the plate it is cut from
+    real(wp) :: cut_at(2) = 0
   end type initial_state_t
 end module initial_state_parameters

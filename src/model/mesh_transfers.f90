@@ -1,4 +1,5 @@
-!> Transfers a state to another mesh of the plate, theory (D14): an archive in memory that maps fields.
+!> Transfers a state to another mesh of the plate, or of a plate cut from it, theory (D14): an archive in memory that
+!> maps fields.
 !>
 !> Motion is interpolated by the old elements at the new nodes. Quantities per area or volume are averaged over the area
 !> of the new node or cell, so that integrals over the plate are conserved: the area of a node of nine-node cells is a
@@ -21,6 +22,8 @@ module mesh_transfers
   type, extends(layer_transfer_t) :: mesh_transfer_t
     !> The mesh saved, and the one to load
     type(layered_mesh_t), private :: old, new
+    !> Origin of the new mesh in the coordinates of the old one
+    real(wp) :: origin(2) = 0
     !> Plies of the laminate
     integer, private :: plies = 0
     !> Overlaps of nodes and cells of the new mesh with those of the old one along x and y
@@ -47,12 +50,12 @@ contains
     allocate (self%point_origin(new%points()), source=1)
     allocate (self%element_origin(new%elements()), source=1)
     allocate (self%is_split(new%elements()), source=.true.)
-    self%cells_x = overlaps_of(new%x_edges, old%x_edges, old%halved(1))
-    self%cells_y = overlaps_of(new%y_edges, old%y_edges, old%halved(2))
-    self%nodes_x = overlaps_of(node_bounds(new%x_edges, new%halved(1)), from_cut(old%x_edges, old%halved(1)), &
-                               old%halved(1))
-    self%nodes_y = overlaps_of(node_bounds(new%y_edges, new%halved(2)), from_cut(old%y_edges, old%halved(2)), &
-                               old%halved(2))
+    self%cells_x = overlaps_of(new%x_edges + self%origin(1), old%x_edges, old%halved(1))
+    self%cells_y = overlaps_of(new%y_edges + self%origin(2), old%y_edges, old%halved(2))
+    self%nodes_x = overlaps_of(node_bounds(new%x_edges, new%halved(1)) + self%origin(1), &
+                               from_cut(old%x_edges, old%halved(1)), old%halved(1))
+    self%nodes_y = overlaps_of(node_bounds(new%y_edges, new%halved(2)) + self%origin(2), &
+                               from_cut(old%y_edges, old%halved(2)), old%halved(2))
   end subroutine turn_to
 
   !> Bounds of the intervals of nodes, from the symmetry line on.
@@ -115,7 +118,7 @@ contains
     logical :: turned(2)
 
     associate (old => self%old)
-      at = self%new%node_coordinates(:, self%new%point_node(point))
+      at = self%new%node_coordinates(:, self%new%point_node(point)) + self%origin
       turned = old%halved .and. at < 0
       if (turned(1) .and. .not. old%mirrored(1)) turned(2) = .true.
       where (turned) at = -at

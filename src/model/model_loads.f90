@@ -50,11 +50,12 @@ contains
     real(wp), allocatable :: weights(:), mass(:, :)
     real(wp) :: area
 
-    weights = nodal_areas(self, patch_elements(self, .true.))
+    weights = nodal_areas(self, struck_elements(self, self%setup%mesh%patch))
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
     call self%patch%spread(weights, 0.0_wp)
-    if (self%setup%impactor%spreads) call build_nose(self, area)
+    self%patch%area = self%setup%mesh%patch**2
+    if (self%setup%impactor%spreads) call build_nose(self)
     if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
@@ -64,35 +65,41 @@ contains
     end if
   end subroutine build_loads
 
-  !> This rank's elements under the patch, or beside it, of the struck layer only.
-  pure function patch_elements(self, under) result(elements)
+  !> This rank's elements of the struck layer, ascending: those under the patch, or all.
+  pure function struck_elements(self, patch) result(elements)
     type(model_t), intent(in) :: self
-    !> True for those under it
-    logical, intent(in) :: under
+    !> Side of the patch; left out: all elements
+    real(wp), intent(in), optional :: patch
     !> Positions among this rank's elements
     integer, allocatable :: elements(:)
     integer :: i
 
     associate (mesh => self%mesh, mine => self%distribution%elements)
-      elements = pack([(i, i=1, size(mine))], &
-                      [((mesh%in_patch(mesh%element_cell(mine(i)), self%setup%mesh%patch) .eqv. under) &
-                        .and. mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+      elements = pack([(i, i=1, size(mine))], [(mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+      if (present(patch)) elements = pack(elements, [(mesh%in_patch(mesh%element_cell(mine(elements(i))), patch), &
+                                                      i=1, size(elements))])
     end associate
-  end function patch_elements
+  end function struck_elements
 
-  !> Creates the nose that determines the patch.
-  subroutine build_nose(self, area)
-    !> The model, with its patch
+  !> Creates the nose over the struck face. Collective.
+  subroutine build_nose(self)
+    !> The model
     type(model_t), intent(inout) :: self
-    !> Area of the patch's modelled part
-    real(wp), intent(in) :: area
-    integer :: i
+    real(wp) :: local_area(self%halo%points), area(self%mesh%points())
+    integer :: local(self%mesh%points()), i
 
-    associate (mesh => self%mesh, points => self%distribution%points, struck => self%setup%mesh%struck)
-      self%nose = &
-        new_contact_area(self%patch%weights, area, nodal_areas(self, patch_elements(self, .false.)), &
-                         [(norm2(mesh%node_coordinates(:, mesh%point_node(points(i))) - struck), i=1, size(points))], &
-                         self%setup%impactor%radius)
+    local_area = nodal_areas(self, struck_elements(self))
+    area = 0
+    local = 0
+    associate (mesh => self%mesh, partition => self%distribution, struck => self%setup%mesh%struck)
+      do i = 1, partition%owned
+        area(partition%points(i)) = local_area(i)*mesh%multiplicity
+        local(partition%points(i)) = i
+      end do
+      call self%communicator%sum(area)
+      self%nose = new_contact_area(self%setup%impactor%radius, area, &
+                                   [(norm2(mesh%node_coordinates(:, mesh%point_node(i)) - struck), i=1, size(area))], &
+                                   local)
     end associate
   end subroutine build_nose
 

@@ -4,8 +4,8 @@ module band_states
   use crack_bands, only: band_state_t, is_damaged
   use kinds, only: wp
   use models, only: model_t
-  use ply_damage_parameters, only: energy_modes, failure_modes, matrix_compression, matrix_cracking, &
-                                   matrix_crushing, matrix_tension
+  use ply_damage_parameters, only: energy_modes, failure_modes, fibre_compression, fibre_tension, &
+                                   matrix_compression, matrix_cracking, matrix_crushing, matrix_tension
   implicit none
   private
   public :: band_states_t, new_band_states
@@ -24,8 +24,9 @@ module band_states
     !> Accepted states of an element; true if one has damage.
     procedure :: of_element
     procedure :: damaged
-    !> Failed modes of a ply of an element.
+    !> Failed modes of a ply of an element; whether its fibres failed by compression.
     procedure :: failed_modes
+    procedure :: fibres_crushed
     !> Damage of a ply of an element, and the stresses that its closed cracks carry.
     procedure :: accepted_damage
     procedure :: carried_by_cracks
@@ -105,6 +106,19 @@ contains
       failed(matrix_cracking) = .not. failed(matrix_crushing)
     end associate
   end function failed_modes
+
+  !> True: the fibres of a ply of an element have failed and dissipated more energy in compression than in tension, in
+  !> the trial.
+  pure logical function fibres_crushed(self, ply, element)
+    !> The states
+    class(band_states_t), intent(in) :: self
+    !> Ply and element of this rank that has it
+    integer, intent(in) :: ply, element
+
+    associate (state => self%trial(self%offset(element) + ply))
+      fibres_crushed = state%damage(1) >= 1 .and. state%dissipated(fibre_compression) > state%dissipated(fibre_tension)
+    end associate
+  end function fibres_crushed
 
   !> Damage of fibres and matrix of a ply of an element in the last accepted state.
   pure function accepted_damage(self, ply, element) result(damage)

@@ -50,7 +50,7 @@ module crack_band_sections
     !> Sides along x and y of each element with those that share its state, (2, elements)
     real(wp), allocatable, private :: sides(:, :)
     !> Area of each element, (elements)
-    real(wp), allocatable, private :: area(:)
+    real(wp), allocatable :: area(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
     !> Strain below which damage starts in no ply of the laminate

@@ -1,5 +1,6 @@
 !> Fields of the plies: failures, and stresses in their own axes.
 module ply_fields
+  use crack_band_sections, only: crack_band_sections_t
   use element_stresses, only: element_strains, stresses_of_ply
   use errors, only: error_t
   use fields_file, only: fields_file_t
@@ -23,6 +24,8 @@ module ply_fields
   character(len=result_row_length), parameter, public :: ply_field_rows(*) = [character(len=result_row_length) :: &
     'ply_N_failure | cells | - | '//field_ply_damage//' | &ply_damage | Failures of ply N: 1 fibre failure, 2 matrix &
       &cracking, 4 matrix crushing, added up.', &
+    'ply_N_fibres_crushed'//damaged//'1 where fibres of ply N have failed and dissipated more energy in compression &
+      &than in tension, else 0; only where plies soften.', &
     'ply_N_damage_fibre'//damaged//'Relative loss of E1 of ply N, 0 to 1.', &
     'ply_N_damage_matrix'//damaged//'Relative loss of E2 of ply N, 0 to 1.', &
     'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
@@ -64,6 +67,8 @@ contains
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
           call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
+          if (allocated(plies%bands)) &
+            call fields%write_cell_field(name//'fibres_crushed', crushed_in(model, plies%bands, ply), error)
           lost = stiffness_lost(model, plies, ply)
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
           call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)
@@ -78,6 +83,26 @@ contains
       end associate
     end do
   end subroutine write_ply_fields
+
+  !> 1 in elements in which the fibres of a ply have failed by compression, else 0.
+  pure function crushed_in(model, bands, ply) result(crushed)
+    type(model_t), intent(in) :: model
+    !> Softening plies
+    type(crack_band_sections_t), intent(in) :: bands
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> (1, elements)
+    real(wp) :: crushed(1, model%elements%elements)
+    integer :: element
+
+    crushed = 0
+    do element = 1, size(crushed, 2)
+      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+        if (ply < range(1) .or. ply > range(2)) cycle
+        if (bands%states%fibres_crushed(ply, element)) crushed(1, element) = 1
+      end associate
+    end do
+  end function crushed_in
 
   !> Lost fractions of E1 and E2 of a ply.
   pure function stiffness_lost(model, plies, ply) result(lost)

@@ -70,6 +70,8 @@ module states
     !> Deflection of the plate under the impactor, and contact area on the full plate.
     procedure :: contact_deflection
     procedure :: pressed_area
+    !> Depth of the struck point below the impactor.
+    procedure :: depth_below_impactor
     !> True once plies have failed or delaminations have grown.
     procedure :: has_failures
     !> Counts a step and its iterations.
@@ -154,15 +156,28 @@ contains
   end function contact_deflection
 
   !> Contact area on the full plate, the same on every rank.
-  real(wp) function pressed_area(self, model) result(area)
+  pure real(wp) function pressed_area(self, model) result(area)
     !> The state
     class(state_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
     area = model%setup%mesh%patch**2
-    if (allocated(model%nose)) &
-      area = model%nose%touched(model%communicator, self%contact%weights)*model%mesh%multiplicity
+    if (allocated(model%nose)) area = self%contact%area
   end function pressed_area
+
+  !> Depth of the struck point below the impactor, both from their position at first contact.
+  pure real(wp) function depth_below_impactor(self, model) result(depth)
+    !> The state
+    class(state_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+
+    depth = self%deflection - self%impactor%displacement
+    if (allocated(model%nose)) then
+      depth = depth - self%contact%touched_at
+    else
+      depth = depth + self%contact%offset
+    end if
+  end function depth_below_impactor
 
   !> True once plies have failed or delaminations have grown.
   pure logical function has_failures(self)
@@ -248,6 +263,8 @@ contains
 
     call archive%item('contact/offset', self%contact%offset)
     if (.not. allocated(model%nose)) return
+    call archive%item('contact/touched_at', self%contact%touched_at)
+    call archive%item('contact/area', self%contact%area)
     weights = reshape(self%contact%weights, [1, size(self%contact%weights)])
     associate (partition => model%distribution)
       call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)

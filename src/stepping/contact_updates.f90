@@ -1,8 +1,9 @@
-!> Updates the distribution of the impactor's force, theory (F9), as the plate bends around the nose.
+!> Updates the distribution of the force of a nose in implicit steps, theory (F12), as the plate bends around it.
 !>
-!> The distribution is found from the last accepted state and kept constant in the next step, so that force and mean
-!> deflection under the impactor are work-conjugate. An offset keeps that deflection, and the indentation, continuous
-!> when the distribution changes: no energy is created.
+!> The pressure is proportional to the local depth and uniform on the patch: pressures point by point would excite
+!> motions shorter than the steps resolve. It is found from the last accepted state and kept constant in the next step,
+!> so that force and mean deflection under the impactor are work-conjugate. An offset keeps that deflection, and the
+!> indentation, continuous when the distribution changes: no energy is created.
 module contact_updates
   use errors, only: error_t
   use kinds, only: wp
@@ -36,10 +37,33 @@ contains
 
     if (.not. allocated(model%nose)) return
     associate (w => now%motion%displacement(3, :), contact => now%contact)
-      change = relaxation*(model%nose%weights(model%communicator, w, now%indentation%alpha) - contact%weights)
+      change = relaxation*(weights_of(model, w, now%indentation%alpha) - contact%weights)
       if (.not. total_of(model%communicator, abs(change)) > negligible) return
       call contact%spread(contact%weights + change, contact%offset - total_of(model%communicator, change*w))
+      contact%area = model%nose%area_of(model%communicator, contact%weights)
     end associate
     if (operator%ready) call operator%find_response(model, now%contact, error)
   end subroutine update_contact_area
+
+  !> Weights of the force distribution, with the sum 1 over the modelled part. Collective.
+  function weights_of(model, w, indentation) result(weights)
+    type(model_t), intent(in) :: model
+    !> Deflection of the struck face, (local points)
+    real(wp), intent(in) :: w(:)
+    !> Indentation; not positive: the patch alone is loaded
+    real(wp), intent(in) :: indentation
+    !> (local points); ghosts zero
+    real(wp), allocatable :: weights(:)
+    real(wp), allocatable :: pressures(:)
+
+    weights = model%patch%weights
+    if (.not. indentation > 0) return
+    pressures = model%nose%nose%foundation(model%nose%deflections(model%communicator, w), indentation)
+    ! If the indentation is below the round-off of the deflections, all pressures may be zero.
+    if (.not. sum(pressures) > 0) return
+    weights = model%nose%to_local(pressures/sum(pressures), size(w))
+    associate (patch => model%patch%weights)
+      weights = merge(total_of(model%communicator, merge(weights, 0.0_wp, patch > 0))*patch, weights, patch > 0)
+    end associate
+  end function weights_of
 end module contact_updates

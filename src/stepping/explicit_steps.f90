@@ -77,8 +77,10 @@ contains
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
 
-    if (allocated(model%nose)) &
-      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), method%impact%patch%offset)
+    if (allocated(model%nose)) then
+      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), now%contact%offset)
+      now%contact%area = method%impact%patch%area
+    end if
     call record_energies(method, model, now)
     now%interfaces%rig%found = reactions_of(method, model, now)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)

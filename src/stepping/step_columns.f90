@@ -72,8 +72,7 @@ module step_columns
 
   !> Contact with the impactor.
   character(len=result_row_length), parameter, public :: contact_rows(*) = [character(len=result_row_length) :: &
-    'contact_area | real | area | Contact area of the impactor: the patch, and the area around it in contact with &
-      &its nose.']
+    'contact_area | real | area | Contact area of the impactor: the patch, or the area in contact with its nose.']
 
 contains
 

@@ -39,6 +39,8 @@ OTHERS = (
     ("interfaces/interface_ties.f90", "zone", "an item of a checkpoint"),
     ("linalg/petsc_session.f90", "petsc_options", "PETSc's own variable of the environment"),
     ("mesh/support_deck.f90", "face", "bearing of the plate, a choice of its bearing"),
+    ("impact/indentation_deck.f90", "laminate", "a choice of face"),
+    ("case/deck_idle_keys.f90", "yc", "one of the keys of strengths"),
     ("model/load_cases.f90", "time", "the variable of the steps, in messages"),
     ("model/motion_fields.f90", "velocity", "a field in NAME.h5, which users read"),
     ("results/fields_file_xdmf.f90", "cell", "XDMF's word for a field on elements"),

@@ -7,6 +7,9 @@ ranks    begun on three ranks, continued on two and, from a checkpoint within th
 mapped   on finer cells, of the half and of the full plate: the same areas, energies and damage; from a checkpoint,
          bitwise
 mapped_ranks   the same on two ranks: bitwise
+cut      a smaller plate cut from the struck one, about its centre and beside it, also from a checkpoint: areas and
+         energies of the parts add up, the ledger has those of the plate that is cut
+cut_ranks      the same on two ranks: bitwise
 whole    the full plate from the half in the impact: to round-off until it fails
 buckling the elastic panel in the frame against eigenvalue and postbuckling of CalculiX
 bent     the same panel with a stress-free imperfection instead of the pressure
@@ -53,6 +56,9 @@ MAPPED = 1e-12
 # 2.0 % of fracture energy, 1.1e-2 and 2e-3 of the total energy.
 EXTENDED = {"matrix_damage_area": 0.05, "energy_ply_damage": 0.15}
 GROWN_BY_MAPPING, LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 3e-2, 2e-2, 1e-6
+# A plate within that of the impact, narrower than its delaminations, on cells of its own.
+CUT = ["plate%length=40e-3, 18e-3", "support%window=36e-3, 16e-3", "mesh%elements=9, 10", "mesh%lines_x=18e-3",
+       "mesh%lines_y=8e-3", "line%at=20e-3", "line%displacement=-0.1e-3", "time%end=0.4e-3"]
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
 ENERGIES = ("kinetic", "strain", "delamination", "ply_damage", "contact", "friction", "algorithmic", "layers",
@@ -231,6 +237,66 @@ def check_unfolded(implam, folder, half):
             require(abs(here[name] / there[name] - 1) < MAPPED, "The damage of the full plate differs.")
 
 
+def cut_figures(folder):
+    """Return the mapping in the summary of the compression: before, cut away and after, by name."""
+    kept = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))["mapping"]
+    entries = {f"{name} below ply {entry['ply_above']}": (entry, name)
+               for entry in kept["interfaces"] for name in ("area", "energy")}
+    entries |= {name: (kept, name) for name in ("fibre_damage_area", "matrix_damage_area", "energy_ply_damage")}
+    return {label: [entry[f"{name}_{part}"] for part in ("before", "cut_away", "after")]
+            for label, (entry, name) in entries.items()}
+
+
+def check_parts(impact, figures):
+    """What is kept and what is cut away are what the impact has left; nothing is lost by mapping."""
+    for entry in impact["interfaces"]:
+        for name in ("area", "energy"):
+            before, away, after = figures[f"{name} below ply {entry['ply_above']}"]
+            require(abs(before + away - entry[name]) <= MAPPED * entry[name], f"{name}: the parts do not add up.")
+            require(before > 0 and abs(after - before) <= MAPPED * before, f"{name}: {before} before, {after} after.")
+    before, away, after = figures["energy_ply_damage"]
+    require(abs(before + away - impact["energy_ply_damage"]) <= MAPPED * before, "Energies of plies do not add up.")
+    require(before > 0 and 0 <= after - before <= EXTENDED["energy_ply_damage"] * before, "Energy of plies differs.")
+
+
+def check_cut(implam, folder, launcher):
+    """A smaller plate: its part of the damage, and an energy ledger without what is cut away."""
+    strike(implam, folder)
+    impact = json.loads((folder / f"{IMPACT}_summary.json").read_text(encoding="utf-8"))
+    settings = [*CUT, "output%checkpoint_every=0.3e-3", "output%checkpoint_at_end=.false."]
+    path = press(implam, folder, settings)
+    middle = cut_figures(folder)
+    check_parts(impact, middle)
+    require(middle["area below ply 3"][1] > 0.05 * middle["area below ply 3"][0], "Nothing is cut away.")
+    rows, log = read_history(path), (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8")
+    require("Cut away, and not in the energy ledger: below ply 1 area" in log, "The log does not report the cut.")
+    dissipated = float(re.search(r"dissipated by that run (\S+),", log).group(1))
+    kept = sum(middle[f"energy below ply {ply}"][2] for ply in (1, 3)) + middle["energy_ply_damage"][2]
+    friction = impact["energy_friction"] - (dissipated - kept)
+    print(f"dissipated {dissipated:.4g} with heat of friction {dissipated - kept:.4g}, {friction:.2g} of it cut away")
+    require(0 < dissipated - kept < impact["energy_friction"], "The ledger has heat of what is cut away.")
+    total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
+    error = max(map(abs, rows["energy_error"])) / total
+    print(f"energy error {error:.1e}")
+    require(error < CLOSED_AFTER_MAPPING, "The ledger does not close.")
+    reference = folder / "reference.csv"
+    shutil.copy(path, reference)
+    if launcher:
+        require(filecmp.cmp(press(implam, folder, settings, [*launcher, "2"]), reference, shallow=False),
+                "The history of two ranks differs.")
+        return
+    run([implam, "restart", f"{COMPRESSION}_restart.h5"], folder=folder)
+    require(filecmp.cmp(path, reference, shallow=False) and cut_figures(folder) == middle,
+            "After a restart the history or the parts differ.")
+    # The full plate, cut beside the centre to the edge of the panel.
+    deck = deck_of(folder, COMPRESSION, [*CUT, "plate%symmetry='none'", "mesh%elements=18, 10", "time%end=0.36e-3",
+                                         "initial_state%cut_at=10e-3, 0"])
+    run([implam, deck], folder=folder)
+    beside = cut_figures(folder)
+    check_parts(impact, beside)
+    require(beside["area below ply 3"][1] > 1.5 * middle["area below ply 3"][1], "The cut is not beside the centre.")
+
+
 def check_whole(implam, folder, _):
     """The full plate, compressed from both ends, starts from the half."""
     strike(implam, folder)
@@ -269,7 +335,10 @@ def check_refused(implam, folder, _):
         (["delamination%zone=20e-3,15e-3"], ["zone", "0.02 0.015", "larger"], EXIT_DECK),
         (["ply_damage%crack_closure=.true."], ["crack_closure", "1 here", "0 there"], EXIT_DECK),
         (["plate%imperfection=1e-4"], ["imperfection", "0.0001", "0 there"], EXIT_DECK),
-        (["plate%length=60e-3, 41e-3"], ["0.06 0.041", "0.06 0.04 there"], EXIT_DECK),
+        (["plate%length=60e-3, 41e-3"], ["0.06 0.041", "0.06 0.04 there", "within"], EXIT_DECK),
+        (["initial_state%cut_at=1e-3, 0"], ["0.06 0.04 here", "cut at 0.001 0", "within"], EXIT_DECK),
+        ([*CUT, "initial_state%cut_at=1e-3, 0"], ["cut_at = 0.001 0", "'none'"], EXIT_DECK),
+        ([*CUT, "plate%imperfection=1e-4"], ["0.04 0.018 here", "imperfection"], EXIT_DECK),
         (["mesh%elements=14,22", "ply_damage%crack_closure=.true."], ["crack_closure", "1 here", "0 there"], EXIT_DECK),
         (["case%kinematics='linear'"], ["kinematics", "'linear' here", "'von_karman' there"], EXIT_DECK),
         (["delamination%starter=12e-3"], ["starter", "0.012 square", "none there"], EXIT_DECK),
@@ -390,7 +459,8 @@ def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
               "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "coupon": check_coupon,
-              "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped}
+              "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
+              "cut": check_cut, "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 

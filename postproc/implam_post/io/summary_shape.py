@@ -31,7 +31,8 @@ _FIGURES = (
     "largest_deflection_at", "energy_impact", "energy_absorbed", "work_external", "energy_impactor", "energy_kinetic",
     "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage", "energy_contact",
     "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic", "energy_error", "delaminated_area",
-    "projected_area", "threshold_force_at_starter", "fibre_failures", "matrix_cracks", "matrix_crushings",
+    "projected_area", "projected_area_failed", "projected_area_softened", "threshold_force_at_starter",
+    "fibre_failures", "matrix_cracks", "matrix_crushings",
     "effective_modulus", "buckling_strain")
 _ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
              "energy_contact", "energy_friction")

@@ -55,7 +55,7 @@ def _draw_around(axes: Axes, fields: Fields, below_ply: int, snapshots: Sequence
                  style: PictureStyle) -> None:
     """Draw G/G_c against the angle from x to the cells ahead of the front; of a quarter only the modelled part."""
     by_load_steps = is_by_load_steps(fields)
-    colours = colormaps["viridis_r"](np.linspace(0, 1, max(len(snapshots), 2)))
+    colours = colormaps["viridis_r"](np.linspace(0.15, 1, max(len(snapshots), 2)))
     for snapshot, colour in zip(snapshots, colours, strict=False):
         cells, ratio = snapshot.release(below_ply)
         x, y = (np.mean(cells, axis=1) - struck_point(fields)).T

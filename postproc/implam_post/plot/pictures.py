@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.transforms import ScaledTranslation
 
 from implam_post.io.errors import FileError, reason
 from implam_post.io.fields import Fields
@@ -26,11 +27,13 @@ from implam_post.plot.plan import (
 )
 from implam_post.plot.plan_frame import caption, reach_of
 from implam_post.plot.section import section_figure
-from implam_post.plot.style import STYLES, PictureStyle, lay_out
+from implam_post.plot.style import ENERGIES, STYLES, PictureStyle, lay_out
 
 RESPONSES = {"force": ("contact force", "force"), "indentation": ("indentation", "length"),
               "deflection": ("deflection of struck point", "length")}
 _PLAIN = PictureStyle()
+# Inches below axes for the label and ticks of the horizontal one.
+_BELOW = 0.45
 
 
 def plot_forces(histories: Sequence[History], path: Path) -> Path:
@@ -93,7 +96,7 @@ def plot_overview(fields: Fields, history: History, path: Path, style: PictureSt
     if not interfaces:
         raise FileError(f"{fields.name} has no interface that may delaminate.")
     few = len(interfaces) <= FEW
-    figure = Figure(figsize=(11, max(2.9 * len(interfaces), 5.8) if few else 7.5), layout="constrained")
+    figure = Figure(figsize=(11, max(2.9 * len(interfaces) + 1, 5.8) if few else 7.5), layout="constrained")
     left, right = figure.subfigures(1, 2)
     if few:
         _draw_interfaces(left, fields, style)
@@ -104,7 +107,7 @@ def plot_overview(fields: Fields, history: History, path: Path, style: PictureSt
     force, energies = right.subplots(2)
     draw_response(force, [history], "force", style)
     _stack(energies, history, style)
-    figure.supxlabel(caption(fields, style), fontsize="small")
+    figure.supxlabel(caption(fields, style, inset=False), fontsize="small")
     return _save(figure, path, style)
 
 
@@ -144,7 +147,7 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
     """Draw the energies stacked."""
     balance = {column: history[column] for column in ENERGY_NAMES if column in history.columns}
     shown = {column: values for column, values in balance.items() if np.any(values)}
-    colours = [f"C{list(ENERGY_NAMES).index(column)}" for column in shown]
+    colours = [ENERGIES[list(ENERGY_NAMES).index(column) % len(ENERGIES)] for column in shown]
     start = sum(values[0] for values in balance.values())
     time = style.clock(history.time, [history.by_load_steps])
     energy = style.axis("energy", "energy", [start, *(np.max(np.abs(values)) for values in shown.values())])
@@ -152,7 +155,7 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
         labels = [ENERGY_NAMES[column] for column in shown]
         for parts, names in ((np.maximum, labels), (np.minimum, ())):
             axes.stackplot(time.factor * history.time, [energy.factor * parts(values, 0) for values in shown.values()],
-                           labels=names, colors=colours, alpha=0.8, edgecolor="white", linewidth=0.5)
+                           labels=names, colors=colours, edgecolor="white", linewidth=0.5)
     axes.axhline(energy.factor * start, color="black", linestyle="--", linewidth=1, label="total at the start")
     axes.plot(time.factor * history.time, energy.factor * history["energy_error"], color="black", linewidth=1,
               label=ENERGY_ERROR)
@@ -160,7 +163,9 @@ def _stack(axes: Axes, history: History, style: PictureStyle) -> None:
     axes.locator_params(axis="x", nbins=6)
     # From the top of the stack downwards.
     handles = axes.get_legend_handles_labels()[0][::-1]
-    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, fontsize="small")
+    below = axes.transAxes + ScaledTranslation(0, -_BELOW, axes.figure.dpi_scale_trans)
+    axes.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=below, ncols=3,
+                fontsize="small")
 
 
 def response_of(history: History, column: str) -> np.ndarray:

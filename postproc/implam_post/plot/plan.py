@@ -26,7 +26,7 @@ from implam_post.plot.style import DEPTHS, TIMES, PictureStyle
 
 _PLAIN = PictureStyle()
 # Inches beside and above a map in a column of full titles and in several columns, and below all maps: axis, bar, text.
-_WIDE, _NARROW, _BELOW = (0.3, 0.75), (0.15, 0.35), 1.9
+_WIDE, _NARROW, _BELOW = (0.3, 0.75), (0.15, 0.35), 2.05
 # Up to this many interfaces a map has a title of two lines and its own row.
 FEW = 3
 # Digits of areas, as in the summary.

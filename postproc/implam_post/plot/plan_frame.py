@@ -17,7 +17,7 @@ from implam_post.plot.style import PictureStyle
 
 _PLAIN = PictureStyle()
 # Size of a page in inches, the part of its width for labels, and the largest number of maps side by side.
-PAGE, _LABELS, _MAX_COLUMNS = (7.5, 10.0), 0.7, 6
+PAGE, _LABELS, _MAX_COLUMNS = (7.5, 10.0), 0.7, 5
 # Width for the title of a small map, inches.
 _TITLE = 1.35
 # Margin of a map as a fraction of the region shown, with space for the small plate in its corner.
@@ -71,15 +71,16 @@ def state_of(fields: Fields, time: float, style: PictureStyle, digits: int = 3) 
     return ("" if by_load_steps else "time ") + style.instant(time, by_load_steps, digits)
 
 
-def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True) -> str:
-    """Return the text for all maps of a picture: state, meaning of outlines, and direction of view.
+def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True, inset: bool = True) -> str:
+    """Return the text for all maps of a picture: state, meaning of outlines, direction of view, and the inset.
 
     z points from the struck face to the back, so that with x to the right and y up it points towards the viewer.
     """
     state = state_of(fields, fields.snapshots[-1].time, style, 4)
     law = "outlines enclose the dissipated area, where the dissipated fraction is largest; " if outlined and any(
         found.is_cohesive for found in fields.snapshots[-1].interfaces.values()) else ""
-    return f"State at {state}; {law}0° along x;\nview of the back face (z towards the viewer), + struck point"
+    return f"State at {state}; {law}0° along x;\nview of the back face (z towards the viewer), + struck point" + (
+        "\ninset: part of the plate shown (red), window of its support (dashed)" if inset else "")
 
 
 def locate(axes: Axes, fields: Fields) -> None:
@@ -94,7 +95,7 @@ def locate(axes: Axes, fields: Fields) -> None:
         return
     small = axes.inset_axes((0.01, 0.01, _MARGIN, _MARGIN))
     draw_plate(small, deck, along, across)
-    small.add_patch(Rectangle((left, low), right - left, high - low, facecolor="none", edgecolor="#D55E00",
+    small.add_patch(Rectangle((left, low), right - left, high - low, facecolor="none", edgecolor="#CC3311",
                               linewidth=1.2))
     small.set(xlim=(-0.55 * along, 0.55 * along), ylim=(-0.55 * across, 0.55 * across), aspect="equal", anchor="SW")
     small.axis("off")

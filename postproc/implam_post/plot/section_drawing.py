@@ -27,6 +27,8 @@ _GAP = 0.01
 # A crack lies in the plane of the drawing if the fibres run within this angle of the section, degrees.
 _IN_PLANE = 10.0
 _LETTERS = 7.0
+# What lies below this order of drawing is written as pixels in files of lines.
+_PIXELS = 2.5
 
 
 @dataclass(frozen=True)
@@ -116,6 +118,7 @@ class Drawing:
         handles |= self._cracks(axes)
         handles |= self._delaminations(axes)
         handles |= self._face(axes, style)
+        axes.set_rasterization_zorder(_PIXELS)  # plies are thousands of small polygons
         axes.set(xlim=(-self.half, self.half), ylim=(span[1], span[0]))
         for name, side, largest in (("distance from the struck point", axes.xaxis, self.half),
                                     ("depth", axes.yaxis, self.plate.thickness)):

@@ -26,6 +26,9 @@ FAILURES = {"matrix cracking": "#D55E00", "matrix crushing": "#F0E442", "fibres 
             "fibres crushed": "#009E73", "fibre failure": "#CC79A7"}
 # Hatches of failures that fill an area.
 HATCHES = {"fibres torn": "xxxx", "fibres crushed": "////", "fibre failure": "xxxx"}
+# Colours of energies, by Tol, in the order of the energy balance.
+ENERGIES = ("#88CCEE", "#DDCC77", "#44AA99", "#CC6677", "#332288", "#882255", "#999933", "#666666", "#AA4499",
+            "#DDDDDD", "#117733", "#000000")
 # Maps of colours of times, and of interfaces from the struck face on.
 TIMES, DEPTHS = "viridis_r", "plasma"
 

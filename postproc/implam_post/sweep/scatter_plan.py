@@ -32,8 +32,9 @@ class Kind:
 KINDS = (
     Kind(THICKNESS, {"laminate": ("thicknesses", "ply_thickness")}, 0.023,
          "equal for all plies, uniform within 4 % (Qu, dissertation, University of Florida 2004, table 8-14)"),
-    Kind("moduli", {"material": ("E", "E1", "E2", "G12", "G13", "G23")}, 0.03,
-         "AS4/epoxy (Qu 2004, table 8-12); G13 as G12, since plies are transversely isotropic"),
+    Kind("moduli", {"material": ("E", "E1", "E1c", "E2", "G12", "G13", "G23")}, 0.03,
+         "AS4/epoxy (Qu 2004, table 8-12); G13 as G12, since plies are transversely isotropic, E1c as E1, since both "
+         "follow the content of fibres"),
     Kind("strengths", {"material": ("XT", "XC", "YT", "YC", "S12", "Sf", "Sm23"),
                        "delamination": ("strength_opening", "strength_shear")}, 0.06,
          "smallest modified coefficient of variation of a strength by CMH-17-1G"),
@@ -130,7 +131,9 @@ class Scatter:
 
         The first group of a name has the same samples as a single one, so that variants without the second are paired.
         """
-        column = found.column.replace("G13 factor", "G12 factor").replace("[1].", ".")
+        column = found.column.replace("[1].", ".")
+        for follower, leader in (("G13", "G12"), ("E1c", "E1")):
+            column = column.replace(f"{follower} factor", f"{leader} factor")
         return _drawn(column, found.kind == PLACE, found.variation, self.number, self.seed, self.method)
 
 

@@ -21,6 +21,7 @@ SUMMARY = {
     "accepted_steps": 3, "peak_force": 10.5, "peak_force_at": 1e-4, "in_contact": False, "largest_deflection": 1e-3,
     "largest_deflection_at": 2e-4, "rebound_velocity": None, "plate_size": [0.1, 0.1], "work_external": 0.5,
     **{f"energy_{name}": 0.5 for name in ENERGIES}, "delaminated_area": 2e-4, "projected_area": 1e-4,
+    "projected_area_failed": 5e-5, "projected_area_softened": 2e-4,
     "interfaces": [{"ply_above": 1, "is_cohesive": True, "area": 2e-4, "energy": 0.1, "x": [-0.01, 0.01],
                     "y": [0, 0.01], "onset": {"at": 1e-4, "force": 5.0, "deflection": 1e-4}, "first_growth": None,
                     "threshold_force": 100.0, "border_reached": False}],

@@ -10,8 +10,11 @@ import warnings
 from pathlib import Path
 from unittest import mock
 
+import h5py
+import numpy as np
 from matplotlib.figure import Figure
 
+from implam_post.io.contours import WEIGHTS
 from implam_post.plot import command as plot
 from implam_post.plot.plan import FEW
 from implam_post.report import command as report
@@ -65,9 +68,32 @@ class AreasTest(unittest.TestCase):
         for area in (summary["delaminated_area"], summary["projected_area"],
                      *(entry["area"] for entry in summary["interfaces"])):
             self.assertIn(f">{1e6 * area:.4g} mm²<", page)
+        self.hold_damage(summary, fields)
         if len(summary["interfaces"]) == 1:
             self.assertAlmostEqual(summary["projected_area"] / (summary["delaminated_area"] or 1),
                                    1 if summary["delaminated_area"] else 0, delta=1e-12)
+
+    def hold_damage(self, summary: dict[str, object], path: Path) -> None:
+        """Compare the projected areas of failed and of softened points with sums over the field of damage."""
+        if not all(entry["is_cohesive"] for entry in summary["interfaces"]):
+            return
+        with h5py.File(path) as file:
+            last = file["times"][max(file["times"])]
+            mesh = file[f"meshes/{int(last['mesh'][()]):08d}"]
+            points, elements = mesh["coordinates"][:, :2], mesh["connectivity"][()]
+            damage = last["points/damage_above"][()]
+        _, node = np.unique(np.round(1e8 * points).astype(int), axis=0, return_inverse=True)
+        node = node.ravel()
+        worst = np.zeros(node.max() + 1)
+        np.maximum.at(worst, node, damage)
+        _, once = np.unique(node[elements[:, 8]], return_index=True)
+        area = np.zeros_like(worst)
+        cells = np.prod(np.ptp(points[elements[once, :4]], axis=1), axis=1)
+        np.add.at(area, node[elements[once]], cells[:, None] * WEIGHTS)
+        for name, least in (("failed", 0.99), ("softened", 0.5)):
+            found = np.sum(area[worst >= least]) / np.sum(area) * np.prod(summary["plate_size"])
+            self.assertAlmostEqual(summary[f"projected_area_{name}"] / (found or 1), 1 if found else 0, delta=1e-9,
+                                   msg=name)
 
     def titles(self, fields: Path) -> list[str]:
         """Draw the fields and return the first line of each title."""

@@ -104,6 +104,7 @@ class ReportTest(unittest.TestCase):
         summary, page = json.loads(path.read_text(encoding="utf-8")), self.page(path)
         for key, shown in (("peak_force", "{:.4g} kN"), ("largest_deflection", "{:.4g} mm"),
                            ("delaminated_area", "{:.4g} mm²"), ("projected_area", "{:.4g} mm²"),
+                           ("projected_area_failed", "{:.4g} mm²"), ("projected_area_softened", "{:.4g} mm²"),
                            ("dent_depth", "{:.4g} µm"), ("dent_indentation", "{:.4g} µm"),
                            ("energy_strain", "{:.4g}"), ("energy_error", "{:.4g}")):
             factor = {"kN": 1e-3, "mm": 1e3, "µm": 1e6, "mm²": 1e6}.get(shown[7:], 1)
