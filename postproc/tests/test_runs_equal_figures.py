@@ -58,7 +58,10 @@ LINES = (
     ("", rf"contact {NUMBER}, friction {NUMBER}, layers {NUMBER}(?:, damping {NUMBER})?, "
      rf"algorithmic dissipation {NUMBER}",
      ("energy_contact", "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic")),
-    ("delaminated area", rf"{NUMBER} of all interfaces, projected {NUMBER}", ("delaminated_area", "projected_area")),
+    ("delaminated area", rf"{NUMBER} of all interfaces", ("delaminated_area",)),
+    ("projected", rf"{NUMBER} by dissipated fractions, as in a C-scan; failed points {NUMBER}, "
+     rf"with process zones {NUMBER}",
+     ("projected_area", "projected_area_failed", "projected_area_softened")),
     ("failed plies", r"fibres (\d+)()(), matrix cracked (\d+)()(), crushed (\d+)()()",
      ("fibre_failures", "matrix_cracks", "matrix_crushings")))
 OF_INTERFACE = (
@@ -180,7 +183,7 @@ class EqualFiguresTest(unittest.TestCase):
     def check_log(self, found: Run, summary: Mapping[str, float | None]) -> None:
         """Compare the log."""
         log, = found.base.parent.glob("*.log")
-        block = log.read_text(encoding="utf-8").rpartition("\nSummary, in the units of the deck")[2].splitlines()[1:]
+        block = re.split(r"^Summary", log.read_text(encoding="utf-8"), flags=re.MULTILINE)[-1].splitlines()[1:]
         system, prefix, entries = found.system, "", {str(entry["ply_above"]): place for place, entry in enumerate(
             found.summary.get("interfaces", []))}
         printed_in_units = not re.search(r"at time ", "\n".join(block))

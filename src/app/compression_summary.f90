@@ -2,64 +2,31 @@
 module compression_summary
   use compressed_damage, only: figure_area, figure_mean, figure_width
   use compression_failures, only: compression_failure_t, failure_of
-  use compression_records, only: compression_record_t
-  use deck_contents, only: deck_t
-  use gauges, only: gauge_t
   use json_text, only: json_t
   use kinds, only: wp
-  use placed_gauges, only: back_to_back
   use plies, only: plies_text
   use run_figures, only: run_figures_t
-  use run_moments, only: moment
   use run_records, only: run_record_t
-  use text, only: rounded_text
+  use run_results, only: results_t
   implicit none
   private
-  public :: put_compression, put_collapse, compression_text, collapse_text
+  public :: put_collapse, compression_text, collapse_text
 
 contains
 
-  !> Strength and modulus for the file.
-  subroutine put_compression(json, record, gauges)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> Record of the run
-    type(compression_record_t), intent(in) :: record
-    !> Strain gauges of the deck
-    type(gauge_t), intent(in) :: gauges(:)
-
-    call json%put('residual_strength', record%strength)
-    call json%put('residual_strength_at', record%at)
-    call json%put('shortening_at_strength', record%shortening)
-    call json%put('has_failed', record%failed)
-    if (record%modulus() > 0) then
-      call json%put('effective_modulus', record%modulus())
-    else
-      call json%put_null('effective_modulus')
-    end if
-    if (.not. all(back_to_back(gauges) > 0)) return
-    call json%put('percent_bending', record%bending)
-    if (record%buckling > 0) then
-      call json%put('buckling_strain', record%buckling)
-    else
-      call json%put_null('buckling_strain')
-    end if
-  end subroutine put_compression
-
-  !> The same for the log.
-  pure function compression_text(deck, record) result(text)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> Record of the run
-    type(compression_record_t), intent(in) :: record
+  !> Strength and modulus for the log.
+  pure function compression_text(results, at) result(text)
+    !> Results of the run
+    type(results_t), intent(in) :: results
+    !> Time of the strength in words
+    character(len=*), intent(in) :: at
     !> Figures after a label
     character(len=:), allocatable :: text
 
-    text = rounded_text(record%strength)//' at a shortening of '//rounded_text(record%shortening)//', '// &
-           moment(deck, record%at)
-    if (record%modulus() > 0) text = text//', effective modulus '//rounded_text(record%modulus())
-    if (record%buckling > 0) text = text//', buckled at a strain of '//rounded_text(record%buckling)
-    if (.not. record%failed) text = text//'; a lower bound, as the plate has not failed'
+    text = results%shown('residual_strength')//' at a shortening of '//results%shown('shortening_at_strength')//', '//at
+    if (results%has('effective_modulus')) text = text//', effective modulus '//results%shown('effective_modulus')
+    if (results%has('buckling_strain')) text = text//', buckled at a strain of '//results%shown('buckling_strain')
+    if (.not. results%value('has_failed') > 0) text = text//'; a lower bound, as the plate has not failed'
   end function compression_text
 
   !> Place of failure, for the file.

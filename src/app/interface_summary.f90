@@ -4,7 +4,7 @@ module interface_summary
   use delamination_parameters, only: law_cohesive
   use json_text, only: json_t
   use kinds, only: wp
-  use projected_areas, only: area_dissipated, area_failed, area_softened, projected_rule
+  use projected_areas, only: projected_rule
   use run_figures, only: run_figures_t
   use run_records, only: run_record_t
   use states, only: state_t
@@ -28,14 +28,7 @@ contains
     type(run_figures_t), intent(in) :: figures
     integer :: zone
 
-    call json%put('delaminated_area', sum(figures%interfaces%area))
-    call json%put('projected_area', figures%projected_areas(area_dissipated))
     call json%put('projected_area_rule', projected_rule)
-    call json%put('projected_area_failed', figures%projected_areas(area_failed))
-    call json%put('projected_area_softened', figures%projected_areas(area_softened))
-    call put_first('onset', record%earliest(record%onset))
-    call put_first('first_growth', record%earliest(record%growth))
-    if (figures%starter_threshold > 0) call json%put('threshold_force_at_starter', figures%starter_threshold)
     call json%open_list('interfaces')
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
@@ -54,24 +47,6 @@ contains
       end associate
     end do
     call json%close()
-
-  contains
-
-    !> Time and force of the first event of all interfaces.
-    subroutine put_first(name, event)
-      !> Its name
-      character(len=*), intent(in) :: name
-      !> Time, contact force, deflection; time 0: never
-      real(wp), intent(in) :: event(3)
-
-      if (event(1) > 0) then
-        call json%put(name//'_at', event(1))
-        if (deck%has_impactor) call json%put(name//'_force', event(2))
-      else
-        call json%put_null(name//'_at')
-        if (deck%has_impactor) call json%put_null(name//'_force')
-      end if
-    end subroutine put_first
   end subroutine put_interfaces
 
   !> Time, force and deflection of an event.

@@ -5,16 +5,18 @@ module result_explain
   use result_rows, only: column_rows
   use result_tables, only: cell, column_heading, column_meaning, column_name, column_unit, field_heading, &
                            field_meaning, field_name, field_row, field_unit, markdown_table, plain_table
+  use summary_rows, only: summary_heading, summary_meaning, summary_table
   use text, only: append, line_t, lower_case
   implicit none
   private
   public :: explain_column, explain_results, is_result_topic
 
   !> Their names.
-  character(len=*), parameter, public :: result_topics = 'history fields'
+  character(len=*), parameter, public :: result_topics = 'history fields summary'
   !> The command that prints the tables.
   character(len=*), parameter, public :: result_topics_sentence = &
-    '`implam explain history` lists the columns of NAME_history.csv, `implam explain fields` the fields of NAME.h5.'
+    '`implam explain history` lists the columns of NAME_history.csv, `implam explain fields` the fields of NAME.h5, &
+      &`implam explain summary` the results in NAME_summary.json.'
 
 contains
 
@@ -23,7 +25,7 @@ contains
     !> The parsed command line
     character(len=*), intent(in) :: topic
 
-    is_result_topic = lower_case(topic) == 'history' .or. lower_case(topic) == 'fields'
+    is_result_topic = index(' '//result_topics//' ', ' '//lower_case(topic)//' ') > 0 .and. len_trim(topic) > 0
   end function is_result_topic
 
   !> A column of the history or a field by name, also with a number for its N; no lines if there is none.
@@ -62,6 +64,13 @@ contains
       if (cell(column_rows(row), column_unit) /= '-') &
         call append(lines, '  unit: '//cell(column_rows(row), column_unit))
     end if
+    row = field_row(summary_table, name)
+    if (row > 0) then
+      call append(lines, 'NAME_summary.json')
+      call append(lines, '  '//cell(summary_table(row), column_name)//': '//cell(summary_table(row), summary_meaning))
+      if (cell(summary_table(row), column_unit) /= '-') &
+        call append(lines, '  unit: '//cell(summary_table(row), column_unit))
+    end if
     row = field_row(field_rows, name)
     if (row == 0) return
     call append(lines, 'NAME.h5')
@@ -71,7 +80,7 @@ contains
 
   !> The columns of the history or the fields over the plate.
   subroutine explain_results(topic, markdown, lines)
-    !> `history` or `fields`
+    !> `history`, `fields` or `summary`
     character(len=*), intent(in) :: topic
     !> True: the table alone, as Markdown
     logical, intent(in) :: markdown
@@ -85,6 +94,13 @@ contains
         call append(lines, 'NAME_history.csv has a row for each accepted step, with central differences '// &
                     'about 2000 rows. Its columns, in their order:')
         call plain_table(column_heading, column_rows, lines)
+      end if
+    else if (lower_case(topic) == 'summary') then
+      if (markdown) then
+        call markdown_table(summary_heading, summary_table, lines)
+      else
+        call append(lines, 'NAME_summary.json has these results, as far as the run has them, and further members:')
+        call plain_table(summary_heading, summary_table, lines)
       end if
     else if (markdown) then
       call markdown_table(field_heading, field_rows, lines)

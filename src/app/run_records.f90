@@ -146,7 +146,10 @@ contains
       self%deflection = now%deflection
       self%deflection_time = now%time
     end if
-    call count_contacts(self, now%time, now%force, now%impactor%velocity)
+    call count_contacts(self, now%time, now%force)
+    ! Since then the impactor flies freely under gravity; a multistep integrator needs some steps for it.
+    if (self%contacts > 0 .and. .not. now%force > 0) self%rebound = &
+      model%setup%impactor%gravity*(now%time - self%contact_end) - now%impactor%velocity
     self%time = now%time
     self%force = now%force
     if (all(self%stage == stage_grown) .or. modulo(now%step, between_stages) > 0) return
@@ -211,12 +214,12 @@ contains
   end function earliest
 
   !> Counts contacts and their duration. A contact starts or ends at mid-step; one at the start of the run starts with
-  !> it. The velocity is that of the first step without contact: later gravity changes it.
-  pure subroutine count_contacts(self, time, force, velocity)
+  !> it.
+  pure subroutine count_contacts(self, time, force)
     !> The record of the previous step
     type(run_record_t), intent(inout) :: self
-    !> Time, contact force and velocity of the impactor at the end of the step
-    real(wp), intent(in) :: time, force, velocity
+    !> Time and contact force at the end of the step
+    real(wp), intent(in) :: time, force
     real(wp) :: from, to
 
     if (.not. (self%force > 0 .or. force > 0)) return
@@ -226,10 +229,7 @@ contains
       self%contacts = self%contacts + 1
       if (self%time > 0) from = (self%time + time)/2
     end if
-    if (.not. force > 0) then
-      to = (self%time + time)/2
-      self%rebound = -velocity
-    end if
+    if (.not. force > 0) to = (self%time + time)/2
     self%contact_duration = self%contact_duration + (to - from)
     self%contact_end = to
   end subroutine count_contacts

@@ -11,8 +11,10 @@ module run_summaries
   use run_figures, only: run_figures_t, ending_of, find_figures
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
+  use run_results, only: results_t
   use summary_file, only: summary_text
   use summary_lines, only: lines_of_summary
+  use summary_results, only: results_of
   use text, only: line_t
   use time_stepping, only: time_stepper_t
   use whole_files, only: write_whole_file
@@ -49,6 +51,7 @@ contains
     !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(run_figures_t) :: figures
+    type(results_t) :: results
     type(run_errors_t) :: errors
     type(coarse_run_t) :: coarse_run
     type(error_t), allocatable :: fault
@@ -58,6 +61,7 @@ contains
     integer :: i
 
     call find_figures(model, stepper%now, figures)
+    results = results_of(deck, stepper%now, record, figures)
     if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record, stepper%now%has_failures())
     ended = .not. (allocated(error) .or. deck%is_static() .or. deck%initial%is_inherited)
     needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
@@ -71,13 +75,13 @@ contains
     else if (ended .and. errors%source == 'none') then
       unknown_because = unasked
     end if
-    lines = lines_of_summary(deck, stepper%now, record, figures, errors, unknown_because)
+    lines = lines_of_summary(deck, results, record, figures, errors, unknown_because)
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do
     if (model%communicator%is_root()) &
-      call write_whole_file(path, summary_text(deck, stepper, record, figures, errors, ending_of(error), provenance, &
-                                            seconds), fault)
+      call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, ending_of(error), &
+                                               provenance, seconds), fault)
     call model%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault
   end subroutine summarise

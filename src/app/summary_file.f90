@@ -1,12 +1,11 @@
 !> NAME_summary.json: the summary in full precision. doc/manual/summary.md describes it.
 module summary_file
-  use compression_summary, only: put_collapse, put_compression
+  use compression_summary, only: put_collapse
   use summary_provenance, only: put_provenance
   use deck_contents, only: deck_t
   use errors, only: error_t, exit_files, fail
   use force_filters, only: filter_kind
   use json_text, only: json_t
-  use impactors, only: impactor_energy, new_impactor
   use interface_summary, only: put_interfaces
   use kinds, only: wp
   use output_clocks, only: shown_time
@@ -16,9 +15,8 @@ module summary_file
   use run_figures, only: ending_t, run_figures_t
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
+  use run_results, only: results_t
   use run_warnings, only: reported_warnings
-  use slow_motions, only: is_slow_motion
-  use states, only: state_t
   use text, only: line_t
   use time_stepping, only: time_stepper_t
   implicit none
@@ -31,14 +29,16 @@ module summary_file
 contains
 
   !> The summary as JSON.
-  function summary_text(deck, stepper, record, figures, errors, ending, provenance, seconds) result(content)
+  function summary_text(deck, stepper, record, results, figures, errors, ending, provenance, seconds) result(content)
     !> The deck
     type(deck_t), intent(in) :: deck
     !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
+    !> Results of the run
+    type(results_t), intent(in) :: results
+    !> Further results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> Estimated errors
     type(run_errors_t), intent(in) :: errors
@@ -60,26 +60,12 @@ contains
     call json%put('code', ending%code)
     call json%put('message', ending%message)
     call json%close()
-    call json%put(trim(merge('load_factor_reached', 'time_reached       ', deck%is_static())), shown_time(record%time))
-    call json%put('accepted_steps', stepper%now%step)
-    if (deck%moves_impactor()) call put_impact(json, stepper%now, record, figures)
-    call json%put('largest_deflection', record%deflection)
-    call json%put('largest_deflection_at', shown_time(record%deflection_time))
+    call results%put(json)
+    if (deck%moves_impactor() .and. record%filter%frequency > 0) call put_filtered(json, record)
     call record%mapping%put(json, deck%delaminations%below_ply)
-    if (record%compression%strength > 0) then
-      call put_compression(json, record%compression, deck%gauges)
-      call put_collapse(json, record, figures, deck%delaminations%below_ply)
-    end if
-    if (deck%presses_impactor()) then
-      call json%put('peak_force', record%peak_force)
-      call json%put('peak_force_at', shown_time(record%peak_time))
-    end if
-    if (is_slow_motion(deck)) call json%put('kinetic_share', record%slow_motion%share)
-    if (record%scaled_energy > 0) call json%put('scaled_kinetic_share', record%scaled_share())
+    if (record%compression%strength > 0) call put_collapse(json, record, figures, deck%delaminations%below_ply)
     call put_errors(json, errors)
-    call put_energies(json, deck, stepper%now)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
-    if (deck%has_ply_damage) call put_failures(json, figures)
     call put_plies(json, deck, figures)
     call put_warnings(json, deck, record)
     call put_costs(json, stepper, seconds)
@@ -88,41 +74,20 @@ contains
     call json%finished(content)
   end function summary_text
 
-  !> Force, contact and impactor.
-  subroutine put_impact(json, now, record, figures)
+  !> Largest filtered force.
+  subroutine put_filtered(json, record)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The state reached
-    type(state_t), intent(in) :: now
     !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> Figures of the state
-    type(run_figures_t), intent(in) :: figures
 
-    call json%put('peak_force', record%peak_force)
-    call json%put('peak_force_at', shown_time(record%peak_time))
-    if (record%filter%frequency > 0) then
-      call json%open_object(key_force_filter)
-      call json%put('kind', filter_kind)
-      call json%put('frequency', record%filter%frequency)
-      call json%put('peak_force', record%peak_filtered)
-      call json%put('peak_force_at', shown_time(record%peak_filtered_time))
-      call json%close()
-    end if
-    call json%put('contacts', record%contacts)
-    call json%put('contact_duration', shown_time(record%contact_duration))
-    call json%put('contact_until', shown_time(record%contact_end))
-    call json%put('in_contact', now%force > 0)
-    call json%put('dent_depth', figures%dent(1))
-    call json%put('dent_indentation', figures%dent(2))
-    call json%put('impactor_displacement', now%impactor%displacement)
-    call json%put('impactor_velocity', now%impactor%velocity)
-    if (record%has_rebounded()) then
-      call json%put('rebound_velocity', record%rebound)
-    else
-      call json%put_null('rebound_velocity')
-    end if
-  end subroutine put_impact
+    call json%open_object(key_force_filter)
+    call json%put('kind', filter_kind)
+    call json%put('frequency', record%filter%frequency)
+    call json%put('peak_force', record%peak_filtered)
+    call json%put('peak_force_at', shown_time(record%peak_filtered_time))
+    call json%close()
+  end subroutine put_filtered
 
   !> Estimated errors.
   subroutine put_errors(json, errors)
@@ -154,64 +119,6 @@ contains
       if (.not. error >= 0) call json%put_null(name)
     end subroutine put_known
   end subroutine put_errors
-
-  !> The ledger at the end.
-  subroutine put_energies(json, deck, now)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> The state reached
-    type(state_t), intent(in) :: now
-
-    if (deck%moves_impactor()) call put_impact_energies(json, deck, now)
-    associate (ledger => now%ledger)
-      call json%put('work_external', ledger%external_work)
-      call json%put('energy_kinetic', ledger%kinetic)
-      call json%put('energy_strain', ledger%strain)
-      call json%put('energy_indentation', ledger%indentation)
-      call json%put('energy_delamination', ledger%delamination)
-      call json%put('energy_ply_damage', ledger%ply_damage)
-      call json%put('energy_contact', ledger%contact)
-      call json%put('energy_friction', ledger%friction)
-      call json%put('energy_layers', ledger%layers)
-      call json%put('energy_damping', ledger%damping)
-      call json%put('energy_algorithmic', ledger%algorithmic)
-      call json%put('energy_error', ledger%error())
-    end associate
-  end subroutine put_energies
-
-  !> Energy of the impactor at first contact, at the end, and absorbed; the last is known after it has left the plate.
-  subroutine put_impact_energies(json, deck, now)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> The state reached
-    type(state_t), intent(in) :: now
-    real(wp) :: energy_input
-
-    energy_input = impactor_energy(deck%impactor, new_impactor(deck%impactor))
-    call json%put('energy_impact', energy_input)
-    if (now%force > 0) then
-      call json%put_null('energy_absorbed')
-    else
-      call json%put('energy_absorbed', energy_input - now%ledger%impactor)
-    end if
-    call json%put('energy_impactor', now%ledger%impactor)
-  end subroutine put_impact_energies
-
-  !> Failures of the plies.
-  subroutine put_failures(json, figures)
-    !> The summary
-    type(json_t), intent(inout) :: json
-    !> Results of the state reached
-    type(run_figures_t), intent(in) :: figures
-
-    call json%put('fibre_failures', figures%failures(1))
-    call json%put('matrix_cracks', figures%failures(2))
-    call json%put('matrix_crushings', figures%failures(3))
-  end subroutine put_failures
 
   !> The plate and its plies.
   subroutine put_plies(json, deck, figures)

@@ -1,20 +1,18 @@
-!> The summary in the log: rounded, in the deck's units.
+!> The summary in the log: rounded, with the usual units if the system of units of the deck is known.
 module summary_lines
   use compression_summary, only: collapse_text, compression_text
   use deck_contents, only: deck_t
-  use energy_ledgers, only: ledger_t
-  use impactors, only: impactor_energy, new_impactor
   use kinds, only: wp
-  use projected_areas, only: area_dissipated, area_failed, area_softened
   use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
   use roundings, only: rounding
   use run_moments, only: moment
   use run_records, only: run_record_t
+  use run_results, only: results_t
   use run_warnings, only: reported_warnings
-  use slow_motions, only: is_slow_motion
-  use states, only: state_t
+  use summary_rows, only: label_of_result, unit_of_result
   use text, only: line_t, append, counted, rounded_text, to_text
+  use usual_units, only: area_kind, energy_kind, force_kind, length_kind, time_kind, velocity_kind
   implicit none
   private
   public :: lines_of_summary
@@ -25,11 +23,11 @@ module summary_lines
 contains
 
   !> The summary as lines of the log.
-  function lines_of_summary(deck, now, record, figures, errors, unknown_because) result(lines)
+  function lines_of_summary(deck, results, record, figures, errors, unknown_because) result(lines)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> The state reached
-    type(state_t), intent(in) :: now
+    !> Results of the run
+    type(results_t), intent(in) :: results
     !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state
@@ -44,33 +42,64 @@ contains
 
     struck = deck%moves_impactor() .and. .not. deck%impactor%travel > 0
     if (deck%units == '') call append(lines, 'Summary, in the units of the deck:')
-    if (deck%units /= '') call append(lines, 'Summary, in the units of the deck, '//deck%units//':')
+    if (deck%units /= '') call append(lines, 'Summary:')
     if (struck) then
-      call add_impact(lines, now, record, errors)
+      call add_impact(lines, deck, results, record, errors)
     else if (deck%has_impactor) then
-      call add_figure(lines, 'peak force', rounded_text(record%peak_force)//' at '//moment(deck, record%peak_time))
+      call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')//' at '// &
+                      instant(deck, results, results%value('peak_force_at')))
     end if
-    call add_figure(lines, 'largest deflection', rounded_text(record%deflection)// &
-              within(errors%deflection, record%deflection)//' at '//moment(deck, record%deflection_time))
-    if (record%compression%strength > 0) then
-      call add_figure(lines, 'residual strength', compression_text(deck, record%compression))
+    call add_figure(lines, label_of_result('largest_deflection'), results%shown('largest_deflection')// &
+                    within(results, 'largest_deflection', errors%deflection)//' at '// &
+                    instant(deck, results, results%value('largest_deflection_at')))
+    if (results%has('residual_strength')) then
+      call add_figure(lines, label_of_result('residual_strength'), &
+                      compression_text(results, instant(deck, results, results%value('residual_strength_at'))))
       if (record%compression%failed) &
         call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
     end if
-    if (struck .and. .not. now%force > 0) call add_dent(lines, deck, figures)
-    if (struck) call add_impact_energy(lines, deck, now)
-    call add_energies(lines, now%ledger)
-    if (is_slow_motion(deck)) call add_figure(lines, 'slow motion', 'kinetic energy at most '// &
-                                              rounded_text(100*record%slow_motion%share, 2)//' % of the work')
-    if (record%scaled_energy > 0) call add_figure(lines, 'scaled inertia', 'kinetic energy at most '// &
-                                            rounded_text(100*record%scaled_share(), 2)//' % of the total')
-    if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, record, figures, errors)
-    if (deck%has_ply_damage) call add_figure(lines, 'failed plies', 'fibres '//to_text(figures%failures(1))// &
-      ', matrix cracked '//to_text(figures%failures(2))//', crushed '//to_text(figures%failures(3))// &
-      ' (counted in each element)')
+    if (struck .and. .not. results%value('in_contact') > 0) call add_dent(lines, deck, results)
+    if (struck) call add_impact_energy(lines, results)
+    call add_energies(lines, results)
+    if (results%has('kinetic_share')) &
+      call add_figure(lines, label_of_result('kinetic_share'), 'kinetic energy at most '// &
+                      rounded_text(100*results%value('kinetic_share'), 2)//' % of the work')
+    if (results%has('scaled_kinetic_share')) &
+      call add_figure(lines, label_of_result('scaled_kinetic_share'), 'kinetic energy at most '// &
+                      rounded_text(100*results%value('scaled_kinetic_share'), 2)//' % of the total')
+    if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, results, record, figures, errors)
+    if (deck%has_ply_damage) call add_figure(lines, 'failed plies', counted_of('fibre_failures')//', '// &
+      counted_of('matrix_cracks')//', '//counted_of('matrix_crushings')//' (counted in each element)')
     if (len(unknown_because) > 0) call add_figure(lines, 'errors', unknown_because)
     call add_warnings(lines, deck, record)
+
+  contains
+
+    !> Label and whole number.
+    pure function counted_of(name) result(words)
+      !> Name of the result
+      character(len=*), intent(in) :: name
+      !> Such as fibres 3
+      character(len=:), allocatable :: words
+
+      words = label_of_result(name)//' '//to_text(nint(results%value(name)))
+    end function counted_of
   end function lines_of_summary
+
+  !> Time with its unit; without a known system of units, and in load steps, with its name.
+  pure function instant(deck, results, time) result(words)
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Results of the run
+    type(results_t), intent(in) :: results
+    !> The time, or the progress of load steps
+    real(wp), intent(in) :: time
+    !> Such as 1.878 ms, or time 0.001878
+    character(len=:), allocatable :: words
+
+    words = moment(deck, time)
+    if (deck%units /= '' .and. .not. deck%is_static()) words = results%with_unit(time, time_kind)
+  end function instant
 
   !> Adds a line.
   subroutine add_figure(lines, label, figures)
@@ -85,73 +114,81 @@ contains
   end subroutine add_figure
 
   !> Force, contact and rebound.
-  subroutine add_impact(lines, now, record, errors)
+  subroutine add_impact(lines, deck, results, record, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The state reached
-    type(state_t), intent(in) :: now
+    !> The deck
+    type(deck_t), intent(in) :: deck
+    !> Results of the run
+    type(results_t), intent(in) :: results
     !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Estimated errors
     type(run_errors_t), intent(in) :: errors
+    character(len=:), allocatable :: until
 
-    call add_figure(lines, 'peak force', rounded_text(record%peak_force)// &
-                    within(errors%peak_force, record%peak_force)//' at time '// &
-                    rounded_text(record%peak_time)//within(errors%peak_time))
+    call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')// &
+                    within(results, 'peak_force', errors%peak_force)//' at '// &
+                    instant(deck, results, results%value('peak_force_at'))// &
+                    within(results, 'peak_force_at', errors%peak_time))
     if (record%filter%frequency > 0) &
-      call add_figure(lines, 'filtered', rounded_text(record%peak_filtered)//' at time '// &
-                rounded_text(record%peak_filtered_time)//' after the low-pass filter of '// &
-                rounded_text(record%filter%frequency))
-    if (now%force > 0) then
-      call add_figure(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
-                ', and still at the end'//within(errors%contact_duration))
-    else
-      call add_figure(lines, 'time in contact', rounded_text(record%contact_duration)//repeated(record%contacts)// &
-                ', until '//rounded_text(record%contact_end)//within(errors%contact_duration))
-    end if
-    if (now%force > 0) then
-      call add_figure(lines, 'velocity at the end', rounded_text(now%impactor%velocity)//within(errors%velocity))
-    else if (record%has_rebounded()) then
-      call add_figure(lines, 'rebound velocity', rounded_text(record%rebound)//within(errors%velocity))
+      call add_figure(lines, 'filtered', results%with_unit(record%peak_filtered, force_kind)//' at '// &
+                      instant(deck, results, record%peak_filtered_time)//' after the low-pass filter of '// &
+                      rounded_text(record%filter%frequency))
+    until = ', until '//results%shown('contact_until')
+    if (results%value('in_contact') > 0) until = ', and still at the end'
+    call add_figure(lines, label_of_result('contact_duration'), results%shown('contact_duration')// &
+                    repeated(record%contacts)//until//within(results, 'contact_duration', errors%contact_duration))
+    if (results%value('in_contact') > 0) then
+      call add_figure(lines, label_of_result('impactor_velocity'), results%shown('impactor_velocity')// &
+                      within(results, 'impactor_velocity', errors%velocity))
+    else if (results%has('rebound_velocity')) then
+      call add_figure(lines, label_of_result('rebound_velocity'), results%shown('rebound_velocity')// &
+                      within(results, 'rebound_velocity', errors%velocity))
     end if
   end subroutine add_impact
 
   !> Depth of the dent. In a plate that has not been damped to rest it includes the deflection of the residual
   !> vibration.
-  subroutine add_dent(lines, deck, figures)
+  subroutine add_dent(lines, deck, results)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
     type(deck_t), intent(in) :: deck
-    !> Figures of the state
-    type(run_figures_t), intent(in) :: figures
+    !> Results of the run
+    type(results_t), intent(in) :: results
     character(len=:), allocatable :: depth
 
-    if (figures%dent(1) > figures%dent(2)) then
-      depth = rounded_text(figures%dent(1))//' below the surface around it, of which indentation '// &
-              rounded_text(figures%dent(2))
+    if (results%value('dent_depth') > results%value('dent_indentation')) then
+      depth = results%shown('dent_depth')//' below the surface around it, of which indentation '// &
+              results%shown('dent_indentation')
       if (.not. deck%stepping%central%settle > 0) depth = depth//'; with residual vibration'
     else
-      depth = rounded_text(figures%dent(2))//', permanent indentation only'
+      depth = results%shown('dent_indentation')//', permanent indentation only'
     end if
-    call add_figure(lines, 'dent', depth)
+    call add_figure(lines, label_of_result('dent_depth'), depth)
   end subroutine add_dent
 
-  !> Estimated error of a result.
-  pure function within(error, figure) result(clause)
+  !> Estimated error of a result: in per cent, of times in their unit.
+  pure function within(results, name, error) result(clause)
+    !> Results of the run
+    type(results_t), intent(in) :: results
+    !> Name of the result
+    character(len=*), intent(in) :: name
     !> Its error; negative: not known
     real(wp), intent(in) :: error
-    !> The value that it is relative to; left out: it is printed in its unit
-    real(wp), intent(in), optional :: figure
     !> Such as (+-0.4 %); empty if it is not known
     character(len=:), allocatable :: clause
+    real(wp) :: value
 
     clause = ''
     if (error < 0) return
-    clause = ' (+-'//rounded_text(error, 2)//')'
-    if (.not. present(figure)) return
-    clause = ''
-    if (abs(figure) > 0) clause = ' (+-'//rounded_text(100*error/abs(figure), 2)//' %)'
+    value = abs(results%value(name))
+    if (any(unit_of_result(name) == [character(len=11) :: time_kind, velocity_kind])) then
+      clause = ' (+-'//results%with_unit(error, unit_of_result(name), 2)//')'
+    else if (value > 0) then
+      clause = ' (+-'//rounded_text(100*error/value, 2)//' %)'
+    end if
   end function within
 
   !> Clause on the number of contacts.
@@ -166,54 +203,53 @@ contains
   end function repeated
 
   !> Energy of the impactor and its loss, which is the absorbed energy once the contact has ended.
-  subroutine add_impact_energy(lines, deck, now)
+  subroutine add_impact_energy(lines, results)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The deck
-    type(deck_t), intent(in) :: deck
-    !> The state reached
-    type(state_t), intent(in) :: now
+    !> Results of the run
+    type(results_t), intent(in) :: results
     character(len=:), allocatable :: clause
     real(wp) :: energy_input, lost
 
-    energy_input = impactor_energy(deck%impactor, new_impactor(deck%impactor))
-    lost = energy_input - now%ledger%impactor
+    energy_input = results%value('energy_impact')
+    lost = energy_input - results%value('energy_impactor')
     clause = ', absorbed '
-    if (now%force > 0) clause = ', still in contact, transferred so far '
-    clause = rounded_text(energy_input)//clause//rounded_text(lost)
+    if (results%value('in_contact') > 0) clause = ', still in contact, transferred so far '
+    clause = results%shown('energy_impact')//clause//results%with_unit(lost, energy_kind)
     ! Of an impact with next to no energy the weight of the impactor may transfer more.
     if (energy_input > 0 .and. lost <= energy_input*(1 + rounding)) &
       clause = clause//' ('//rounded_text(100*lost/energy_input, 3)//' %)'
-    call add_figure(lines, 'impact energy', clause)
+    call add_figure(lines, label_of_result('energy_impact'), clause)
   end subroutine add_impact_energy
 
   !> The energy ledger, with the names of the columns.
-  subroutine add_energies(lines, ledger)
+  subroutine add_energies(lines, results)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The ledger
-    type(ledger_t), intent(in) :: ledger
+    !> Results of the run
+    type(results_t), intent(in) :: results
     character(len=:), allocatable :: damping
 
     damping = ''
-    if (ledger%damping > 0) damping = ', damping '//rounded_text(ledger%damping)
-    if (ledger%external_work /= 0) call add_figure(lines, 'work of the load', rounded_text(ledger%external_work))
-    call add_figure(lines, 'energies', 'kinetic '//rounded_text(ledger%kinetic)//', strain '// &
-                    rounded_text(ledger%strain)// &
-              ', indentation '//rounded_text(ledger%indentation)//', delamination '// &
-              rounded_text(ledger%delamination)//', ply damage '//rounded_text(ledger%ply_damage))
-    call add_figure(lines, '', 'contact '//rounded_text(ledger%contact)//', friction '// &
-                    rounded_text(ledger%friction)// &
-              ', layers '//rounded_text(ledger%layers)//damping//', algorithmic dissipation '// &
-              rounded_text(ledger%algorithmic)//', energy error '//rounded_text(ledger%error(), 2))
+    if (results%value('energy_damping') > 0) damping = ', '//results%labelled('energy_damping')
+    if (abs(results%value('work_external')) > 0) &
+      call add_figure(lines, label_of_result('work_external'), results%shown('work_external'))
+    call add_figure(lines, 'energies', results%labelled('energy_kinetic')//', '//results%labelled('energy_strain')// &
+                    ', '//results%labelled('energy_indentation')//', '//results%labelled('energy_delamination')// &
+                    ', '//results%labelled('energy_ply_damage'))
+    call add_figure(lines, '', results%labelled('energy_contact')//', '//results%labelled('energy_friction')// &
+                    ', '//results%labelled('energy_layers')//damping//', '//results%labelled('energy_algorithmic')// &
+                    ', '//label_of_result('energy_error')//' '//results%shown('energy_error', 2))
   end subroutine add_energies
 
   !> Results of the interfaces.
-  subroutine add_interfaces(lines, deck, record, figures, errors)
+  subroutine add_interfaces(lines, deck, results, record, figures, errors)
     !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The deck
     type(deck_t), intent(in) :: deck
+    !> Results of the run
+    type(results_t), intent(in) :: results
     !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
@@ -222,23 +258,24 @@ contains
     type(run_errors_t), intent(in) :: errors
     integer :: zone
 
-    call add_figure(lines, 'delaminated area', rounded_text(sum(figures%interfaces%area))// &
-              ' of all interfaces'//within(errors%area))
-    call add_figure(lines, '  projected', rounded_text(figures%projected_areas(area_dissipated))// &
+    call add_figure(lines, label_of_result('delaminated_area'), results%shown('delaminated_area')// &
+                    ' of all interfaces'//error_of_area())
+    call add_figure(lines, '  projected', results%shown('projected_area')// &
                     ' by dissipated fractions, as in a C-scan; failed points '// &
-                    rounded_text(figures%projected_areas(area_failed))//', with process zones '// &
-                    rounded_text(figures%projected_areas(area_softened)))
+                    results%shown('projected_area_failed')//', with process zones '// &
+                    results%shown('projected_area_softened'))
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
         call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
-                  rounded_text(figure%area)//', x '//range_of(figure%bounds(:, 1))//', y '// &
-                  range_of(figure%bounds(:, 2))//', energy '//rounded_text(figure%energy))
+                  results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
+                  range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, energy_kind))
         call add_event('onset', record%onset(:, zone))
         call add_event('first growth', record%growth(:, zone))
         if (deck%has_impactor) &
-          call add_figure(lines, '', 'threshold force (closed form) '//rounded_text(figures%threshold(zone))// &
+          call add_figure(lines, '', 'threshold force (closed form) '// &
+                          results%with_unit(figures%threshold(zone), force_kind)// &
                           ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
-                          of_starter(figures%starter_threshold))
+                          of_starter())
       end associate
     end do
 
@@ -256,33 +293,42 @@ contains
       else if (.not. event(1) > 0) then
         call add_figure(lines, '', 'no '//name)
       else if (deck%has_impactor) then
-        call add_figure(lines, '', name//' at force '//rounded_text(event(2))//', '//moment(deck, event(1)))
+        call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
+                        instant(deck, results, event(1)))
       else
-        call add_figure(lines, '', name//' at '//moment(deck, event(1)))
+        call add_figure(lines, '', name//' at '//instant(deck, results, event(1)))
       end if
     end subroutine add_event
+
+    !> Estimated error of the area.
+    pure function error_of_area() result(clause)
+      !> Empty if it is not known
+      character(len=:), allocatable :: clause
+
+      clause = ''
+      if (errors%area >= 0) clause = ' (+-'//results%with_unit(errors%area, area_kind, 2)//')'
+    end function error_of_area
+
+    !> Least and greatest.
+    pure function range_of(bounds) result(words)
+      !> Both
+      real(wp), intent(in) :: bounds(2)
+      !> Such as -12 mm to 12 mm
+      character(len=:), allocatable :: words
+
+      words = results%with_unit(bounds(1), length_kind)//' to '//results%with_unit(bounds(2), length_kind)
+    end function range_of
+
+    !> The closed form with the radius of the starter.
+    pure function of_starter() result(clause)
+      !> Empty without
+      character(len=:), allocatable :: clause
+
+      clause = ''
+      if (results%has('threshold_force_at_starter')) &
+        clause = ', '//results%shown('threshold_force_at_starter')//' with the starter under this patch'
+    end function of_starter
   end subroutine add_interfaces
-
-  !> Least and greatest.
-  pure function range_of(bounds) result(words)
-    !> Both
-    real(wp), intent(in) :: bounds(2)
-    !> Such as -0.012 to 0.012
-    character(len=:), allocatable :: words
-
-    words = rounded_text(bounds(1))//' to '//rounded_text(bounds(2))
-  end function range_of
-
-  !> The closed form with the radius of the starter.
-  pure function of_starter(force) result(clause)
-    !> The force; 0: not defined
-    real(wp), intent(in) :: force
-    !> Empty without
-    character(len=:), allocatable :: clause
-
-    clause = ''
-    if (force > 0) clause = ', '//rounded_text(force)//' with the starter under this patch'
-  end function of_starter
 
   !> Warnings on the deck and those of the run.
   subroutine add_warnings(lines, deck, record)

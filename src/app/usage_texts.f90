@@ -18,7 +18,7 @@ module usage_texts
       &no file is overwritten', &
     'explain [GROUP [KEY]]', 'groups and keys of a deck: units, defaults, meaning; GROUP.KEY and GROUP%KEY are &
       &accepted too', &
-    'explain history|fields', 'contents of the results: names, units, meaning', &
+    'explain TABLE', 'names, units and meaning of results; TABLE is history, fields or summary', &
     'explain materials [NAME]', 'published materials for decks, with the source of each value', &
     'restart [FILE]', 'resume from a checkpoint (NAME_restart.h5), or from the newest one of a folder: that named, &
       &that of --output, or the current one; the deck is that of the checkpoint, and its file is not read again', &

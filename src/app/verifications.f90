@@ -9,7 +9,9 @@ module verifications
   use kinds, only: wp
   use root_output, only: print_lines
   use summary_file, only: summary_ending
+  use summary_rows, only: label_of_result, unit_of_result
   use text, only: line_t, append, rounded_text
+  use usual_units, only: in_usual_unit
   use whole_files, only: write_whole_file
   implicit none
   private
@@ -21,12 +23,10 @@ module verifications
   character(len=*), parameter :: verification_ending = '_verification.json'
   !> Largest summary read.
   integer, parameter :: max_bytes = 10000000
-  !> Compared results: members of the summary, and their names.
-  character(len=*), parameter :: figures(2, 10) = reshape([character(len=24) :: &
-    'peak_force', 'peak force', 'peak_force_at', '  its time', 'contact_duration', 'time in contact', &
-    'impactor_velocity', 'impactor''s velocity', 'largest_deflection', 'largest deflection', &
-    'energy_absorbed', 'energy absorbed', 'delaminated_area', 'delaminated area', 'projected_area', '  projected', &
-    'energy_delamination', 'energy of delamination', 'energy_ply_damage', 'energy of ply damage'], [2, 10])
+  !> Compared results.
+  character(len=*), parameter :: figures(10) = [character(len=20) :: &
+    'peak_force', 'peak_force_at', 'contact_duration', 'impactor_velocity', 'largest_deflection', 'energy_absorbed', &
+    'delaminated_area', 'projected_area', 'energy_delamination', 'energy_ply_damage']
 
 contains
 
@@ -120,6 +120,7 @@ contains
     type(json_t) :: json
     real(wp) :: values(2)
     logical :: found(2)
+    character(len=22) :: label
     integer :: i
 
     call read_summary(deck%output%directory//'/'//deck%name, summary)
@@ -131,18 +132,30 @@ contains
     allocate (lines(0))
     call append(lines, 'Verification with elements and time steps half as long:')
     call append(lines, '  figure                  as it is      finer         change')
-    do i = 1, size(figures, 2)
-      call find_number(summary, trim(figures(1, i)), values(1), found(1))
-      call find_number(finer_summary, trim(figures(1, i)), values(2), found(2))
+    do i = 1, size(figures)
+      call find_number(summary, trim(figures(i)), values(1), found(1))
+      call find_number(finer_summary, trim(figures(i)), values(2), found(2))
       if (.not. all(found) .or. all(abs(values) <= 0)) cycle
-      call append(lines, '  '//figures(2, i)//wide(rounded_text(values(1)))//wide(rounded_text(values(2)))// &
-                  change(values))
-      call json%open_object(trim(figures(1, i)))
+      label = label_of_result(trim(figures(i)))
+      call append(lines, '  '//label//'  '//wide(shown(values(1)))//wide(shown(values(2)))//change(values))
+      call json%open_object(trim(figures(i)))
       call json%put('as_it_is', values(1))
       call json%put('finer', values(2))
       call json%close()
     end do
     call json%finished(content)
+
+  contains
+
+    !> A value with its unit.
+    pure function shown(value) result(words)
+      !> The value
+      real(wp), intent(in) :: value
+      !> Such as 2.468 kN
+      character(len=:), allocatable :: words
+
+      words = in_usual_unit(value, unit_of_result(trim(figures(i))), deck%units)
+    end function shown
   end subroutine compare_summaries
 
   !> Number of a member of the outermost object; the member has a line of its own.

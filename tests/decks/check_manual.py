@@ -23,7 +23,7 @@ MEMBER = re.compile(r"json%(?:put|put_null|open_object|open_list)\('(\w+)'")
 OTHER_FILES = ("verifications.f90",)
 MANUAL = os.path.join(HERE, "..", "..", "doc", "manual")
 TABLE = re.compile(r"^\| (?:key|name) \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
-RESULTS = ("history", "fields")
+RESULTS = ("history", "fields", "summary")
 # Columns of the history in the ledger.
 ENTRY = re.compile(r"^\| `(energy_\w+|work_external)`", re.MULTILINE)
 EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
