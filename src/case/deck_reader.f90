@@ -31,8 +31,6 @@ module deck_reader
   use deck_table, only: load_deck_table
   use deck_units, only: check_units
   use deck_vocabulary, only: vocabulary_t
-  use deprecated_keys, only: deprecated_rows
-  use deprecated_names, only: replace_deprecated
   use delamination_deck, only: fill_delaminations, check_delaminations
   use interface_places, only: interfaces_between, remark_left_out
   use element_deck, only: fill_kinematics, fill_element
@@ -111,7 +109,6 @@ contains
     call load_deck_table(vocabulary)
     call scan_deck(content, scan, problems)
     if (size(scan%blocks) == 0 .or. problems%is_full()) return
-    call replace_deprecated(deprecated_rows, scan, problems)
     call resolve_settings(scan, vocabulary, deck%settings, problems)
     if (problems%is_full()) return
     call take_library(deck%settings, problems)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Compares all places that state the version with CMakeLists.txt, and the citation that the program prints with
-CITATION.cff; finds deprecated keys that are due to be removed.
+CITATION.cff.
 
 Usage: check_version.py [ROOT]
 """
@@ -20,18 +20,6 @@ PLACES = {
 }
 
 CITED = "src/results/run_provenance.f90"
-DEPRECATED = "src/case/deprecated_keys.f90"
-# Rows of the table: group, key, value, replacement, first version that warns.
-ROW = re.compile(r"'(\w+) *\| *(\w+) *\| *[^|']+\| *[^|']+\| *(\d+)\.(\d+)\.\d+ *'")
-COMMENT = re.compile(r"^ *!.*$", re.MULTILINE)
-
-
-def overdue(text, version):
-    """Sentences on deprecated keys that this version must refuse, as one minor version has warned."""
-    major, minor = (int(number) for number in version.split(".")[:2])
-    for group, key, since_major, since_minor in ROW.findall(COMMENT.sub("", text)):
-        if (major, minor) > (int(since_major), int(since_minor)):
-            yield f"{DEPRECATED}: &{group} {key} has warned since {since_major}.{since_minor}; remove its row"
 
 
 def differing_citation(cff, source):
@@ -55,7 +43,6 @@ def breaches(root):
             yield f"{name} is of version {found.group(1)}, CMakeLists.txt of {declared}"
     cff, source = ((root / name).read_text(encoding="utf-8") for name in ("CITATION.cff", CITED))
     yield from differing_citation(cff, source)
-    yield from overdue((root / DEPRECATED).read_text(encoding="utf-8"), declared)
 
 
 def main(arguments):
