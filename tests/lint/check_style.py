@@ -30,6 +30,12 @@ SPELLINGS = {
     "time stepping": re.compile(r"\bmarch(es|ed|ing)?\b", re.IGNORECASE),
     "contact and ties": re.compile(r"\bseparations\b", re.IGNORECASE),
 }
+# Arguments with one meaning in all of the program, which need no documentation.
+COMMON_ARGUMENTS = {"self", "model", "deck", "settings", "problems", "now", "archive", "log", "error", "law"}
+# A comment of a common argument that says more, such as what is changed in it, has more words than this.
+MAX_COMMON_WORDS = 4
+# Words that say nothing of an argument.
+FILLERS = {"the", "a", "an", "its", "this", "of", "in", "for", "to", "all", "that", "and", "with", "one"}
 # Libraries whose modules are used without `only`.
 WHOLE_MODULES = {"mpi", "mpi_f08", "hdf5"}
 
@@ -137,6 +143,48 @@ def initialised(entity):
     """Whether a declared entity has a value."""
     flat = re.sub(r"\([^()]*\)", "", re.sub(r"\([^()]*\)", "", entity))
     return "=" in flat
+
+
+def words_of(text):
+    """The words of a text or of a Fortran name without plurals and words that say nothing."""
+    return {word.rstrip("s") for word in re.findall(r"[a-z]+", text.lower())} - FILLERS
+
+
+def names_and_type(text):
+    """The names that a declaration declares, and their derived type; none if it is no declaration."""
+    found = DECLARATION.match(text)
+    if not found:
+        return [], ""
+    derived = re.match(r"\((\w+)\)", found.group(2)) if found.group(1).endswith("(") else None
+    derived = derived or re.match(r"\s*(\w+)\)", found.group(2))
+    of_type = derived.group(1) if derived and re.match(r"(type|class)", found.group(1)) else ""
+    return [re.match(r"\w*", entity).group() for entity in split_top(found.group(3))], of_type
+
+
+def needs_no_doc(text):
+    """Whether name and type of an argument say what it is."""
+    names, of_type = names_and_type(text)
+    known = words_of(of_type.replace("_", " "))
+    return all(name in COMMON_ARGUMENTS or words_of(name.replace("_", " ")) <= known for name in names)
+
+
+def is_redundant(text, doc):
+    """Whether the documentation of an argument or result says no more than name and type."""
+    names, of_type = names_and_type(text)
+    if len(names) != 1:
+        return False
+    if names[0] in COMMON_ARGUMENTS and len(re.findall(r"\w+", doc)) <= MAX_COMMON_WORDS:
+        return True
+    known = words_of(names[0].replace("_", " ")) | words_of(of_type.replace("_", " "))
+    return needs_no_doc(text) and words_of(doc) <= known
+
+
+def doc_above(lines, line):
+    """Documentation directly above a line."""
+    first = line - 1
+    while first > 0 and lines[first - 1].lstrip().startswith("!>"):
+        first -= 1
+    return " ".join(text.lstrip()[2:].strip() for text in lines[first : line - 1])
 
 
 class Checker:
@@ -282,18 +330,11 @@ class Checker:
             self.report(scope.line, f"{scope.name} has more than {longest} lines")
         if scope.kind == "procedure" and core and scope.branches > MAX_BRANCHES:
             self.report(scope.line, f"{scope.name} has {scope.branches} branches, more than {MAX_BRANCHES}")
-        if scope.kind == "type" and scope.components > MAX_COMPONENTS and "because" not in self.doc_above(scope.line):
+        if scope.kind == "type" and scope.components > MAX_COMPONENTS and "because" not in doc_above(self.lines, scope.line):
             self.report(
                 scope.line,
                 f"type {scope.name} has more than {MAX_COMPONENTS} components and does not say because of what",
             )
-
-    def doc_above(self, line):
-        """Documentation directly above a line."""
-        first = line - 1
-        while first > 0 and self.lines[first - 1].lstrip().startswith("!>"):
-            first -= 1
-        return " ".join(self.lines[first : line - 1])
 
     def require_doc(self, statement, what):
         """Check that documentation is above a statement."""
@@ -317,9 +358,11 @@ class Checker:
             for name, entity in zip(names, entities, strict=True):
                 if initialised(entity):
                     self.report(statement.line, f"{name} is initialised where it is declared, so it is saved")
-        explained = re.fullmatch(r"type\(model_t\),\s*intent\(in\)\s*::\s*model", statement.text)
-        if scope.kind == "procedure" and scope.arguments.intersection(names) and not explained:
-            self.require_doc(statement, f"argument {', '.join(names)}")
+        if scope.kind == "procedure" and scope.arguments.intersection(names):
+            if not needs_no_doc(statement.text):
+                self.require_doc(statement, f"argument {', '.join(names)}")
+            elif is_redundant(statement.text, doc_above(self.lines, statement.line)) and statement.documented:
+                self.report(statement.line, f"the documentation of {names[0]} says no more than name and type")
 
 
 def folder_breaches(folder, files):

@@ -76,6 +76,17 @@ contains
       end if
     end associate
   end function double
+
+  !> Sizes of things.
+  subroutine list(thing, sizes, log)
+    class(thing_t), intent(in) :: thing
+    !> Sizes, m
+    real(wp), intent(out) :: sizes(:)
+    !> Receives a line for each thing
+    integer, intent(in) :: log
+
+    sizes = thing%size
+  end subroutine list
 end module good
 """
 
@@ -103,6 +114,13 @@ BREACHES = {
     "interface doc": ("    !> Area of a thing.\n", "", "function measure has no"),
     "argument doc": ("    !> The value\n", "", "argument value has no"),
     "plain comment is no doc": ("    !> The value\n", "    ! The value\n", "argument value has no"),
+    "doc of an argument of another type": ("    !> Sizes, m\n", "", "argument sizes has no"),
+    "doc that repeats the type": (
+        "    class(thing_t), intent(in) :: thing\n",
+        "    !> The thing\n    class(thing_t), intent(in) :: thing\n",
+        "the documentation of thing says no more",
+    ),
+    "doc of a common argument": ("Receives a line for each thing", "The log", "the documentation of log says no more"),
     "indent": ("        twice = 3", "       twice = 3", "indented by 7, not 8"),
     "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 100 lines"),
     "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
