@@ -21,9 +21,7 @@ contains
 
   !> Takes a step and adds layers after it if the damage requires them. Collective.
   subroutine advance(deck, model, stepper, event, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The model
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
@@ -75,7 +73,6 @@ contains
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
     type(time_stepper_t), intent(inout) :: stepper
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
@@ -88,7 +85,6 @@ contains
   subroutine visit_zones(delaminations, archive)
     !> The interfaces
     type(delamination_t), intent(inout) :: delaminations(:)
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     real(wp), allocatable :: extents(:)
     integer :: zone

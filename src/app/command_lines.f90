@@ -215,7 +215,6 @@ contains
   subroutine refuse_option(word, error)
     !> The option
     character(len=*), intent(in) :: word
-    !> Set (usage)
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: known(:), terms(:)
     character(len=:), allocatable :: nearest, verb

@@ -26,7 +26,6 @@ module compressed_damage
     !> (quantities, interfaces) of delamination, and (quantities, plies) of fibre failure
     real(wp), allocatable :: interfaces(:, :), plies(:, :)
   contains
-    !> Saves or loads.
     procedure :: visit
   end type compressed_damage_t
 
@@ -39,7 +38,6 @@ module compressed_damage
     !> 1 for each row of cells along the load with failure, else 0
     real(wp), allocatable :: rows(:)
   contains
-    !> Adds a failed place.
     procedure :: add
   end type collected_t
 
@@ -48,11 +46,9 @@ contains
   !> Damage of a state. Collective.
   function damage_of(model, now, along) result(damage)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Axis of the load
     integer, intent(in) :: along
-    !> The damage
     type(compressed_damage_t) :: damage
     type(collected_t) :: interfaces(size(model%mesh%zones)), plies(size(model%plies))
     integer :: i
@@ -85,7 +81,6 @@ contains
   !> Delamination of an interface: failed nodes of a cohesive law, or cells released by fronts.
   function delaminated(model, now, along, zone) result(collected)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Axis of the load, and interface
     integer, intent(in) :: along, zone
@@ -122,7 +117,6 @@ contains
   !> Fibre failure of a ply.
   function fibres_failed(model, now, along, ply) result(collected)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Axis of the load, and ply
     integer, intent(in) :: along, ply
@@ -170,7 +164,6 @@ contains
 
   !> Adds a failed place.
   pure subroutine add(self, area, distance, row)
-    !> Receives it
     class(collected_t), intent(inout) :: self
     !> Area, and distance from the middle along the load
     real(wp), intent(in) :: area, distance
@@ -243,11 +236,9 @@ contains
 
   !> Saves or loads the damage.
   subroutine visit(self, name, archive)
-    !> The damage
     class(compressed_damage_t), intent(inout) :: self
     !> Beginning of the names in the archive
     character(len=*), intent(in) :: name
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     logical :: known

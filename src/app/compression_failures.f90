@@ -33,7 +33,6 @@ contains
     type(compressed_damage_t), intent(in) :: before, after
     !> Length between the supports along the load, and thickness of the plate
     real(wp), intent(in) :: length, thickness
-    !> The failure
     type(compression_failure_t) :: failure
 
     failure%interfaces = failed_across(before%interfaces, after%interfaces)

@@ -39,13 +39,9 @@ module compression_records
     !> Strain at the largest stress
     real(wp), private :: strain_at_strength = 0
   contains
-    !> Updates the record with a state.
     procedure :: observe
-    !> Updates the record with two gauges back to back.
     procedure :: observe_gauges
-    !> Effective modulus; 0: not known.
     procedure :: modulus
-    !> Saves or loads.
     procedure :: visit
   end type compression_record_t
 
@@ -53,7 +49,6 @@ contains
 
   !> Updates the record with a state.
   pure subroutine observe(self, time, stress, shortening, strain, bending)
-    !> The record
     class(compression_record_t), intent(inout) :: self
     !> Time, far-field stress, shortening, and that over the length of the plate
     real(wp), intent(in) :: time, stress, shortening, strain
@@ -83,7 +78,6 @@ contains
 
   !> Updates the record with two gauges back to back, after the state.
   pure subroutine observe_gauges(self, gauges)
-    !> The record
     class(compression_record_t), intent(inout) :: self
     !> Strains on the front and on the back
     real(wp), intent(in) :: gauges(2)
@@ -101,7 +95,6 @@ contains
 
   !> Slope of the chord between both strains, if both were reached before the largest stress; 0: not known.
   pure real(wp) function modulus(self)
-    !> The record
     class(compression_record_t), intent(in) :: self
 
     modulus = 0
@@ -111,9 +104,7 @@ contains
 
   !> Saves or loads the record.
   subroutine visit(self, archive)
-    !> The record
     class(compression_record_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     integer :: i
 

@@ -33,7 +33,6 @@ contains
   subroutine put_collapse(json, record, figures, below_plies)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -89,7 +88,6 @@ contains
 
   !> The same for the log.
   pure function collapse_text(record, figures, below_plies) result(text)
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures

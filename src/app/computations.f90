@@ -67,7 +67,6 @@ contains
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The deck
     type(deck_t), intent(out) :: deck
     !> Path of the checkpoint from which the run continues; empty: it begins
     character(len=:), allocatable, intent(out) :: checkpoint
@@ -105,7 +104,6 @@ contains
     type(command_t), intent(in) :: command
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Errors and warnings so far
     type(problems_t), intent(inout) :: problems
@@ -120,7 +118,6 @@ contains
 
   !> Runs the deck's setup to its end.
   subroutine simulate(deck, communicator, profile, checkpoint, error)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -178,7 +175,6 @@ contains
 
   !> Continues a run of an earlier command.
   subroutine continue_run(deck, communicator, profile, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -212,9 +208,7 @@ contains
     character(len=*), intent(in) :: path
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The deck
     type(deck_t), intent(out) :: deck
-    !> Its errors and warnings
     type(problems_t), intent(out) :: problems
     character(len=:), allocatable :: text
     logical :: lacks
@@ -262,9 +256,7 @@ contains
     character(len=*), intent(in) :: path
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The deck
     type(deck_t), intent(out) :: deck
-    !> Its errors and warnings
     type(problems_t), intent(out) :: problems
     !> Set if the file is no checkpoint or damaged
     type(error_t), allocatable, intent(out) :: error

@@ -12,7 +12,6 @@ contains
 
   !> Provenance of the run of a deck that is starting.
   function provenance_of(deck, ranks) result(run)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Number of ranks
     integer, intent(in) :: ranks

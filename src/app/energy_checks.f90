@@ -20,7 +20,6 @@ module energy_checks
     logical, private :: created_before = .false.
   contains
     procedure :: check
-    !> Saves or loads the check.
     procedure :: visit
   end type energy_check_t
 
@@ -30,7 +29,6 @@ contains
   !> energy error. An integrator creates energy in the first step of a sudden load and removes it in the next, so that
   !> in time two consecutive steps must have created energy.
   function check(self, ledger, deficit, amplitude, static) result(exceeded)
-    !> The check
     class(energy_check_t), intent(inout) :: self
     !> The ledger after an accepted step
     type(ledger_t), intent(in) :: ledger
@@ -55,9 +53,7 @@ contains
 
   !> Saves or loads the check.
   subroutine visit(self, archive)
-    !> The check
     class(energy_check_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('energy_check/created_before', self%created_before)

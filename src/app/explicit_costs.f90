@@ -28,7 +28,6 @@ contains
 
   !> Sentence on the steps and the time of a run.
   function explicit_sentence(deck, model_size) result(sentence)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> Size of its model
     type(model_size_t), intent(in) :: model_size
@@ -59,7 +58,6 @@ contains
   !> Expected end of a run: that of the deck, or later where the run continues until the impactor has left and the plate
   !> is at rest. A contact longer than the deck's end is found by an elastic impact of its own.
   real(wp) function expected_end(deck) result(end)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(elastic_impact_t) :: elastic
 
@@ -76,7 +74,6 @@ contains
 
   !> True: an interface is cohesive.
   pure logical function has_cohesive(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     has_cohesive = any(deck%delaminations%law == law_cohesive)
@@ -84,7 +81,6 @@ contains
 
   !> Sentence on the step of the deck where it is longer than the step that is used; otherwise empty.
   function untaken_step(deck, step) result(sentence)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The step that is used
     real(wp), intent(in) :: step
@@ -100,7 +96,6 @@ contains
 
   !> Ratio of the stable step of the flat plate to that of the deflected one, with the largest slope of half a sine.
   real(wp) function shortened(deck) result(ratio)
-    !> The deck
     type(deck_t), intent(in) :: deck
     real(wp) :: slope, steep
 
@@ -113,7 +108,6 @@ contains
 
   !> Seconds of one processor for an element of one layer in a step.
   pure real(wp) function seconds_of_element(deck) result(seconds)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     seconds = of_elements

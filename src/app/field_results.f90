@@ -33,7 +33,6 @@ contains
 
   !> Modelled part of the plate.
   pure function part_of(deck) result(part)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> As symmetry names it, or 'whole'
     character(len=:), allocatable :: part
@@ -45,7 +44,6 @@ contains
   !> Writes points at the heights of their layers, and elements.
   subroutine write_mesh(model, fields, error)
     type(model_t), intent(in) :: model
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
@@ -93,11 +91,9 @@ contains
   !> Writes the requested fields of the state reached, if their physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)
     type(model_t), intent(in) :: model
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Requested fields
     type(output_t), intent(in) :: output
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error

@@ -44,7 +44,6 @@ contains
   !> Compares a deck with the run from which it starts, and sets the zones of its interfaces to those of that run.
   !> Collective.
   subroutine fit_initial_state(deck, communicator, error, lacks)
-    !> The deck, without faults
     type(deck_t), intent(inout) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -98,7 +97,6 @@ contains
 
   !> Remark of the check on an initial state that does not exist yet.
   function missing_start(deck) result(sentence)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The sentence
     character(len=:), allocatable :: sentence
@@ -109,7 +107,6 @@ contains
 
   !> Refuses the checkpoint that the run itself will write.
   subroutine refuse_own_end(deck, communicator, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -147,9 +144,7 @@ contains
   !> Saves or loads the time that the other run reached: a restart does not read the checkpoint of that run again, and
   !> its summary repeats the warning.
   subroutine visit_incomplete_start(deck, archive)
-    !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(line_t) :: remark
 
@@ -161,11 +156,9 @@ contains
 
   !> Refuses the checkpoint of the initial state.
   subroutine refuse(deck, reason, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> A clause
     character(len=*), intent(in) :: reason
-    !> Set
     type(error_t), allocatable, intent(inout) :: error
 
     call fail(error, exit_deck, deck%source//':'//to_text(deck%settings%line_of_group(initial_state_group))//': &'// &
@@ -201,7 +194,6 @@ contains
     character(len=*), intent(in) :: path
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Receives it, open
     type(checkpoint_archive_t), intent(inout) :: archive
     !> Receives its deck
     type(deck_t), intent(out) :: old
@@ -222,15 +214,12 @@ contains
 
   !> Transfers the end of the other run to this one. Collective.
   subroutine take_initial_state(deck, model, stepper, record, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The model
     type(model_t), intent(in) :: model
     !> The time stepper at its start
     type(time_stepper_t), intent(inout) :: stepper
     !> Receives the quantities before and after mapping, and the failures before this run
     type(run_record_t), intent(inout) :: record
-    !> Receives a note
     type(log_t), intent(inout) :: log
     !> Set if the checkpoint cannot be read, or has damage where the deck has no interface
     type(error_t), allocatable, intent(inout) :: error
@@ -267,9 +256,7 @@ contains
 
   !> Loads the state of the other run, on its mesh, and transfers it to this one's. Collective.
   subroutine load_transfer(deck, model, stepper, transfer, mapping, old, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The model
     type(model_t), intent(in) :: model
     !> The time stepper; receives the inherited state
     type(time_stepper_t), intent(inout) :: stepper

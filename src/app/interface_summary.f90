@@ -18,11 +18,8 @@ contains
   subroutine put_interfaces(json, deck, now, record, figures)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The state reached
     type(state_t), intent(in) :: now
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
@@ -57,7 +54,6 @@ contains
     character(len=*), intent(in) :: name
     !> Time, contact force, deflection; time 0: never, negative: before the run
     real(wp), intent(in) :: event(3)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     if (.not. event(1) > 0) then

@@ -34,21 +34,15 @@ module mapped_figures
     !> Strain energy, before and after, and energy dissipated before
     real(wp) :: strain(2) = 0, dissipated = 0
   contains
-    !> Stores the quantities of a state.
     procedure :: note
-    !> True for a plate cut from a larger one.
     procedure :: is_cut
-    !> First interface with a loss of area or energy; 0: none.
     procedure :: first_loss
-    !> True: the strain energy has risen.
     procedure :: raises_strain
     !> Lines for the log: quantities of damage, strain energy, and what is cut away.
     procedure :: line
     procedure :: energy_line
     procedure :: cut_line
-    !> Adds them to the summary.
     procedure :: put
-    !> Saves or loads.
     procedure :: visit
   end type mapped_figures_t
 
@@ -56,10 +50,8 @@ contains
 
   !> Stores the quantities of a state; of a plate that is cut, the first time before the cut. Collective.
   subroutine note(self, model, state, moment)
-    !> The quantities
     class(mapped_figures_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(inout) :: state
     !> before_mapping, after_mapping or before_cutting
     integer, intent(in) :: moment
@@ -85,7 +77,6 @@ contains
   !> Areas of all plies times the damage of fibres and of the matrix, of the full plate. Collective.
   function damage_of_plies(model, state) result(areas)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: state
     !> Of fibres and of the matrix
     real(wp) :: areas(2)
@@ -107,7 +98,6 @@ contains
 
   !> True for a plate cut from a larger one.
   pure logical function is_cut(self)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
 
     is_cut = .false.
@@ -116,7 +106,6 @@ contains
 
   !> First interface with a loss of area or energy, as its zone is too small; 0: none.
   pure integer function first_loss(self)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
 
     first_loss = findloc(self%area(:, 2) < (1 - tolerance)*self%area(:, 1) .or. &
@@ -126,7 +115,6 @@ contains
   !> True if the strain energy has risen by more than 1 % of what was stored: mapped damage and displacements do not fit
   !> to each other, and stresses may cause further damage.
   pure logical function raises_strain(self)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
 
     associate (rise => self%strain(2) - self%strain(1))
@@ -136,7 +124,6 @@ contains
 
   !> The strain energy, and what becomes of it.
   pure function energy_line(self, holds) result(line)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
     !> True: damage is held until the plate is at rest
     logical, intent(in) :: holds
@@ -150,7 +137,6 @@ contains
 
   !> One line for the log.
   pure function line(self, below_plies)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)
@@ -170,7 +156,6 @@ contains
   !> One line for the log of a plate cut from a larger one: the damage that is cut away; interfaces without are left
   !> out.
   pure function cut_line(self, below_plies) result(line)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)
@@ -210,7 +195,6 @@ contains
 
   !> Adds them to the summary.
   subroutine put(self, json, below_plies)
-    !> The quantities
     class(mapped_figures_t), intent(in) :: self
     !> The summary
     type(json_t), intent(inout) :: json
@@ -253,9 +237,7 @@ contains
 
   !> Saves or loads the quantities.
   subroutine visit(self, archive)
-    !> The quantities
     class(mapped_figures_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     logical :: known
 

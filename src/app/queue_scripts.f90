@@ -143,7 +143,6 @@ contains
   subroutine read_valid_deck(path, deck, error)
     !> Its path
     character(len=*), intent(in) :: path
-    !> The deck
     type(deck_t), intent(out) :: deck
     !> Raised if it cannot be read or has faults
     type(error_t), allocatable, intent(inout) :: error
@@ -251,7 +250,6 @@ contains
 
   !> Command that submits a job that continues from the checkpoint.
   pure function continuation_command(job) result(words)
-    !> The job
     type(queue_job_t), intent(in) :: job
     !> A command
     character(len=:), allocatable :: words
@@ -263,7 +261,6 @@ contains
 
   !> Seconds before the limit that are reserved for the current step and the checkpoint.
   pure integer function kept(job)
-    !> The job
     type(queue_job_t), intent(in) :: job
 
     kept = min(max_kept, job%seconds/2)

@@ -42,7 +42,6 @@ contains
 
   !> Names of the columns.
   pure function column_names(deck) result(names)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
@@ -66,7 +65,6 @@ contains
   !> Which columns of the plate have a meaning under a load: the bending stress around the struck point needs a load
   !> across the plate, the contact area an impactor.
   pure function apply_to(load) result(apply)
-    !> The load
     class(load_case_t), intent(in) :: load
     !> One for each row
     logical :: apply(size(plate_rows))
@@ -127,7 +125,6 @@ contains
 
   !> True for columns of integers.
   pure function column_whole(deck) result(whole)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> In the order of the table
     logical, allocatable :: whole(:)
@@ -144,7 +141,6 @@ contains
   !> Forces of pressure and lines at the owned points.
   pure function loads_on(model, now) result(loads)
     type(model_t), intent(in) :: model
-    !> The state reached
     type(state_t), intent(in) :: now
     !> Forces on the unknowns, (5, points)
     real(wp), allocatable :: loads(:, :)
@@ -158,9 +154,7 @@ contains
   !> Row of the state reached. Collective.
   function row_of(model, stepper, record) result(row)
     type(model_t), intent(in) :: model
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)

@@ -13,7 +13,6 @@ contains
   subroutine print_lines(communicator, lines)
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> The lines
     type(line_t), intent(in) :: lines(:)
     integer :: i
 

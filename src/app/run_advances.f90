@@ -15,9 +15,7 @@ contains
 
   !> Starts the clock of a run or restart.
   subroutine start_progress(progress, stepper, end)
-    !> The progress
     type(progress_t), intent(inout) :: progress
-    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
     !> End of the run
     real(wp), intent(in) :: end
@@ -27,15 +25,11 @@ contains
 
   !> Prints the progress of a run, if it is due.
   subroutine show_progress(progress, deck, stepper, end, log)
-    !> The progress
     type(progress_t), intent(inout) :: progress
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
     !> End of the run
     real(wp), intent(in) :: end
-    !> The log
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: of
 
@@ -50,7 +44,6 @@ contains
 
   !> The completed part.
   pure real(wp) function done(stepper)
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
 
     done = stepper%now%time
@@ -59,7 +52,6 @@ contains
 
   !> The remainder, in the same unit. The length of steps by central differences is assumed to be constant.
   pure real(wp) function left(stepper, end)
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> End of the run
     real(wp), intent(in) :: end

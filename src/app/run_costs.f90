@@ -26,7 +26,6 @@ contains
 
   !> Sentences on steps and time.
   function cost_lines(deck, model_size) result(lines)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> Size of its model
     type(model_size_t), intent(in) :: model_size
@@ -52,7 +51,6 @@ contains
 
   !> Implicit steps: the time of an undamaged plate is a lower bound.
   function implicit_sentence(deck, model_size) result(sentence)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Size of its model
     type(model_size_t), intent(in) :: model_size
@@ -70,7 +68,6 @@ contains
 
   !> Processor time for an undamaged plate.
   function min_time(deck, model_size, solves, residuals) result(clause)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Size of its model
     type(model_size_t), intent(in) :: model_size

@@ -33,13 +33,10 @@ contains
   !> Errors by the preliminary elastic impact, for a run without damage or large deflection: its peak force must be that
   !> of the elastic impact. Where damage grows it has errors of its own, by cells in process zones and crack bands.
   pure function errors_by_elastic_impact(deck, record, has_damage) result(errors)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> True: plies have failed or delaminations have grown in the run
     logical, intent(in) :: has_damage
-    !> The errors
     type(run_errors_t) :: errors
 
     if (has_damage .or. abs(record%peak_force - deck%expected%force) > same_setup*deck%expected%force) return
@@ -50,9 +47,7 @@ contains
   !> Errors of step and mesh for the linear, undamaged plate, by the preliminary elastic impact of the deck's check:
   !> with half the step, and with the natural frequencies of the discrete plate.
   pure function elastic_errors(deck) result(errors)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The errors
     type(run_errors_t) :: errors
 
     associate (o => deck%expected)
@@ -70,15 +65,12 @@ contains
   !> cancel in a difference, and the difference of unresolved peaks is arbitrary: the relative error of the elastic
   !> impact on the same mesh is a lower bound.
   pure function errors_by_coarse_run(deck, record, velocity, area, coarse_run) result(errors)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Velocity of the impactor and delaminated area at its end
     real(wp), intent(in) :: velocity, area
     !> Results of the coarse run
     type(coarse_run_t), intent(in) :: coarse_run
-    !> The errors
     type(run_errors_t) :: errors
 
     errors = elastic_errors(deck)

@@ -55,7 +55,6 @@ contains
   !> Results of the state reached. Collective.
   subroutine find_figures(model, now, figures)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Its results
     type(run_figures_t), intent(out) :: figures
@@ -90,7 +89,6 @@ contains
   pure function ending_of(error) result(ending)
     !> Reason of a premature end; not allocated: complete
     type(error_t), allocatable, intent(in) :: error
-    !> The ending
     type(ending_t) :: ending
 
     ending%message = ''

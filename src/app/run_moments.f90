@@ -11,7 +11,6 @@ contains
 
   !> Time, load factor, or fraction of a static analysis with a variable load factor.
   pure function moment(deck, time) result(words)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Time at the end of a step; in a static analysis the progress from 0 to 1
     real(wp), intent(in) :: time

@@ -71,25 +71,16 @@ module run_records
     !> Their times
     real(wp), allocatable :: warning_times(:)
   contains
-    !> Stores which interfaces had failed before the run.
     procedure :: inherit
-    !> Updates the record with an accepted step.
     procedure :: observe
-    !> True once the impactor has left the plate.
     procedure :: has_rebounded
-    !> The earliest of the events of all interfaces.
     procedure, nopass :: earliest
-    !> Updates the record with a complete state.
     procedure :: observe_reactions
     !> Updates kinetic energies.
     procedure :: note_motion
-    !> Their largest fraction of the energy.
     procedure :: scaled_share
-    !> Stores a warning.
     procedure :: note_warning
-    !> True if a warning was given before.
     procedure :: has_warned
-    !> Saves or loads.
     procedure :: visit
   end type run_record_t
 
@@ -98,7 +89,6 @@ contains
   !> The record at the start of a run.
   pure function new_run_record(model) result(self)
     type(model_t), intent(in) :: model
-    !> The record
     type(run_record_t) :: self
     integer :: zones
 
@@ -111,7 +101,6 @@ contains
   !> Stores which interfaces had failed before the run: their onset and first growth are not those of this run.
   !> Collective.
   subroutine inherit(self, model, now)
-    !> The record
     class(run_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state inherited from another run
@@ -124,10 +113,8 @@ contains
 
   !> Updates the record with an accepted step. Collective.
   subroutine observe(self, model, now, between_stages)
-    !> The record
     class(run_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state reached
     type(state_t), intent(in) :: now
     !> Steps between two checks of the interfaces
     integer, intent(in) :: between_stages
@@ -164,10 +151,8 @@ contains
   !> Updates the record with a complete state: with reactions, which central differences compute at intervals.
   !> Collective.
   subroutine observe_reactions(self, model, now)
-    !> The record
     class(run_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state reached
     type(state_t), intent(in) :: now
     real(wp), allocatable :: ends(:), strains(:)
     real(wp) :: bending
@@ -186,7 +171,6 @@ contains
 
   !> Time, contact force and deflection of a state.
   pure function figures_at(now)
-    !> The state
     type(state_t), intent(in) :: now
     !> The three values
     real(wp) :: figures_at(3)
@@ -196,7 +180,6 @@ contains
 
   !> True once the impactor has left the plate, away from it.
   pure logical function has_rebounded(self)
-    !> The record
     class(run_record_t), intent(in) :: self
 
     has_rebounded = self%contacts > 0 .and. .not. self%force > 0 .and. self%rebound > 0
@@ -237,9 +220,7 @@ contains
   !> Updates the energy of motions with scaled inertia, and that of a slow motion. In a compression they count up to the
   !> strength: the collapse of the plate is dynamic in a test, too.
   pure subroutine note_motion(self, deck, now)
-    !> The record
     class(run_record_t), intent(inout) :: self
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> A complete state, the last observed
     type(state_t), intent(in) :: now
@@ -253,7 +234,6 @@ contains
 
   !> Largest fraction of the energy in motions with scaled inertia.
   pure real(wp) function scaled_share(self) result(share)
-    !> The record
     class(run_record_t), intent(in) :: self
 
     share = 0
@@ -262,7 +242,6 @@ contains
 
   !> Stores a warning.
   pure subroutine note_warning(self, kind, zone, time)
-    !> The record
     class(run_record_t), intent(inout) :: self
     !> One of the kinds above
     integer, intent(in) :: kind
@@ -278,7 +257,6 @@ contains
 
   !> True if a warning was given before.
   pure logical function has_warned(self, kind, zone)
-    !> The record
     class(run_record_t), intent(in) :: self
     !> One of the kinds above
     integer, intent(in) :: kind
@@ -290,9 +268,7 @@ contains
 
   !> Saves or loads the record.
   subroutine visit(self, archive)
-    !> The record
     class(run_record_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('record/peak_force', self%peak_force)

@@ -24,9 +24,7 @@ contains
 
   !> Lists all keys in effect in the log, and zones and starters on the mesh.
   subroutine log_echo(deck, log)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The log
     type(log_t), intent(inout) :: log
     type(vocabulary_t) :: vocabulary
     type(line_t), allocatable :: lines(:)
@@ -44,12 +42,9 @@ contains
 
   !> Reports the size of the model and the factorization package. Collective.
   subroutine log_model(deck, model, stepper, log)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> The log
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: shares
     integer :: most, least
@@ -77,11 +72,9 @@ contains
 
   !> Reports the element that determines the stable step, and whether the deck's step is longer.
   subroutine log_stable_step(deck, stepper, log)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The time stepper, by central differences
     type(time_stepper_t), intent(in) :: stepper
-    !> The log
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: untaken
     real(wp) :: stable, longest
@@ -101,7 +94,6 @@ contains
   subroutine log_profile(rows, log)
     !> The parts; none without a profile
     type(profile_row_t), intent(in) :: rows(:)
-    !> The log
     type(log_t), intent(inout) :: log
     character(len=part_length + 48) :: line
     logical :: left(size(rows))
@@ -127,7 +119,6 @@ contains
     type(timer_set_t), intent(in) :: timers
     !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
-    !> The log
     type(log_t), intent(inout) :: log
     real(wp) :: factor_entries, megabytes
     integer :: matrix_entries, i
@@ -151,7 +142,6 @@ contains
 
   !> Cost of a run in one line.
   function summary(stepper) result(line)
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> The line
     character(len=:), allocatable :: line

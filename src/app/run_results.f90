@@ -30,17 +30,11 @@ module run_results
   contains
     !> Adds a result.
     generic :: add => add_real, add_integer, add_logical
-    !> Value of a result; 0: not known or not there.
     procedure :: value => value_of
-    !> True: it is there and known.
     procedure :: has
-    !> Its value with its unit.
     procedure :: shown
-    !> Label and value.
     procedure :: labelled
-    !> A value of some kind with its unit.
     procedure :: with_unit
-    !> Writes all as members of the summary.
     procedure :: put
     procedure, private :: add_real, add_integer, add_logical
   end type results_t
@@ -53,7 +47,6 @@ contains
     character(len=*), intent(in) :: system
     !> True: a run by load steps
     logical, intent(in) :: by_load_steps
-    !> The list
     type(results_t) :: self
 
     allocate (self%list(0))
@@ -63,7 +56,6 @@ contains
 
   !> Adds a number.
   pure subroutine add_real(self, name, value, is_known)
-    !> The results
     class(results_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -81,7 +73,6 @@ contains
 
   !> Adds a whole number.
   pure subroutine add_integer(self, name, value)
-    !> The results
     class(results_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -93,7 +84,6 @@ contains
 
   !> Adds a logical.
   pure subroutine add_logical(self, name, value)
-    !> The results
     class(results_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -105,7 +95,6 @@ contains
 
   !> Place of a result in the list; 0: it is not there.
   pure integer function place_of(self, name) result(place)
-    !> The results
     class(results_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -117,7 +106,6 @@ contains
 
   !> True: a result is there and known.
   pure logical function has(self, name)
-    !> The results
     class(results_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -130,7 +118,6 @@ contains
 
   !> Value of a result; 0: not known or not there.
   pure real(wp) function value_of(self, name) result(value)
-    !> The results
     class(results_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -141,7 +128,6 @@ contains
 
   !> Value of a result with its unit, rounded to four digits.
   pure function shown(self, name, digits) result(words)
-    !> The results
     class(results_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -155,7 +141,6 @@ contains
 
   !> Label and value of a result.
   pure function labelled(self, name) result(words)
-    !> The results
     class(results_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -167,7 +152,6 @@ contains
 
   !> A value of some kind with its unit; times of load steps have none.
   pure function with_unit(self, value, kind, digits) result(words)
-    !> The results
     class(results_t), intent(in) :: self
     !> The value
     real(wp), intent(in) :: value
@@ -186,7 +170,6 @@ contains
 
   !> Writes all as members of the summary.
   subroutine put(self, json)
-    !> The results
     class(results_t), intent(in) :: self
     !> The summary
     type(json_t), intent(inout) :: json

@@ -19,7 +19,6 @@ contains
 
   !> Takes steps up to the next one at which output or a check is due; a single step if steps are implicit. Collective.
   subroutine advance_to_output(deck, model, stepper, record, event, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The model; layers may grow with the damage
     type(model_t), intent(inout) :: model
@@ -53,7 +52,6 @@ contains
 
   !> True: a row of the history is due by the number of steps.
   pure logical function row_is_due(output, step)
-    !> The output
     type(output_t), intent(in) :: output
     !> Accepted steps
     integer, intent(in) :: step

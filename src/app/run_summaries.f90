@@ -33,12 +33,9 @@ contains
   !> Prints and writes the summary, also of a run that was stopped or has failed. A coarse run precedes it if the deck
   !> requests one, or an accuracy without another error estimate; the run's factor has been released. Collective.
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
@@ -46,7 +43,6 @@ contains
     real(wp), intent(in) :: seconds
     !> Path of the file
     character(len=*), intent(in) :: path
-    !> The log
     type(log_t), intent(inout) :: log
     !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error

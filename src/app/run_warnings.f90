@@ -34,16 +34,13 @@ contains
 
   !> Warns once of each condition that affects the validity; a strict run ends there. Collective.
   subroutine report_warnings(deck, model, stepper, record, energy_check, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
     type(energy_check_t), intent(inout) :: energy_check
-    !> The log
     type(log_t), intent(inout) :: log
     !> Set if the run is strict and exceeds a limit of the model
     type(error_t), allocatable, intent(out) :: error
@@ -56,16 +53,13 @@ contains
   !> Warns of energies of the last state of a run. Those of a small load are compared with the energy of the full load,
   !> unless the run has ended at that load. Collective.
   subroutine report_last_warnings(deck, model, now, record, energy_check, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> The last state
     type(state_t), intent(in) :: now
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
     type(energy_check_t), intent(inout) :: energy_check
-    !> The log
     type(log_t), intent(inout) :: log
     !> Set, unless it is already, if the run is strict and exceeds the limit
     type(error_t), allocatable, intent(inout) :: error
@@ -80,11 +74,9 @@ contains
 
   !> Prints warnings; a strict run ends with the first.
   subroutine give(deck, warnings, log, error)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> One sentence each
     type(line_t), intent(in) :: warnings(:)
-    !> The log
     type(log_t), intent(inout) :: log
     !> Set if the run is strict
     type(error_t), allocatable, intent(inout) :: error
@@ -101,10 +93,8 @@ contains
 
   !> Finds and stores new warnings of an accepted step. Collective.
   subroutine find_warnings(deck, model, now, step_errs, record, energy_check, warnings)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> The state reached
     type(state_t), intent(in) :: now
     !> True: the error of the step exceeds the tolerance of error control at the smallest length
     logical, intent(in) :: step_errs
@@ -157,9 +147,7 @@ contains
 
   !> Adds warnings of kinetic energy: of motions with scaled inertia, lost as surfaces meet, and of a slow motion.
   subroutine add_motion_warnings(deck, now, record, warnings)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The state reached
     type(state_t), intent(in) :: now
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
@@ -178,7 +166,6 @@ contains
 
   !> Adds warnings of energies.
   subroutine add_energy_warnings(deck, exceeded, time, record, warnings)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> True for the kinds of errors found
     logical, intent(in) :: exceeded(3)
@@ -196,7 +183,6 @@ contains
 
   !> Adds a warning at its first occurrence.
   subroutine add_warning(deck, kind, zone, time, record, warnings)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Its kind and zone
     integer, intent(in) :: kind, zone
@@ -215,7 +201,6 @@ contains
   !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor,
   !> half of which is immersed there.
   pure real(wp) function max_indentation(deck) result(limit)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     limit = deck%expected%scales%thickness
@@ -224,7 +209,6 @@ contains
 
   !> True: adaptive layers extend so far beyond the core that damage does, too.
   pure logical function leaves_core(deck, interface) result(leaves)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The interface, with its present zone
     type(delamination_t), intent(in) :: interface
@@ -237,7 +221,6 @@ contains
   !> True: a rotation of the plate exceeds the limit of moderate rotations. Collective.
   logical function is_steep(model, now)
     type(model_t), intent(in) :: model
-    !> The step reached
     type(state_t), intent(in) :: now
 
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > max_slope)
@@ -247,7 +230,6 @@ contains
   !> no support. Collective.
   logical function is_perforated(model, now)
     type(model_t), intent(in) :: model
-    !> The step reached
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
     real(wp), allocatable :: areas(:, :)
@@ -262,10 +244,8 @@ contains
 
   !> True: fibres of a clamped plate have failed. Collective.
   logical function has_fibre_failure(deck, model, now)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    !> The step reached
     type(state_t), intent(in) :: now
     integer :: counts(failure_modes)
 
@@ -277,9 +257,7 @@ contains
 
   !> All warnings of a run, with those before a restart.
   function reported_warnings(record, deck) result(lines)
-    !> Record of the run
     type(run_record_t), intent(in) :: record
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> One sentence each, in the order of time
     type(line_t), allocatable :: lines(:)

@@ -70,7 +70,6 @@ contains
 
     !> A key.
     subroutine append_key(key)
-      !> The key
       type(key_entry_t), intent(in) :: key
       character(len=:), allocatable :: unit
 

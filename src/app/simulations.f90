@@ -75,15 +75,10 @@ module simulations
     !> Folder and name that all results share
     character(len=:), allocatable :: base
   contains
-    !> Sets a run up from the start.
     procedure :: initialize
-    !> Sets a run up from a checkpoint.
     procedure :: resume
-    !> Steps until the end.
     procedure :: run
-    !> Writes the last output and closes the files.
     procedure :: finalize
-    !> Prints and writes the summary.
     procedure :: conclude
   end type simulation_t
 
@@ -91,9 +86,7 @@ contains
 
   !> Sets a run up from the start.
   subroutine initialize(self, deck, communicator, profile, error)
-    !> The run
     class(simulation_t), intent(out) :: self
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -122,7 +115,6 @@ contains
 
   !> Removes the summary of an earlier run.
   subroutine remove_summary(self)
-    !> The run
     class(simulation_t), intent(in) :: self
 
     if (self%communicator%is_root()) call remove_file(self%base//summary_ending)
@@ -130,9 +122,7 @@ contains
 
   !> Common part of initialise and resume: log, model, state at rest.
   subroutine prepare(self, deck, communicator, profile, append, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -178,7 +168,6 @@ contains
 
   !> Sets a run up from a checkpoint that has been opened for loading.
   subroutine resume(self, deck, communicator, profile, path, error)
-    !> The run
     class(simulation_t), intent(out) :: self
     !> The deck of the checkpoint
     type(deck_t), intent(in) :: deck
@@ -224,9 +213,7 @@ contains
 
   !> Saves or loads the evolving state.
   subroutine visit(self, archive, rows, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
-    !> Archive of the checkpoint
     type(checkpoint_archive_t), intent(inout) :: archive
     !> Rows of the history
     integer, intent(inout) :: rows
@@ -246,7 +233,6 @@ contains
 
   !> Time, or load factor, at which the run ends.
   pure real(wp) function end_of(self)
-    !> The run
     class(simulation_t), intent(in) :: self
 
     end_of = 1
@@ -255,7 +241,6 @@ contains
 
   !> Steps until the end, or until a signal or the wall-clock limit.
   subroutine run(self, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
     !> Set if no step converges, a file cannot be written, or the run has to stop
     type(error_t), allocatable, intent(out) :: error
@@ -283,7 +268,6 @@ contains
 
   !> Ends the run with a checkpoint after a signal, or if another step might exceed the wall-clock limit.
   subroutine stop_if_due(self, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
     !> Set if the run ends
     type(error_t), allocatable, intent(out) :: error
@@ -303,7 +287,6 @@ contains
   !> Writes the output that is due after a step. The clocks advance before the checkpoint is saved, so that a restart
   !> does not write it twice.
   subroutine write_results(self, at_event, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
     !> True if the step has reached an output time or the end
     logical, intent(in) :: at_event
@@ -344,7 +327,6 @@ contains
 
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
     !> Set if it cannot be written
     type(error_t), allocatable, intent(out) :: error
@@ -365,7 +347,6 @@ contains
 
   !> Writes the last fields, closes the files and reports the cost of the run.
   subroutine finalize(self, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
     !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
@@ -385,7 +366,6 @@ contains
   !> Writes the summary, also of a run that was stopped or has failed: to NAME_summary.json, and rounded to the log.
   !> Collective.
   subroutine conclude(self, error)
-    !> The run
     class(simulation_t), intent(inout) :: self
     !> Reason of a premature end; otherwise set if the summary cannot be written
     type(error_t), allocatable, intent(inout) :: error

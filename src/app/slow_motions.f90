@@ -24,9 +24,7 @@ module slow_motions
     !> Largest ratio of kinetic energy to that work
     real(wp) :: share = 0
   contains
-    !> Updates work and ratio.
     procedure :: observe
-    !> Saves or loads.
     procedure :: visit
   end type slow_motion_t
 
@@ -34,9 +32,7 @@ contains
 
   !> Updates work and ratio with a complete state. The work may return to zero, so the largest one is the reference.
   pure subroutine observe(self, deck, time, ledger, counts)
-    !> Work and ratio
     class(slow_motion_t), intent(inout) :: self
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Time of the state
     real(wp), intent(in) :: time
@@ -57,7 +53,6 @@ contains
 
   !> True: only prescribed motions in time load the plate, as in a quasi-static test.
   pure logical function is_slow_motion(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     is_slow_motion = .false.
@@ -70,7 +65,6 @@ contains
 
   !> True once a part of the loading has passed, after which kinetic energies are checked.
   pure logical function has_developed(deck, time)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The time
     real(wp), intent(in) :: time
@@ -80,9 +74,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive)
-    !> Work and ratio
     class(slow_motion_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('slow_motion/before', self%before)

@@ -30,11 +30,8 @@ contains
 
   !> The summary as JSON.
   function summary_text(deck, stepper, record, results, figures, errors, ending, provenance, seconds) result(content)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -42,7 +39,6 @@ contains
     type(run_figures_t), intent(in) :: figures
     !> Estimated errors
     type(run_errors_t), intent(in) :: errors
-    !> The ending
     type(ending_t), intent(in) :: ending
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
@@ -78,7 +74,6 @@ contains
   subroutine put_filtered(json, record)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> Record of the run
     type(run_record_t), intent(in) :: record
 
     call json%open_object(key_force_filter)
@@ -93,7 +88,6 @@ contains
   subroutine put_errors(json, errors)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The errors
     type(run_errors_t), intent(in) :: errors
 
     call json%open_object('estimated_errors')
@@ -124,7 +118,6 @@ contains
   subroutine put_plies(json, deck, figures)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -152,9 +145,7 @@ contains
   subroutine put_warnings(json, deck, record)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     type(line_t), allocatable :: given(:)
     integer :: i
@@ -180,7 +171,6 @@ contains
   subroutine put_costs(json, stepper, seconds)
     !> The summary
     type(json_t), intent(inout) :: json
-    !> The time stepper
     type(time_stepper_t), intent(in) :: stepper
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds

@@ -24,11 +24,9 @@ contains
 
   !> The summary as lines of the log.
   function lines_of_summary(deck, results, record, figures, errors, unknown_because) result(lines)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Figures of the state
     type(run_figures_t), intent(in) :: figures
@@ -36,7 +34,6 @@ contains
     type(run_errors_t), intent(in) :: errors
     !> Reason why errors are not known; empty: known, or not to be reported
     character(len=*), intent(in) :: unknown_because
-    !> The lines
     type(line_t), allocatable :: lines(:)
     logical :: struck
 
@@ -88,7 +85,6 @@ contains
 
   !> Time with its unit; without a known system of units, and in load steps, with its name.
   pure function instant(deck, results, time) result(words)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -103,7 +99,6 @@ contains
 
   !> Adds a line.
   subroutine add_figure(lines, label, figures)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The label; empty: the line continues the one before
     character(len=*), intent(in) :: label
@@ -115,13 +110,10 @@ contains
 
   !> Force, contact and rebound.
   subroutine add_impact(lines, deck, results, record, errors)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Estimated errors
     type(run_errors_t), intent(in) :: errors
@@ -151,9 +143,7 @@ contains
   !> Depth of the dent. In a plate that has not been damped to rest it includes the deflection of the residual
   !> vibration.
   subroutine add_dent(lines, deck, results)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -204,7 +194,6 @@ contains
 
   !> Energy of the impactor and its loss, which is the absorbed energy once the contact has ended.
   subroutine add_impact_energy(lines, results)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -224,7 +213,6 @@ contains
 
   !> The energy ledger, with the names of the columns.
   subroutine add_energies(lines, results)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -244,13 +232,10 @@ contains
 
   !> Results of the interfaces.
   subroutine add_interfaces(lines, deck, results, record, figures, errors)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -332,11 +317,8 @@ contains
 
   !> Warnings on the deck and those of the run.
   subroutine add_warnings(lines, deck, record)
-    !> The lines
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     type(line_t), allocatable :: given(:)
     integer :: i

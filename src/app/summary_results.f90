@@ -20,11 +20,8 @@ contains
 
   !> All results.
   function results_of(deck, now, record, figures) result(results)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The state reached
     type(state_t), intent(in) :: now
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -58,11 +55,8 @@ contains
   subroutine add_impact(results, deck, now, record, figures)
     !> Results are added
     type(results_t), intent(inout) :: results
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The state reached
     type(state_t), intent(in) :: now
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -87,7 +81,6 @@ contains
   subroutine add_energies(results, ledger)
     !> Results are added
     type(results_t), intent(inout) :: results
-    !> The ledger
     type(ledger_t), intent(in) :: ledger
 
     call results%add('work_external', ledger%external_work)
@@ -110,7 +103,6 @@ contains
     type(results_t), intent(inout) :: results
     !> True: there is an impactor
     logical, intent(in) :: has_force
-    !> Record of the run
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -141,9 +133,7 @@ contains
   subroutine add_compression(results, deck, record)
     !> Results are added
     type(results_t), intent(inout) :: results
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Record of the run
     type(run_record_t), intent(in) :: record
 
     associate (of => record%compression)

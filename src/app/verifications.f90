@@ -34,7 +34,6 @@ contains
   integer function stage_of(base, deck, commit, communicator) result(stage)
     !> Folder and name of its results
     character(len=*), intent(in) :: base
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Of the program
     character(len=*), intent(in) :: commit

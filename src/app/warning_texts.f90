@@ -44,7 +44,6 @@ contains
     integer, intent(in) :: zone
     !> Its time, such as time 0.001
     character(len=*), intent(in) :: at
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> One sentence
     character(len=:), allocatable :: text
@@ -132,7 +131,6 @@ contains
 
   !> Remedy for strain energy raised by a mapping.
   pure function mapping_remedy(deck) result(cure)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> End of a sentence
     character(len=:), allocatable :: cure
@@ -148,7 +146,6 @@ contains
   !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
   !> released is damped.
   pure function dissipation_remedy(deck) result(cure)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> End of a sentence
     character(len=:), allocatable :: cure
@@ -160,7 +157,6 @@ contains
 
   !> Cause and remedy of a struck point deeper than the impactor.
   pure function hollow_remedy(deck) result(cure)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> End of a sentence
     character(len=:), allocatable :: cure

@@ -25,7 +25,6 @@ contains
 
   !> Raises an error. The first error of a chain is kept: a second call changes nothing.
   subroutine fail(error, code, message)
-    !> The error to raise
     type(error_t), allocatable, intent(inout) :: error
     !> One of the exit codes of this module
     integer, intent(in) :: code

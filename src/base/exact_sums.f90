@@ -40,7 +40,6 @@ module exact_sums
     procedure, private :: add_value, add_values
     !> Propagates carries, so that sums over up to 2^31 parts can be added number by number.
     procedure :: carry
-    !> The sum rounded to the nearest number, to the even one of two.
     procedure :: rounded
   end type exact_sum_t
 

@@ -38,7 +38,6 @@ contains
 
   !> Takes the lock without waiting; without effect on file systems without locks.
   subroutine take(self, path, refused)
-    !> The lock
     class(file_lock_t), intent(inout) :: self
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -52,7 +51,6 @@ contains
 
   !> Releases the lock.
   subroutine release(self)
-    !> The lock
     class(file_lock_t), intent(inout) :: self
 
     if (self%descriptor >= 0) call implam_unlock_file(self%descriptor)

@@ -17,18 +17,14 @@ module json_text
     !> The next member is the first between its brackets
     logical, private :: at_first = .true.
   contains
-    !> Begins the text.
     procedure :: begin
     !> Opens an object or a list; within a list without a name.
     procedure :: open_object
     procedure :: open_list
-    !> Closes the innermost object or list.
     procedure :: close => close_bracket
     !> Writes a member.
     generic :: put => put_real, put_reals, put_integer, put_logical, put_text
-    !> Writes a member without a value.
     procedure :: put_null
-    !> Closes all and gives the text.
     procedure :: finished
     procedure, private :: put_real, put_reals, put_integer, put_logical, put_text, member, open_bracket
   end type json_t
@@ -37,7 +33,6 @@ contains
 
   !> Begins the text.
   pure subroutine begin(self)
-    !> The text
     class(json_t), intent(inout) :: self
 
     self%content = '{'
@@ -47,7 +42,6 @@ contains
 
   !> Opens an object.
   pure subroutine open_object(self, name)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -57,7 +51,6 @@ contains
 
   !> Opens a list.
   pure subroutine open_list(self, name)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -67,7 +60,6 @@ contains
 
   !> Opens an object or a list.
   pure subroutine open_bracket(self, name, opening, closing)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -81,7 +73,6 @@ contains
 
   !> Closes the innermost object or list.
   pure subroutine close_bracket(self)
-    !> The text
     class(json_t), intent(inout) :: self
     integer :: depth
 
@@ -94,7 +85,6 @@ contains
 
   !> Writes a real.
   pure subroutine put_real(self, name, value)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -106,7 +96,6 @@ contains
 
   !> Writes a list of reals in one line.
   pure subroutine put_reals(self, name, values)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -125,7 +114,6 @@ contains
 
   !> Writes an integer.
   pure subroutine put_integer(self, name, value)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -137,7 +125,6 @@ contains
 
   !> Writes a flag.
   pure subroutine put_logical(self, name, value)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -149,7 +136,6 @@ contains
 
   !> Writes a text.
   pure subroutine put_text(self, name, value)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -161,7 +147,6 @@ contains
 
   !> Writes a member without a value.
   pure subroutine put_null(self, name)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name
@@ -171,7 +156,6 @@ contains
 
   !> Closes all and gives the text.
   pure subroutine finished(self, content)
-    !> The text
     class(json_t), intent(inout) :: self
     !> The text as written to a file
     character(len=:), allocatable, intent(out) :: content
@@ -184,7 +168,6 @@ contains
 
   !> Begins a line with a name and its value.
   pure subroutine member(self, name, value)
-    !> The text
     class(json_t), intent(inout) :: self
     !> Its name; empty in a list
     character(len=*), intent(in) :: name

@@ -61,7 +61,6 @@ contains
 
   !> Starts the log.
   subroutine open (self, path, writes, append, error)
-    !> The log
     class(log_t), intent(inout) :: self
     !> Path of the file; empty: terminal only
     character(len=*), intent(in) :: path
@@ -91,7 +90,6 @@ contains
 
   !> Records the error that ends the run; on the terminal the program prints it at the end.
   subroutine error(self, text)
-    !> The log
     class(log_t), intent(inout) :: self
     !> One sentence
     character(len=*), intent(in) :: text
@@ -101,7 +99,6 @@ contains
 
   !> Prints a warning.
   subroutine warning(self, text)
-    !> The log
     class(log_t), intent(inout) :: self
     !> One sentence
     character(len=*), intent(in) :: text
@@ -113,7 +110,6 @@ contains
 
   !> Shows the progress of the run.
   subroutine note(self, text)
-    !> The log
     class(log_t), intent(inout) :: self
     !> One line
     character(len=*), intent(in) :: text
@@ -124,7 +120,6 @@ contains
 
   !> Writes a line to the file only.
   subroutine detail(self, text)
-    !> The log
     class(log_t), intent(inout) :: self
     !> One line
     character(len=*), intent(in) :: text
@@ -135,7 +130,6 @@ contains
 
   !> Shows a line that the next one overwrites; no effect if the output is not a terminal.
   subroutine status(self, text)
-    !> The log
     class(log_t), intent(inout) :: self
     !> One line
     character(len=*), intent(in) :: text
@@ -150,7 +144,6 @@ contains
 
   !> Ends the log.
   subroutine close (self)
-    !> The log
     class(log_t), intent(inout) :: self
 
     call self%clear_status()
@@ -160,7 +153,6 @@ contains
 
   !> Writes a line to the terminal; the run continues if this fails.
   subroutine to_terminal(self, unit, line)
-    !> The log
     class(log_t), intent(inout) :: self
     !> Unit of the terminal
     integer, intent(in) :: unit
@@ -176,7 +168,6 @@ contains
 
   !> Writes a line to the file. If this fails no more lines are written to the file, and the terminal is informed.
   subroutine to_file(self, line, at_once)
-    !> The log
     class(log_t), intent(inout) :: self
     !> The line
     character(len=*), intent(in) :: line
@@ -198,7 +189,6 @@ contains
 
   !> Blanks the transient line.
   subroutine clear_status(self)
-    !> The log
     class(log_t), intent(inout) :: self
     integer :: ignored
 

@@ -77,7 +77,6 @@ contains
 
   !> Opens a file.
   subroutine open (self, path, mode)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -91,7 +90,6 @@ contains
 
   !> Whether the file is open.
   logical function is_open(self)
-    !> The stream
     class(output_stream_t), intent(in) :: self
 
     is_open = c_associated(self%stream)
@@ -99,7 +97,6 @@ contains
 
   !> Writes text as it is.
   subroutine put(self, text)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
     !> The text
     character(len=*), intent(in) :: text
@@ -112,7 +109,6 @@ contains
 
   !> Writes a line.
   subroutine put_line(self, line)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
     !> The line, without its end
     character(len=*), intent(in) :: line
@@ -122,7 +118,6 @@ contains
 
   !> Flushes to the operating system.
   subroutine flush(self)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
 
     if (.not. self%failed) call self%note(c_fflush(self%stream) /= 0)
@@ -130,7 +125,6 @@ contains
 
   !> Waits until the file is on the disk.
   subroutine synchronise(self)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
 
     call self%flush()
@@ -139,7 +133,6 @@ contains
 
   !> Closes the file.
   subroutine close (self)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
     integer(c_int) :: status
 
@@ -151,7 +144,6 @@ contains
 
   !> Stores a failure of the last operation with its reason; that of the first one is kept.
   subroutine note(self, has_failed)
-    !> The stream
     class(output_stream_t), intent(inout) :: self
     !> True: it has failed
     logical, intent(in) :: has_failed

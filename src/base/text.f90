@@ -216,7 +216,6 @@ contains
 
   !> All lines in one text.
   pure function joined(lines, separator) result(all_lines)
-    !> The lines
     type(line_t), intent(in) :: lines(:)
     !> Text between two lines
     character(len=*), intent(in) :: separator

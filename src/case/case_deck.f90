@@ -57,7 +57,6 @@ contains
 
   !> True: mesh and steps are chosen by the accuracy of the deck.
   pure logical function has_accuracy(settings)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
 
     has_accuracy = settings%is_given(group, key_accuracy)
@@ -65,7 +64,6 @@ contains
 
   !> True: errors of the results are estimated by a coarse run.
   pure logical function needs_coarse_run(settings, has_estimate)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> True: they are estimated by the preliminary elastic impact
     logical, intent(in) :: has_estimate
@@ -76,7 +74,6 @@ contains
 
   !> Accuracy that the case requests.
   pure subroutine fill_accuracy(settings, accuracy, units, strict, refine)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Permitted error of the peak force, %; 0: mesh and steps are given in the deck
     real(wp), intent(out) :: accuracy

@@ -50,11 +50,9 @@ contains
 
   !> Checks keys that are optional only with `accuracy`.
   subroutine check_left_out(settings, needs_lengths, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> True: length and end of the steps are needed
     logical, intent(in) :: needs_lengths
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (has_accuracy(settings)) return
@@ -87,7 +85,6 @@ contains
   subroutine choose_by_accuracy(deck, problems)
     !> Plate, laminate, impactor and interfaces are filled; receives mesh and times
     type(deck_t), intent(inout) :: deck
-    !> Faults so far
     type(problems_t), intent(inout) :: problems
     type(setup_scales_t) :: scales
 
@@ -104,11 +101,9 @@ contains
 
   !> Patch, end, step and mesh of an impact, by preliminary elastic impacts.
   subroutine choose_for_impact(deck, scales, problems)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     type(setup_elastic_impact_t) :: elastic
     type(elastic_impact_t) :: first
@@ -150,7 +145,6 @@ contains
 
   !> Chooses the step.
   subroutine choose_step(deck, end, error, step)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> End of the run, and the history's error with the step
     real(wp), intent(in) :: end, error
@@ -165,11 +159,9 @@ contains
 
   !> Mesh, and in time the step, of a plate under pressure.
   subroutine choose_for_pressure(deck, scales, problems)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%settings%is_given(mesh_group, key_elements)) &
@@ -185,13 +177,11 @@ contains
 
   !> Number and grading of elements with a largest side.
   subroutine choose_elements(deck, side, scales, problems)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Largest side
     real(wp), intent(in) :: side
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: half(2), cell
     integer :: number(2), parts(2), max_along
@@ -227,7 +217,6 @@ contains
   !> Core of elements of the required size around the struck point, so large that waves of first contact do not leave it
   !> before this contact ends. Across a narrow plate it ends two elements before the edges.
   subroutine choose_core(deck, cell, wave_length)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Side of the elements
     real(wp), intent(in) :: cell
@@ -252,7 +241,6 @@ contains
 
   !> Smallest side of the zones; that of the plate if none is given.
   pure real(wp) function smallest_zone(deck) result(side)
-    !> The deck
     type(deck_t), intent(in) :: deck
     integer :: i
 
@@ -265,7 +253,6 @@ contains
   !> The impactor's integrator: that of the preliminary elastic impacts, which permits long steps. gear4 would shorten
   !> them.
   subroutine choose_integrator(deck)
-    !> The deck
     type(deck_t), intent(inout) :: deck
 
     if (deck%settings%is_given(impactor_group, key_integrator)) return
@@ -275,7 +262,6 @@ contains
 
   !> Chooses output times of fields, at the ends of steps; a draft has only the last.
   subroutine choose_clocks(deck, step, end)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Step and end of the run
     real(wp), intent(in) :: step, end
@@ -287,7 +273,6 @@ contains
 
   !> Sets one number, to three digits.
   subroutine choose_one(deck, group, key, value)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Group and key
     character(len=*), intent(in) :: group, key

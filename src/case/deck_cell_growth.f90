@@ -23,9 +23,7 @@ contains
 
   !> Warns of fast growth along either direction.
   subroutine check_cell_growth(deck, problems)
-    !> The deck, without errors
     type(deck_t), intent(in) :: deck
-    !> Receives the warning
     type(problems_t), intent(inout) :: problems
     real(wp) :: growth(2), longest(2)
     integer :: enough(2), direction
@@ -43,7 +41,6 @@ contains
 
   !> Growth from the core to the border, the longest element, and the number of elements for the growth recommended.
   subroutine measure(deck, direction, growth, longest, enough)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction

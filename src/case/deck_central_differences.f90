@@ -67,11 +67,9 @@ contains
   !> End of the run: that of the contact of an undamaged plate, and a margin. The contact of a damaged plate lasts
   !> longer by an unknown time; the run continues until the impactor has left.
   subroutine choose_end(deck, scales, problems)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(elastic_impact_t) :: elastic
 
@@ -93,7 +91,6 @@ contains
 
   !> Factor of in-plane and rotary inertia permitted by the waves of first contact.
   subroutine choose_scaling(deck, scales)
-    !> The deck
     type(deck_t), intent(inout) :: deck
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales

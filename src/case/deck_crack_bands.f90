@@ -32,7 +32,6 @@ contains
 
   !> All checks.
   subroutine check_crack_bands(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -73,9 +72,7 @@ contains
 
   !> Kinking requires in-situ strengths that a misalignment of the fibres explains.
   subroutine check_kinking_in_place(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The fault is added
     type(problems_t), intent(inout) :: problems
     type(ply_t), allocatable :: plies(:)
     character(len=:), allocatable :: objection
@@ -93,9 +90,7 @@ contains
 
   !> Permanent shear strains require nonlinear shear and central differences.
   subroutine check_permanent_shear(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: place
 
@@ -111,7 +106,6 @@ contains
   subroutine refuse_in_situ(deck, problems)
     !> The deck, without fracture energies
     type(deck_t), intent(in) :: deck
-    !> The fault is added
     type(problems_t), intent(inout) :: problems
     integer :: place, mode
 
@@ -127,11 +121,9 @@ contains
 
   !> Checks that all four energies are given, for all materials.
   subroutine check_energies(deck, place, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: missing(:)
     integer :: mode
@@ -149,11 +141,9 @@ contains
 
   !> Checks that nonlinear shear has a larger failure strain than linear shear.
   subroutine check_shear(deck, place, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: strain, linear
 
@@ -166,11 +156,9 @@ contains
 
   !> Warns of elements that dissipate more than the fracture energies because they are too long.
   subroutine check_lengths(deck, place, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: limits(:), excesses(:)
     character(len=:), allocatable :: excess, sides
@@ -203,7 +191,6 @@ contains
   !> Longest elements that dissipate no more than the fracture energies, over all blocks of a material, with in-situ
   !> strengths.
   pure function longest_elements(deck, place) result(longest)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
@@ -224,7 +211,6 @@ contains
 
   !> Shortest and longest side of the cells, with joined cells at the lines of the struck point counted as one.
   pure function element_lengths(deck) result(lengths)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Smallest and largest
     real(wp) :: lengths(2)

@@ -40,7 +40,6 @@ contains
 
   !> All checks of combinations of groups except for those of sizes.
   subroutine check_across_groups(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -63,9 +62,7 @@ contains
 
   !> Checks that there is a load, and no conflicting ones.
   subroutine check_loads(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (deck%presses_impactor()) then
@@ -85,7 +82,6 @@ contains
 
   !> Checks the travel of an impactor in load steps, which must be the only load.
   subroutine check_travel(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -105,7 +101,6 @@ contains
 
   !> Checks an impactor with a travel prescribed in time.
   subroutine check_travel_in_time(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -124,14 +119,12 @@ contains
 
   !> True if a line moves or loads the plate.
   pure logical function loads(lines)
-    !> The lines
     type(line_load_t), intent(in) :: lines(:)
     loads = any(abs(lines%value) > 0)
   end function loads
 
   !> Keys that a static analysis needs, and keys without effect in it.
   subroutine check_static(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -165,7 +158,6 @@ contains
 
   !> Keys that a run in time needs, and keys without effect in it.
   subroutine check_transient(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -186,7 +178,6 @@ contains
   !> Keys of &time to be given: central differences, the default where plies or interfaces soften, choose the step, and
   !> for an impact the end, too.
   function needed_of_time(deck) result(clause)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Such as give end and step
     character(len=:), allocatable :: clause
@@ -199,7 +190,6 @@ contains
 
   !> Impactor, its patch and its contact stiffness.
   subroutine check_impact(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -234,9 +224,7 @@ contains
   !> Warns of a dent that begins beyond the range of the indentation law, which ends at the laminate's thickness. It is
   !> usually a length in another unit, with which the contact is elastic.
   subroutine check_dent(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The remark is added
     type(problems_t), intent(inout) :: problems
 
     if (deck%indentation%law == law_hertz .or. .not. allocated(deck%laminate%thickness)) return
@@ -249,9 +237,7 @@ contains
 
   !> Checks that interfaces lie within the laminate.
   subroutine check_interfaces(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -270,9 +256,7 @@ contains
 
   !> Checks strengths required by the failure criteria, except those with another fault.
   subroutine check_strengths(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: needed(:), missing(:)
     integer :: i, j
@@ -294,11 +278,9 @@ contains
 
   !> Checks the strengths of fibres that fail by kinking.
   subroutine check_kinking(deck, place, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material, which has the strengths of the matrix
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     associate (material => deck%materials(place))

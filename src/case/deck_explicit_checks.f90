@@ -25,7 +25,6 @@ contains
 
   !> Refuses features that the method does not have, and reports keys without effect.
   subroutine check_central_differences(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -46,9 +45,7 @@ contains
 
   !> Refuses fronts, whose release requires equilibrium at a frozen time.
   subroutine check_fronts(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults are added
     type(problems_t), intent(inout) :: problems
     integer :: i, before
 

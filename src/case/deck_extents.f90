@@ -46,7 +46,6 @@ contains
 
   !> Checks sizes given in the deck.
   subroutine check_sizes(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -63,9 +62,7 @@ contains
 
   !> Checks that lines are on the modelled part of the plate.
   subroutine check_line_places(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: half
     integer :: place, direction
@@ -93,7 +90,6 @@ contains
   subroutine check_line_nodes(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     real(wp) :: taken
     integer :: place, direction
@@ -111,7 +107,6 @@ contains
 
   !> Thickness of the laminate against the plate.
   subroutine check_thickness(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -136,7 +131,6 @@ contains
 
   !> Zones against the plate, and starters against the loaded patch.
   subroutine check_zones(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -162,7 +156,6 @@ contains
 
   !> True for an interface of the same group and law as one before it, whose sizes are the same.
   pure logical function repeats(deck, i)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The interface
     integer, intent(in) :: i
@@ -175,7 +168,6 @@ contains
   subroutine check_extents(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: x_edges(:), y_edges(:)
     real(wp) :: zone(2), starter(2)
@@ -207,13 +199,11 @@ contains
   !> Warns of a front that is smoothed over more than its radius: a rate proportional to the cosine of twice the angle
   !> around a disc then loses 29 % of its amplitude, 8 % at half the radius.
   subroutine check_smoothing(deck, delamination, cell, radius, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Length of the mean cell of its zone, and half of its starter
     real(wp), intent(in) :: cell, radius
-    !> Receives the remark
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: advice
     real(wp) :: distance
@@ -253,7 +243,6 @@ contains
 
   !> Zone and starter of each interface on the mesh, for the log.
   pure function extent_lines(deck) result(lines)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> One line per interface
     type(line_t), allocatable :: lines(:)

@@ -21,9 +21,7 @@ contains
   !> Reports missing zones: only zones of a cohesive law are adaptive. A front has no damage ahead of it, a strip
   !> crosses the full width of a zone, and lines act on the initial layers.
   subroutine check_left_out_zones(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: i, place
 
@@ -53,7 +51,6 @@ contains
 
   !> True for lines that do not act on layers: those that displace an edge of the plate in its plane.
   pure function beside_layers(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> True for each such line
     logical :: beside_layers(size(deck%lines))

@@ -17,7 +17,6 @@ contains
   subroutine check_force_filter(deck, problems)
     !> The deck, filled and checked, its step known
     type(deck_t), intent(in) :: deck
-    !> Receives the warning
     type(problems_t), intent(inout) :: problems
     real(wp) :: apart
 

@@ -28,9 +28,7 @@ contains
 
   !> Adds the remarks.
   subroutine check_idle_keys(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
-    !> Receives them
     type(problems_t), intent(inout) :: problems
     integer :: place
 
@@ -63,11 +61,9 @@ contains
 
   !> Remarks on a material without plies, and on constants without effect.
   subroutine check_material(deck, place, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> Receives the remarks
     type(problems_t), intent(inout) :: problems
     if (allocated(deck%laminate%material)) then
       if (.not. any(deck%laminate%material == place) .and. problems%errors() == 0) then
@@ -93,11 +89,9 @@ contains
 
   !> Remarks on strengths that the criteria of failure do not contain.
   subroutine remark_strengths(deck, place, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
-    !> Receives the remarks
     type(problems_t), intent(inout) :: problems
 
     if (deck%ply_damage%criteria /= criteria_hou .or. any(deck%materials(place)%toughness > 0)) &
@@ -111,7 +105,6 @@ contains
 
   !> True: strengths of the plies determine the yield pressure of the struck face.
   logical function has_yield_pressure(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     has_yield_pressure = deck%has_impactor .and. deck%indentation%law == law_thornton .and. &
@@ -120,7 +113,6 @@ contains
 
   !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.
   pure logical function has_interfaces(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     has_interfaces = size(deck%delaminations) > 0
@@ -132,13 +124,11 @@ contains
 
   !> Remarks on the first given key of several without effect where plies do not fail.
   subroutine remark_first(deck, place, keys, quantities, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the material
     integer, intent(in) :: place
     !> The keys, and the quantities that they give
     character(len=*), intent(in) :: keys(:), quantities
-    !> Receives the remark
     type(problems_t), intent(inout) :: problems
     integer :: i
 

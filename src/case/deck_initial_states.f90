@@ -34,7 +34,6 @@ contains
 
   !> Refuses features that are not possible in a run from the end of another run.
   subroutine check_initial_state(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -157,7 +156,6 @@ contains
 
   !> Name of the reduction of the transverse shear stiffness.
   pure function correction_name(laminate) result(name)
-    !> The laminate
     type(laminate_t), intent(in) :: laminate
     !> As the deck has it
     character(len=:), allocatable :: name
@@ -338,7 +336,6 @@ contains
 
   !> A value as a deck has it: a word of a choice, a logical value, or a number.
   function value_in(deck, group, key, number, place) result(shown)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Group and key
     character(len=*), intent(in) :: group, key

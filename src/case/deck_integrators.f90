@@ -46,7 +46,6 @@ contains
   pure logical function needs_lengths(deck, problems)
     !> The deck, its integrator chosen
     type(deck_t), intent(in) :: deck
-    !> Faults found so far
     type(problems_t), intent(in) :: problems
 
     needs_lengths = .not. (deck%settings%has_group(static_group) .or. is_explicit(deck%stepping) .or. &
@@ -61,7 +60,6 @@ contains
   !> The softening part of a dynamic setup; empty: none, or the deck requires implicit steps. One of the fracture
   !> energies requests softening plies; the check of materials requires all.
   function softening_part(deck) result(softening)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Plies, interfaces, or nothing
     character(len=:), allocatable :: softening

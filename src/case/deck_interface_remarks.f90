@@ -26,7 +26,6 @@ contains
   subroutine check_interfaces(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     logical :: beyond(size(deck%delaminations))
     integer :: i
@@ -52,7 +51,6 @@ contains
   !> True if an interface lies between plies of one orthotropic material and angle, in a laminate that also has other
   !> interfaces.
   pure logical function lies_within_a_block(deck, ply) result(within)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Ply above the interface
     integer, intent(in) :: ply
@@ -68,7 +66,6 @@ contains
 
   !> True for a material without a direction.
   pure logical function is_isotropic(material)
-    !> The material
     type(material_t), intent(in) :: material
 
     is_isotropic = .not. (material%e1 < material%e2 .or. material%e1 > material%e2)
@@ -84,7 +81,6 @@ contains
 
   !> True for directions in which a zone extends at least one cell beyond the core; false without a core.
   pure function beyond_core(deck, zone) result(beyond)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Full extents of the zone
     real(wp), intent(in) :: zone(2)
@@ -96,7 +92,6 @@ contains
 
   !> Longest side of the cells of a zone.
   pure real(wp) function longest_cell(deck, zone) result(longest)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Full extents of the zone
     real(wp), intent(in) :: zone(2)

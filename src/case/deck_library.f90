@@ -54,7 +54,6 @@ contains
 
   !> Index of the deck's system of units; 0: not given.
   pure integer function system_of(settings) result(system)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
 
     do system = size(systems), 1, -1
@@ -74,7 +73,6 @@ contains
 
   !> True if all materials of the deck are the same published one.
   pure logical function is_one_material(settings)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     integer :: place
 

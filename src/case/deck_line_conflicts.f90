@@ -22,7 +22,6 @@ contains
   subroutine check_line_conflicts(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: line, earlier
 
@@ -50,9 +49,7 @@ contains
   !> True: a line moves or loads an edge in a component that the edge constrains. A line that only supports such an edge
   !> has no effect and is accepted.
   pure logical function acts_on_held_edge(deck, line) result(acts)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The line
     type(line_load_t), intent(in) :: line
     logical :: held(5), halved(2)
     integer :: normal, node
@@ -71,9 +68,7 @@ contains
 
   !> Index of the line of nodes that a line acts on, from 0.
   pure integer function node_of(deck, line) result(node)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The line
     type(line_load_t), intent(in) :: line
 
     node = node_line(cell_edges(deck%plate, deck%mesh, merge(2, 1, line%direction == along_x)), line%at)

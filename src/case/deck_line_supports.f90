@@ -23,9 +23,7 @@ contains
 
   !> Checks that lines and edges constrain the rigid-body deflection and rotations about x and y.
   subroutine check_line_supports(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(line_load_t), allocatable :: supporting(:)
     logical, allocatable :: across(:)
@@ -53,9 +51,7 @@ contains
   !> Checks that in-plane forces balance where nothing restrains the plate against them: the struck point, which is
   !> fixed against rigid-body motions, would carry the remainder.
   subroutine check_in_plane_balance(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     logical :: mirrored(2), free(3)
     real(wp) :: net(3), total
@@ -83,7 +79,6 @@ contains
 
   !> Reports prescribed deflections of lines where supports constrain the plate, and strains that are not small.
   subroutine check_moved_lines(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -114,9 +109,7 @@ contains
 
   !> Reports in-plane forces of lines under which the laminate, free to deform, has strains that are not small.
   subroutine check_line_strains(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     type(section_t) :: section
     real(wp) :: compliance(3, 3), strain
@@ -150,7 +143,6 @@ contains
   pure logical function resists(support, line, along, lengths)
     !> The rig
     type(support_t), intent(in) :: support
-    !> The line
     type(line_load_t), intent(in) :: line
     !> Direction that it runs along, 1 for x, 2 for y
     integer, intent(in) :: along

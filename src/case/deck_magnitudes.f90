@@ -37,9 +37,7 @@ contains
 
   !> The values. They are those of the keys, as a deck with errors is not filled.
   subroutine magnitudes_of(deck, problems, list)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Its faults
     type(problems_t), intent(in) :: problems
     !> The values
     type(magnitude_t), allocatable, intent(out) :: list(:)
@@ -60,7 +58,6 @@ contains
 
   !> The key by which the deck gives the thickness of plies.
   function thickness_key(settings) result(key)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Its name
     character(len=:), allocatable :: key
@@ -72,9 +69,7 @@ contains
   !> Values of the materials. In-plane moduli and strengths of a honeycomb have no lower limit: of materials without
   !> errors only the largest modulus and the strengths of the stiffest one are considered.
   subroutine add_materials(deck, problems, list)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Its faults
     type(problems_t), intent(in) :: problems
     !> Values are added
     type(magnitude_t), allocatable, intent(inout) :: list(:)
@@ -101,7 +96,6 @@ contains
 
   !> Values of keys of a material.
   subroutine add_keys(deck, quantity, keys, place, list)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Kind of the quantities
     integer, intent(in) :: quantity
@@ -123,7 +117,6 @@ contains
 
   !> Values of the interfaces; those of one group share them.
   subroutine add_interfaces(deck, list)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Values are added
     type(magnitude_t), allocatable, intent(inout) :: list(:)

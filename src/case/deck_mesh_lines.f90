@@ -26,7 +26,6 @@ contains
   subroutine place_mesh_lines(deck, problems)
     !> The deck, its patch, core and windows known; receives the lines
     type(deck_t), intent(inout) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: lines(:)
     integer :: direction
@@ -46,7 +45,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: distances(:)
     integer :: side, nearest
@@ -68,9 +66,7 @@ contains
 
   !> A core whose border is less than half a cell from that of the plate ends a cell before it.
   subroutine shorten_core(deck, problems)
-    !> The deck
     type(deck_t), intent(inout) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: most
     integer :: direction
@@ -97,7 +93,6 @@ contains
     integer, intent(in) :: direction
     !> The lines
     real(wp), allocatable, intent(out) :: lines(:)
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: given(:), places(:)
     integer :: i, windows
@@ -146,7 +141,6 @@ contains
   subroutine check_window_lines(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: direction
 
@@ -165,7 +159,6 @@ contains
 
   !> Lines required along a direction.
   pure function lines_along(deck, direction) result(lines)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -179,7 +172,6 @@ contains
 
   !> True if the edge of a rectangular window is no line of the mesh, which then has no nodes on it.
   pure logical function lacks_window_lines(deck) result(lacks)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     lacks = misses(deck, window_lines(deck%supports, 1), 1) .or. misses(deck, window_lines(deck%supports, 2), 2)
@@ -187,7 +179,6 @@ contains
 
   !> True if the mesh has no line at a coordinate.
   pure logical function misses(deck, lines, direction)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The coordinates
     real(wp), intent(in) :: lines(:)

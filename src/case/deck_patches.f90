@@ -23,9 +23,7 @@ contains
 
   !> Loaded patch: not larger than the plate, and not too small.
   subroutine check_patch(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: shorter
 
@@ -49,9 +47,7 @@ contains
 
   !> Core of equal elements: in the plate, and of elements that are not too small.
   subroutine check_core(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     associate (s => deck%settings, mesh => deck%mesh)
@@ -70,9 +66,7 @@ contains
   !> Elements for the loaded patch, the core and the plate around them. Without a core the number that is needed depends
   !> on that of the deck.
   subroutine check_elements(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: message
     integer :: direction
@@ -94,7 +88,6 @@ contains
 
   !> Whether a rectangle around the struck point reaches or crosses the border, so that no elements fit on that side.
   pure function meets_border(deck, extents) result(meets)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Extents of the rectangle along x and y
     real(wp), intent(in) :: extents(2)

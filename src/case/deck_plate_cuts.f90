@@ -49,7 +49,6 @@ contains
 
   !> The part of the other run's plate that is modelled.
   pure function cut_of(deck) result(cut)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(plate_cut_t) :: cut
 

@@ -31,7 +31,6 @@ contains
   subroutine check_process_zones(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: warning
     integer :: i
@@ -53,7 +52,6 @@ contains
   subroutine set_flaws(deck, problems)
     !> The deck, filled and checked; its interfaces receive that strength
     type(deck_t), intent(inout) :: deck
-    !> Receives the remarks
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -77,11 +75,9 @@ contains
 
   !> Reports where transverse shear cracks of the plies have no effect.
   subroutine remark_shear_cracks(deck, delamination, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The interface
     type(delamination_t), intent(in) :: delamination
-    !> Receives the remarks
     type(problems_t), intent(inout) :: problems
     type(ply_t), allocatable :: plies(:)
     real(wp) :: least
@@ -103,7 +99,6 @@ contains
 
   !> Data of the process zone of an interface.
   pure function process_zone(deck, delamination) result(zone)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The interface
     type(delamination_t), intent(in) :: delamination

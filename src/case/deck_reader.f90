@@ -74,7 +74,6 @@ contains
     character(len=*), intent(in) :: path
     !> The deck, valid if there are no errors among the problems
     type(deck_t), intent(out) :: deck
-    !> All faults and remarks
     type(problems_t), intent(out) :: problems
     type(error_t), allocatable :: error
     character(len=:), allocatable :: content
@@ -98,7 +97,6 @@ contains
     character(len=*), intent(in) :: source
     !> The deck, valid if there are no errors among the problems
     type(deck_t), intent(out) :: deck
-    !> All faults and remarks
     type(problems_t), intent(out) :: problems
     type(vocabulary_t) :: vocabulary
     type(scan_t) :: scan
@@ -146,7 +144,6 @@ contains
 
   !> Finds the groups of the deck that define physics or a kind of analysis.
   subroutine note_groups(deck)
-    !> Receives it
     type(deck_t), intent(inout) :: deck
 
     deck%has_impactor = deck%settings%has_group(impactor_group)
@@ -164,9 +161,7 @@ contains
 
   !> Case, plate, mesh, materials, plies and interfaces.
   subroutine fill_model(deck, problems)
-    !> Receives them
     type(deck_t), intent(inout) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
@@ -215,7 +210,6 @@ contains
   !> Impactor, indentation, time, pressure and load steps of the deck; values by `accuracy` are chosen before others
   !> that depend on them.
   subroutine fill_loads(deck, problems)
-    !> Receives them
     type(deck_t), intent(inout) :: deck
     !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
@@ -259,7 +253,6 @@ contains
 
   !> Parameters of steps and output.
   subroutine fill_steps(deck)
-    !> Receives it
     type(deck_t), intent(inout) :: deck
 
     call fill_equilibrium(deck%settings, deck%stepping%equilibrium)
@@ -271,7 +264,6 @@ contains
 
   !> Checks of each group.
   subroutine check_groups(deck, problems)
-    !> The deck, filled
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems

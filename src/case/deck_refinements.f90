@@ -16,7 +16,6 @@ contains
   !> Halves elements and steps `refine` times; under error control the permitted error is divided by eight instead of
   !> halving the step. The results have a name of their own.
   subroutine refine(deck)
-    !> The deck, filled
     type(deck_t), intent(inout) :: deck
     integer :: parts
 
@@ -41,7 +40,6 @@ contains
 
   !> Clause on the steps.
   function steps_of(deck) result(clause)
-    !> The deck, refined
     type(deck_t), intent(in) :: deck
     !> Such as , steps of 2e-6
     character(len=:), allocatable :: clause

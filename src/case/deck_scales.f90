@@ -35,7 +35,6 @@ contains
   subroutine check_scales(deck, problems)
     !> The deck, checked; receives the expected results
     type(deck_t), intent(inout) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     type(setup_scales_t) :: scales
     real(wp) :: step
@@ -61,11 +60,9 @@ contains
 
   !> Warns of a damping too short for the first bending mode.
   subroutine check_settling(deck, period, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Period of this mode; 0: not known
     real(wp), intent(in) :: period
-    !> A warning is added
     type(problems_t), intent(inout) :: problems
 
     associate (duration => deck%stepping%central%settle)
@@ -77,9 +74,7 @@ contains
 
   !> Warns of a step, a mesh and a patch that do not resolve the impact.
   subroutine check_resolution(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
 
     associate (o => deck%expected)
@@ -105,9 +100,7 @@ contains
   !> Reports a requested accuracy that mesh and step do not reach, or that cannot be verified because the contact is too
   !> long for preliminary elastic impacts with half the step.
   subroutine check_accuracy(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%accuracy > 0) return
@@ -126,7 +119,6 @@ contains
   !> Mean edge of the elements within a distance of the struck point on both sides, along the direction where it is
   !> longer.
   pure real(wp) function edge_near(deck, distance) result(edge)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The distance
     real(wp), intent(in) :: distance

@@ -26,7 +26,6 @@ contains
   subroutine check_correction(deck, problems)
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     type(ply_t), allocatable :: plies(:)
     integer :: i

@@ -26,7 +26,6 @@ contains
   subroutine check_softening_steps(deck, problems)
     !> The deck, checked, with its scales
     type(deck_t), intent(in) :: deck
-    !> The remark is added
     type(problems_t), intent(inout) :: problems
 
     if (problems%errors() > 0 .or. .not. is_pressed(deck)) return
@@ -37,7 +36,6 @@ contains
 
   !> Sentence on an alternative to a load step without equilibrium.
   function slow_motion_advice(deck) result(clause)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Follows a sentence that ends with a full stop; empty if there is no alternative
     character(len=:), allocatable :: clause
@@ -56,7 +54,6 @@ contains
 
   !> True: load steps of an impactor's travel, on plies whose density is known.
   pure logical function is_pressed(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     is_pressed = deck%presses_impactor() .and. deck%impactor%travel > 0
@@ -64,7 +61,6 @@ contains
 
   !> The keys to write.
   function slow_motion(deck) result(clause)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Continues a sentence
     character(len=:), allocatable :: clause

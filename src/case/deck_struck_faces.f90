@@ -19,7 +19,6 @@ contains
   function struck_face_of(deck) result(face)
     !> The deck, with its laminate
     type(deck_t), intent(in) :: deck
-    !> The face
     type(struck_face_t) :: face
     integer :: ply
 
@@ -52,9 +51,7 @@ contains
 
   !> Reports constants that the face of the laminate needs.
   subroutine check_struck_face(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. (deck%has_impactor .and. allocated(deck%laminate%material) .and. takes_laminate(deck%settings))) return

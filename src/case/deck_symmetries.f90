@@ -34,9 +34,7 @@ contains
 
   !> Refuses a symmetry that the deck does not have.
   subroutine check_symmetry(deck, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: name, part
 
@@ -67,11 +65,9 @@ contains
 
   !> Refuses starters beside the lines of symmetry.
   subroutine check_starters(deck, name, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Name of the symmetry, in quotes
     character(len=*), intent(in) :: name
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -117,7 +113,6 @@ contains
 
   !> Sentence on the smallest part of the plate that need be modelled; empty if the deck already models only this part.
   function symmetry_sentence(deck) result(sentence)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The sentence
     character(len=:), allocatable :: sentence
@@ -132,7 +127,6 @@ contains
 
   !> The smallest part of the plate that need be modelled; that of the deck if there is none smaller.
   integer function smallest_part(deck) result(part)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     integer, parameter :: parts(4) = [symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point]
     integer :: i
@@ -147,7 +141,6 @@ contains
   !> Sets the symmetry that is enforced on a full plate during failure; without failure the solution is symmetric in any
   !> case. A state from another run need not be symmetric.
   subroutine note_symmetry(deck)
-    !> The deck, checked
     type(deck_t), intent(inout) :: deck
 
     if (deck%plate%symmetry /= symmetry_none .or. deck%initial%is_inherited) return
@@ -156,7 +149,6 @@ contains
 
   !> True if a part of the plate suffices.
   logical function suits(deck, symmetry)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The part
     integer, intent(in) :: symmetry
@@ -181,7 +173,6 @@ contains
 
   !> True if a front releases ties of some interface.
   pure logical function any_front(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
 
     any_front = any(deck%delaminations%law == law_front)
@@ -189,7 +180,6 @@ contains
 
   !> True if the starter of some interface is a strip.
   pure logical function any_strip(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
     integer :: i
 
@@ -199,7 +189,6 @@ contains
 
   !> True if each clamp has its images in the rig; windows lie at the centre.
   pure logical function supports_are_symmetric(deck, symmetry) result(alike)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The part
     integer, intent(in) :: symmetry
@@ -235,7 +224,6 @@ contains
 
   !> Subject of a message on coupling: the laminate, or parts of it.
   pure function coupled_part(deck) result(words)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Such as `the laminate`
     character(len=:), allocatable :: words
@@ -249,7 +237,6 @@ contains
   !> True: the laminate is valid and not symmetric about the axes of the plate, or a part of it is not: a layer between
   !> interfaces, or with damage each ply.
   pure logical function is_coupled(deck)
-    !> The deck
     type(deck_t), intent(in) :: deck
     type(ply_t), allocatable :: plies(:)
     integer, allocatable :: last(:)

@@ -50,7 +50,6 @@ contains
   subroutine check_units(deck, problems)
     !> The deck, checked, with its expected results
     type(deck_t), intent(in) :: deck
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     type(magnitude_t), allocatable :: list(:)
     character(len=:), allocatable :: fits
@@ -96,9 +95,7 @@ contains
 
   !> Adds a warning.
   subroutine report_unit(deck, problems, item, system, finding, fits)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> Receives the warning
     type(problems_t), intent(inout) :: problems
     !> The value
     type(magnitude_t), intent(in) :: item
@@ -117,7 +114,6 @@ contains
   !> The system of the deck, or otherwise the one with the fewest unusual kinds of quantities; 0: none fits, the deck
   !> has units of its own.
   pure integer function probable_system(deck, list) result(system)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Its values
     type(magnitude_t), intent(in) :: list(:)
@@ -154,11 +150,9 @@ contains
 
   !> Checks the end of the run against the expected events.
   subroutine check_times(deck, system, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the system
     integer, intent(in) :: system
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: longest, ratio
     integer :: i
@@ -186,11 +180,9 @@ contains
 
   !> Checks lengths that do not fit on the plate, which would do so in millimetres.
   subroutine check_lengths(deck, system, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the system
     integer, intent(in) :: system
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: values(:)
     character(len=:), allocatable :: group, key
@@ -214,11 +206,9 @@ contains
 
   !> Checks the mass of a drop weight against its speed, or the energy against the thickness of the plate.
   subroutine check_mass(deck, system, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the system
     integer, intent(in) :: system
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: base(3), speed, energy
     character(len=:), allocatable :: finding
@@ -243,11 +233,9 @@ contains
 
   !> Checks mass and contact stiffness of the ball against its radius.
   subroutine check_ball(deck, system, problems)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Index of the system
     integer, intent(in) :: system
-    !> Warnings are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: base(3), ball, ratio
 

@@ -78,7 +78,6 @@ contains
 
   !> A free plate of two by two of the smallest elements, layered wherever an interface may delaminate.
   pure function small_setup(deck) result(setup)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The plate
     type(setup_t) :: setup
@@ -104,7 +103,6 @@ contains
 
   !> Shortest side of elements along a direction.
   pure real(wp) function shortest_edge(deck, direction) result(edge)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction

@@ -48,7 +48,6 @@ contains
 
   !> The scales of the setup and expected results.
   function scale_lines(deck) result(lines)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> One line each
     type(line_t), allocatable :: lines(:)
@@ -121,7 +120,6 @@ contains
   !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a
   !> line.
   function strength_lines(deck) result(lines)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     !> The lines; none unless the deck requests these strengths
     type(line_t), allocatable :: lines(:)
@@ -168,9 +166,7 @@ contains
   !> Fracture energy of fibres in tension of each material, in thick blocks of plies and in thin ones, with the energy
   !> measured in such blocks; none without units or without softening plies.
   function toughness_lines(deck) result(lines)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
-    !> The lines
     type(line_t), allocatable :: lines(:)
     type(ply_t), allocatable :: plies(:)
     real(wp), allocatable :: blocks(:)
@@ -222,7 +218,6 @@ contains
 
   !> A value to three digits, in the unit in which it is printed.
   pure function read_as(deck, value, dimension) result(digits)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The value, in its units
     real(wp), intent(in) :: value
@@ -239,7 +234,6 @@ contains
 
   !> Unit of lengths after a blank; empty if the deck does not name its units.
   pure function length_unit(deck) result(unit)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> Such as ' mm'
     character(len=:), allocatable :: unit
@@ -250,7 +244,6 @@ contains
 
   !> That unit in the deck's own.
   pure real(wp) function length_unit_size(deck) result(its_size)
-    !> The deck
     type(deck_t), intent(in) :: deck
     real(wp) :: base(3)
     integer :: system
@@ -264,7 +257,6 @@ contains
 
   !> A length to three digits with its unit.
   pure function length_text(deck, value) result(words)
-    !> The deck
     type(deck_t), intent(in) :: deck
     !> The length, in its units
     real(wp), intent(in) :: value
@@ -276,9 +268,7 @@ contains
 
   !> Unit of a value, or its dimension where the deck does not name its units.
   pure function unit_of(deck, dimension) result(unit)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The dimension
     type(dimension_t), intent(in) :: dimension
     !> Such as mm, or length
     character(len=:), allocatable :: unit

@@ -34,7 +34,6 @@ contains
   subroutine check_narrow_cells(deck, problems)
     !> The deck, checked, with its step
     type(deck_t), intent(in) :: deck
-    !> A warning is added
     type(problems_t), intent(inout) :: problems
     type(deck_t) :: free
     type(row_t) :: row
@@ -92,9 +91,7 @@ contains
 
   !> Extent of a row of cells.
   pure function extent_text(deck, row) result(words)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The row
     type(row_t), intent(in) :: row
     !> Such as 0.5 mm along x, from 2 mm to 2.5 mm
     character(len=:), allocatable :: words
@@ -105,9 +102,7 @@ contains
 
   !> The row of the shortest cells; of equal ones that closest to the struck point.
   pure function shortest_row(deck) result(row)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The row
     type(row_t) :: row
     real(wp), allocatable :: edges(:), lengths(:), distances(:)
     real(wp) :: shortest
@@ -127,9 +122,7 @@ contains
 
   !> Group and key that require a line at a side of a row.
   pure subroutine find_line(deck, row, group, key, place)
-    !> The deck
     type(deck_t), intent(in) :: deck
-    !> The row
     type(row_t), intent(in) :: row
     !> Group and key; empty: no line is required there
     character(len=:), allocatable, intent(out) :: group, key

@@ -37,7 +37,6 @@ contains
 
   !> Values from the table of published materials, one per line; empty: none.
   pure function adopted_values(settings) result(words)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Lines such as `&material 1 E1 = 130e9 [library t700_m21, source a]`
     character(len=:), allocatable :: words

@@ -67,7 +67,6 @@ contains
     type(value_t), allocatable, intent(inout) :: values(:)
     !> The repeat count
     integer, intent(in) :: repeats
-    !> The value
     type(value_t), intent(in) :: value
     type(value_t), allocatable :: longer(:)
     integer :: i, old
@@ -128,7 +127,6 @@ contains
 
   !> Values as shown in a message, with a blank in front.
   pure function shown_values(values) result(short)
-    !> The values
     type(value_t), intent(in) :: values(:)
     !> Separated by commas, truncated if long
     character(len=:), allocatable :: short
@@ -139,7 +137,6 @@ contains
 
   !> Values as written in a deck.
   pure function written_values(values) result(words)
-    !> The values
     type(value_t), intent(in) :: values(:)
     !> Separated by commas
     character(len=:), allocatable :: words

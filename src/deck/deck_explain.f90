@@ -117,7 +117,6 @@ contains
     type(vocabulary_t), intent(in) :: vocabulary
     !> Name of the group
     character(len=*), intent(in) :: name
-    !> The error
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: nearest
     type(line_t), allocatable :: keys(:)
@@ -143,7 +142,6 @@ contains
 
   !> Two lines on a key.
   subroutine explain_key(key, lines)
-    !> The key
     type(key_entry_t), intent(in) :: key
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -157,7 +155,6 @@ contains
 
   !> Whether a group is required and repeatable, in words.
   pure function presence_in_words(group) result(words)
-    !> The group
     type(group_entry_t), intent(in) :: group
     !> A few words
     character(len=:), allocatable :: words
@@ -176,7 +173,6 @@ contains
 
   !> The default of a key.
   pure function default_in_words(key) result(words)
-    !> The key
     type(key_entry_t), intent(in) :: key
     !> A few words
     character(len=:), allocatable :: words
@@ -221,7 +217,6 @@ contains
 
   !> One row of a Markdown table.
   pure function table_row(key) result(row)
-    !> The key
     type(key_entry_t), intent(in) :: key
     !> The row
     character(len=:), allocatable :: row

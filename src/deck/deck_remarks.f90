@@ -12,9 +12,7 @@ contains
 
   !> Adds an error that belongs to a key, or to a group if the key is empty.
   subroutine report(settings, problems, group, key, fault, place)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Receives the error
     type(problems_t), intent(inout) :: problems
     !> Names of group and key
     character(len=*), intent(in) :: group, key
@@ -29,9 +27,7 @@ contains
 
   !> Adds a warning that belongs to a key, or to a group if the key is empty.
   subroutine remark(settings, problems, group, key, message, place)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Receives the warning
     type(problems_t), intent(inout) :: problems
     !> Names of group and key
     character(len=*), intent(in) :: group, key
@@ -45,9 +41,7 @@ contains
 
   !> Adds a warning for each of some keys that is valid but has no effect.
   subroutine remark_idle(settings, problems, group, keys, message, place)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Receives the warnings
     type(problems_t), intent(inout) :: problems
     !> Name of the group
     character(len=*), intent(in) :: group
@@ -71,9 +65,7 @@ contains
 
   !> True: some keys are valid or absent. A check that calls this first does not report errors caused by other errors.
   pure logical function are_clear(settings, problems, group, keys, place)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Faults reported so far
     type(problems_t), intent(in) :: problems
     !> Name of the group
     character(len=*), intent(in) :: group
@@ -99,7 +91,6 @@ contains
 
   !> Line of the deck to be named in a message.
   pure integer function line_of(settings, group, key, place) result(line)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Names of group and key
     character(len=*), intent(in) :: group, key
@@ -115,7 +106,6 @@ contains
 
   !> Beginning of a message.
   pure function head(settings, group, key, place) result(beginning)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Names of group and key
     character(len=*), intent(in) :: group, key

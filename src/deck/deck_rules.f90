@@ -21,11 +21,8 @@ contains
   subroutine resolve_settings(scan, vocabulary, settings, problems)
     !> The scanned deck
     type(scan_t), intent(in) :: scan
-    !> The vocabulary
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Every key in effect
     type(settings_t), intent(out) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     logical :: accepted(size(scan%blocks))
     integer :: i
@@ -51,11 +48,9 @@ contains
     type(scan_t), intent(in) :: scan
     !> Index of the group in it
     integer, intent(in) :: block
-    !> The vocabulary
     type(vocabulary_t), intent(in) :: vocabulary
     !> The group is added to these
     type(settings_t), intent(inout) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     !> True: its keys are used
     logical, intent(out) :: accepted
@@ -92,7 +87,6 @@ contains
     integer, intent(in) :: line
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: nearest
 
@@ -115,7 +109,6 @@ contains
     integer, intent(in) :: place
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: earlier
 
@@ -141,7 +134,6 @@ contains
     type(entry_t), intent(in) :: entry
     !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: nearest
     type(line_t), allocatable :: others(:)
@@ -172,7 +164,6 @@ contains
     integer, intent(in) :: group
     !> The keys are added to these
     type(settings_t), intent(inout) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: block, place
 
@@ -209,7 +200,6 @@ contains
     character(len=*), intent(in) :: group
     !> The keys are added to these
     type(settings_t), intent(inout) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(setting_t) :: setting, blank
     integer :: i, entry
@@ -244,7 +234,6 @@ contains
     type(key_entry_t), intent(in) :: key
     !> Gets the default
     type(setting_t), intent(inout) :: setting
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     allocate (setting%values(merge(1, 0, key%has_literal_default())))
@@ -267,7 +256,6 @@ contains
     type(vocabulary_t), intent(in) :: vocabulary
     !> True: the values can be used
     logical, intent(out) :: valid
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: fault, count_fault, limit
     integer :: i, forgotten

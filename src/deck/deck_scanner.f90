@@ -39,7 +39,6 @@ contains
     character(len=*), intent(in) :: content
     !> Its contents
     type(scan_t), intent(out) :: scan
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(cursor_t) :: cursor
     type(token_t) :: token
@@ -79,9 +78,7 @@ contains
 
   !> Whether this is text with lines of a sensible length.
   subroutine check_characters(deck, problems, readable)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     !> False: scanning it would make no sense
     logical, intent(out) :: readable
@@ -112,7 +109,6 @@ contains
 
   !> True: at this place is the carriage return of a line end as Windows writes it.
   pure logical function is_line_end(deck, at)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Place in it
     integer, intent(in) :: at
@@ -127,7 +123,6 @@ contains
     type(scan_t), intent(inout) :: scan
     !> The word
     type(token_t), intent(in) :: token
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     select case (token%kind)
@@ -158,7 +153,6 @@ contains
     type(scan_t), intent(inout) :: scan
     !> The group's name
     type(token_t), intent(in) :: token
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(block_t) :: block
 
@@ -183,7 +177,6 @@ contains
     type(scan_t), intent(in) :: scan
     !> The consequence, end of a sentence
     character(len=*), intent(in) :: event
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     associate (last => scan%blocks(size(scan%blocks)))
@@ -198,7 +191,6 @@ contains
     type(scan_t), intent(inout) :: scan
     !> The key's name
     type(token_t), intent(in) :: token
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(entry_t) :: entry
     integer :: index_start
@@ -233,7 +225,6 @@ contains
   subroutine finish_entry(scan, problems)
     !> The result so far
     type(scan_t), intent(inout) :: scan
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (scan%collecting) then
@@ -252,7 +243,6 @@ contains
     type(scan_t), intent(inout) :: scan
     !> The value
     type(token_t), intent(in) :: token
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: repeats
     type(value_t) :: value
@@ -290,7 +280,6 @@ contains
     type(scan_t), intent(inout) :: scan
     !> The value
     type(token_t), intent(in) :: token
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(entry_t) :: entry
 
@@ -317,7 +306,6 @@ contains
     integer, intent(in) :: line
     !> The error and the values allowed
     character(len=*), intent(in) :: fault
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     !> Keys of the error if not this one alone
     character(len=*), intent(in), optional :: keys

@@ -173,7 +173,6 @@ contains
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> The values
     type(value_t), allocatable, intent(out) :: values(:)
     !> Index among the groups of this name
     integer, intent(in), optional :: place

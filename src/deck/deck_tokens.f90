@@ -36,7 +36,6 @@ contains
 
   !> Takes the next word inside a group.
   pure subroutine next_token(deck, cursor, token)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Moved behind the word
     type(cursor_t), intent(inout) :: cursor
@@ -71,7 +70,6 @@ contains
 
   !> Skips blanks, ends of lines and comments.
   pure subroutine skip_blanks(deck, cursor)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Moved to the next significant character
     type(cursor_t), intent(inout) :: cursor
@@ -93,7 +91,6 @@ contains
 
   !> Between groups, skips everything up to the next group or the end.
   pure subroutine skip_to_group(deck, cursor, unknown_word, unknown_line)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Moved to the & of the next group
     type(cursor_t), intent(inout) :: cursor
@@ -123,7 +120,6 @@ contains
 
   !> True: at this position is an & followed by a name.
   pure logical function starts_group(deck, at)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Place in it
     integer, intent(in) :: at
@@ -134,7 +130,6 @@ contains
 
   !> True: a slash that is not followed by a word, so that it is not part of a path or fraction.
   pure logical function ends_group(deck, at)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Place in it
     integer, intent(in) :: at
@@ -153,7 +148,6 @@ contains
 
   !> Takes &name.
   pure subroutine take_group(deck, cursor, token)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> At the &; moved behind the name
     type(cursor_t), intent(inout) :: cursor
@@ -176,7 +170,6 @@ contains
 
   !> Takes a text between quotes; a doubled quote represents one.
   pure subroutine take_quoted(deck, cursor, token)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> At the opening quote; moved behind the closing one or to the end of the line
     type(cursor_t), intent(inout) :: cursor
@@ -210,7 +203,6 @@ contains
 
   !> Takes a word: a key if = follows, else a value; a repeat count in front of a quote joins the quoted text.
   pure subroutine take_word(deck, cursor, token)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> At its first character; moved behind the word, or behind the = of a key
     type(cursor_t), intent(inout) :: cursor
@@ -242,7 +234,6 @@ contains
 
   !> Last character of the word that begins here; text in parentheses belongs to it.
   pure integer function end_of_word(deck, start) result(finish)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> First character of the word
     integer, intent(in) :: start

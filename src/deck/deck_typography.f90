@@ -38,9 +38,7 @@ contains
 
   !> The deck with plain characters. Each kind is reported once a line.
   subroutine take_plain(deck, problems, clean)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     !> The text
     character(len=:), allocatable, intent(out) :: clean
@@ -71,7 +69,6 @@ contains
 
   !> Index of the typographic character at a position; 0: there is none.
   pure integer function kind_at(deck, at) result(kind)
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Place in it
     integer, intent(in) :: at

@@ -217,7 +217,6 @@ contains
   pure function literal_value(default) result(value)
     !> A default as the table has it
     character(len=*), intent(in) :: default
-    !> The value
     type(value_t) :: value
 
     value%quoted = default(1:1) == ''''

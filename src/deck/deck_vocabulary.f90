@@ -84,7 +84,6 @@ contains
   pure subroutine set_key(column, key)
     !> Columns of the row
     type(line_t), intent(in) :: column(8)
-    !> The key
     type(key_entry_t), intent(out) :: key
 
     key%group = column(1)%text

@@ -49,7 +49,6 @@ contains
     real(wp), intent(in) :: modulus
     !> Thickness of the laminate on the thinner side of the interface
     real(wp), intent(in) :: thickness
-    !> The law
     type(cohesive_law_t) :: law
 
     law%toughness_opening = toughness(1)
@@ -78,7 +77,6 @@ contains
 
   !> Objection to the parameters of a law; empty: none.
   pure function cohesive_objection(law) result(objection)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> A clause of a message; empty: no objection
     character(len=:), allocatable :: objection
@@ -102,7 +100,6 @@ contains
   !> reduced stiffness of opening reduces the strength of opening by the root of its factor: the ratio of jumps at
   !> failure and at the onset remains that of all mixtures of modes.
   pure function weakened(law, part, opening) result(weak)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Factor of the strengths, and factor of the stiffness of opening; above 0 and up to 1
     real(wp), intent(in) :: part, opening
@@ -126,7 +123,6 @@ contains
 
   !> Stiffnesses of the undamaged interface against two shears and opening.
   pure function stiffness_of(law) result(stiffness)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Pressure per jump
     real(wp) :: stiffness(3)

@@ -43,7 +43,6 @@ contains
 
   !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine cohesive_traction(law, jumps, old, traction, new)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -63,7 +62,6 @@ contains
 
   !> Position of jumps on the curve: x = sqrt(N Y/G_c), theory (D2).
   pure function separation_of(law, jumps) result(separation)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -102,7 +100,6 @@ contains
 
   !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, not decreasing, theory (D2).
   pure real(wp) function grown_damage(law, separation, old) result(damage)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
@@ -143,7 +140,6 @@ contains
 
   !> Energy per area of these jumps in an undamaged interface, Y.
   pure real(wp) function undamaged_energy(law, jumps) result(energy)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -153,7 +149,6 @@ contains
 
   !> Recoverable energy per area, (1 - d) Y.
   pure real(wp) function stored_energy(law, jumps, point) result(energy)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -166,7 +161,6 @@ contains
 
   !> Fraction of shear in the energy of the jumps, B; 0 without jumps.
   pure real(wp) function mode_mixture(law, jumps) result(share)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -178,7 +172,6 @@ contains
 
   !> Dissipated fraction of the toughness at a damage: phi(d) = d/(N (1 - d) + d), from 0 to 1, theory (D3).
   pure real(wp) function dissipated_fraction(law, damage) result(share)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> d, from 0 to 1
     real(wp), intent(in) :: damage
@@ -188,7 +181,6 @@ contains
 
   !> Damage for a dissipated fraction of the toughness: d = 1 - (1 - phi)/(1 + (N - 1) phi), theory (D14).
   pure real(wp) function damage_at_fraction(law, share) result(damage)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> phi, from 0 to 1
     real(wp), intent(in) :: share
@@ -198,7 +190,6 @@ contains
 
   !> phi(d) - phi(d_old), without cancellation for small increments of damage.
   pure real(wp) function fraction_growth(law, damage_from, damage_to) result(growth)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Damage before and after, from 0 to 1
     real(wp), intent(in) :: damage_from, damage_to

@@ -22,19 +22,12 @@ module cohesive_surfaces
     !> Coulomb's coefficient of friction; 0: none
     real(wp) :: friction = 0
   contains
-    !> Traction of trial jumps.
     procedure :: traction
-    !> Energy per area stored by the jumps.
     procedure :: stored
-    !> Work per area on the cohesive law in a step.
     procedure :: work
-    !> Energy per area that closed surfaces without contact lose by growing damage.
     procedure :: closing_loss
-    !> Derivative of the traction.
     procedure :: slopes
-    !> Diagonal for a factored operator.
     procedure :: diagonal
-    !> Friction limit.
     procedure :: friction_limit
   end type cohesive_surfaces_t
 
@@ -42,7 +35,6 @@ contains
 
   !> Traction of trial jumps, and the history variables of the trial state.
   pure subroutine traction(self, jumps, old, force, new)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -63,7 +55,6 @@ contains
 
   !> Energy per area stored by the jumps.
   pure real(wp) function stored(self, jumps, point)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -79,7 +70,6 @@ contains
   !> energy dissipated, and loss in closing. It starts from the energy of the law at the first jumps: where flaws or a
   !> mapping have weakened the point, damage at constant jumps requires no work.
   pure real(wp) function work(self, from, to, old, damage)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening at the start and at the end
     real(wp), intent(in) :: from(3), to(3)
@@ -106,7 +96,6 @@ contains
 
   !> Energy per area that closed surfaces without contact lose by growing damage, by the trapezoidal rule.
   pure real(wp) function closing_loss(self, from, to, growth)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Opening at the start and at the end
     real(wp), intent(in) :: from, to
@@ -119,7 +108,6 @@ contains
 
   !> Derivative of the traction.
   pure function slopes(self, jumps, old)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -135,7 +123,6 @@ contains
 
   !> Diagonal for a factored operator, constant within a class of points.
   pure function diagonal(self, jumps, old)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -155,7 +142,6 @@ contains
   !> Friction limit of an accepted state: coefficient of friction times pressure times damaged fraction of the area (G.
   !> Alfano, E. Sacco, Int. J. Numer. Meth. Eng. 68 (2006) 542-582; theory (D4)).
   pure real(wp) function friction_limit(self, jumps, point) result(limit)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -168,7 +154,6 @@ contains
 
   !> Derivatives of the friction traction.
   pure function sticking(self, jumps, old) result(slopes)
-    !> The surfaces
     type(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -182,7 +167,6 @@ contains
 
   !> Stiffness of closing surfaces: that of the undamaged interface with contact, that of its undamaged part without.
   pure real(wp) function closing_stiffness(self, point) result(stiffness)
-    !> The surfaces
     type(cohesive_surfaces_t), intent(in) :: self
     !> The point with its jumps
     type(cohesive_point_t), intent(in) :: point
@@ -193,7 +177,6 @@ contains
 
   !> True if the surfaces are under contact pressure.
   pure logical function is_in_contact(self, jumps)
-    !> The surfaces
     class(cohesive_surfaces_t), intent(in) :: self
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)

@@ -15,7 +15,6 @@ contains
   !> x**2) and dx/dv = (dY/Y - dG_c/G_c) x/2. Closed surfaces have no normal part. It is unsymmetric for growth in a
   !> mixed mode with G_Ic /= G_IIc.
   pure function traction_slopes(law, jumps, separation, old) result(slopes)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -45,7 +44,6 @@ contains
 
   !> Derivative of growing damage with respect to the jumps over their size, which avoids overflow and underflow.
   pure function damage_slopes(law, separation) result(slopes)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
@@ -59,7 +57,6 @@ contains
 
   !> Derivative of the dissipated energy G_c (phi(d) - phi(d_old)); zero unless damage grows.
   pure function dissipation_slopes(law, jumps, old) result(slopes)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
@@ -84,7 +81,6 @@ contains
   !> Derivative of the toughness with respect to the jumps over their size: eta (G_II - G_I) B**eta (dS/S - dY/Y) with
   !> the energy of shear S; 0 without shear.
   pure function toughness_slopes(law, separation) result(slopes)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Position of the jumps on the curve
     type(separation_t), intent(in) :: separation
@@ -105,7 +101,6 @@ contains
   !> growing damage 0 in the direction of the jump and (1 - d) K normal to it; 0 after failure. It is not negative and
   !> does not depend on closing: contact is added separately.
   pure function operator_stiffness(law, jumps, old) result(diagonal)
-    !> The law
     type(cohesive_law_t), intent(in) :: law
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)

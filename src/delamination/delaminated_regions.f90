@@ -20,11 +20,8 @@ module delaminated_regions
     procedure :: in_zone
     !> True for a delaminated cell; false also outside the zone.
     procedure :: is_delaminated
-    !> True for a released node.
     procedure :: released
-    !> Delaminates a cell.
     procedure :: release
-    !> Saves or loads.
     procedure :: visit
   end type delaminated_region_t
 
@@ -33,7 +30,6 @@ contains
   !> The region of a zone with the starter as its only delamination. The starter consists of the cells whose centre is
   !> in its square or circle; a starter smaller than a cell consists of the cells that touch its centre.
   pure function create_region(mesh, zone, starter, strip, round, at) result(self)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Index of the zone
     integer, intent(in) :: zone
@@ -45,7 +41,6 @@ contains
     logical, intent(in), optional :: round
     !> Centre of the starter, from the struck point; left out: there
     real(wp), intent(in), optional :: at(2)
-    !> The region
     type(delaminated_region_t) :: self
     real(wp) :: centre(2)
     integer :: columns(2), rows(2)
@@ -71,7 +66,6 @@ contains
   pure subroutine keep_circle(self, mesh, centre, diameter)
     !> The region, with the square
     type(delaminated_region_t), intent(inout) :: self
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Centre, and diameter of the circle
     real(wp), intent(in) :: centre(2), diameter
@@ -102,7 +96,6 @@ contains
 
   !> Delaminates the cells of a zone with the centre in a strip across it.
   pure subroutine delaminate_strip(self, x_edges, strip)
-    !> The region
     type(delaminated_region_t), intent(inout) :: self
     !> Edges of all columns of cells, the struck point at 0
     real(wp), intent(in) :: x_edges(:)
@@ -157,7 +150,6 @@ contains
 
   !> True for a cell of the zone.
   pure logical function in_zone(self, column, row)
-    !> The region
     class(delaminated_region_t), intent(in) :: self
     !> Column and row of the cell
     integer, intent(in) :: column, row
@@ -167,7 +159,6 @@ contains
 
   !> True for a delaminated cell.
   pure logical function is_delaminated(self, column, row)
-    !> The region
     class(delaminated_region_t), intent(in) :: self
     !> Column and row of the cell
     integer, intent(in) :: column, row
@@ -179,7 +170,6 @@ contains
   !> True if all cells around a node are delaminated, those of the model only. Nodes on the border of the zone are not
   !> released, as both layers share them.
   pure logical function released(self, i, j)
-    !> The region
     class(delaminated_region_t), intent(in) :: self
     !> Lines of nodes, 0 to twice the cells along x and y
     integer, intent(in) :: i, j
@@ -198,7 +188,6 @@ contains
 
   !> Delaminates a cell; no effect outside the zone.
   pure subroutine release(self, cell)
-    !> The region
     class(delaminated_region_t), intent(inout) :: self
     !> Column and row of the cell
     integer, intent(in) :: cell(2)
@@ -208,9 +197,7 @@ contains
 
   !> Saves or loads the region with the position of its zone.
   subroutine visit(self, archive, name)
-    !> The region
     class(delaminated_region_t), intent(inout) :: self
-    !> The archive
     class(archive_t), intent(inout) :: archive
     !> Name of the region within the archive
     character(len=*), intent(in) :: name

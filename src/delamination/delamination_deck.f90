@@ -188,7 +188,6 @@ contains
 
   !> True if a cohesive law is the default: no key of a front is given, and the strengths are known.
   pure logical function suits_cohesive(settings, place, of_plies) result(suits)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the group
     integer, intent(in) :: place
@@ -202,7 +201,6 @@ contains
 
   !> True if the deck gives a key that only a front has.
   pure logical function needs_front(settings, place)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the group
     integer, intent(in) :: place
@@ -234,7 +232,6 @@ contains
 
   !> Checks each interface, and their order.
   subroutine check_delaminations(settings, delaminations, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
@@ -267,13 +264,11 @@ contains
 
   !> Checks that a strip has ascending ends, and that no square starter is given too.
   subroutine check_strip(settings, delamination, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. settings%is_given(group, key_strip, place)) return
@@ -287,13 +282,11 @@ contains
 
   !> Checks that toughnesses are consistent, and suffice for the energy release rate.
   subroutine check_toughness(settings, delamination, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. are_clear(settings, problems, group, 'G_c G_Ic G_IIc', place)) return
@@ -307,13 +300,11 @@ contains
 
   !> Checks the strengths of a cohesive law, whose defaults may differ between interfaces; warns of a front by default.
   subroutine check_strengths(settings, delamination, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (delamination%law /= law_cohesive) then
@@ -342,13 +333,11 @@ contains
 
   !> Checks the stiffness of the law.
   subroutine check_law(settings, delamination, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: objection
 

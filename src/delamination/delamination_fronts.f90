@@ -32,9 +32,7 @@ contains
   pure function find_front(region, mesh) result(segments)
     !> The delaminated cells
     type(delaminated_region_t), intent(in) :: region
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> The segments
     type(front_segment_t), allocatable :: segments(:)
     integer :: pass, found, column, row, side, inside(2)
 
@@ -59,13 +57,11 @@ contains
   pure function segment_between(region, mesh, inside, step) result(segment)
     !> The delaminated cells
     type(delaminated_region_t), intent(in) :: region
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Column and row of the delaminated cell
     integer, intent(in) :: inside(2)
     !> Step to the intact cell
     integer, intent(in) :: step(2)
-    !> The segment
     type(front_segment_t) :: segment
     integer :: place(2), along(2), line
 
@@ -87,7 +83,6 @@ contains
 
   !> Length of a cell along x (1) or y (2).
   pure real(wp) function cell_length(mesh, cell, direction) result(length)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Column and row
     integer, intent(in) :: cell(2)

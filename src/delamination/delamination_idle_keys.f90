@@ -20,13 +20,11 @@ contains
 
   !> Remarks on keys of an interface without effect.
   subroutine remark_idle_keys(settings, delamination, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
 
     associate (d => delamination)

@@ -61,11 +61,8 @@ module front_smoothing
     !> Directions in which the front continues beyond a line of symmetry through the origin
     logical :: mirrored(2) = .false.
   contains
-    !> Means along the line.
     procedure :: means
-    !> Weight of a segment in the mean of another.
     procedure :: weight
-    !> Nodes near the front.
     procedure :: nodes_near
   end type smooth_front_t
 
@@ -83,11 +80,8 @@ contains
 
   !> The smooth line of a front.
   function create_smooth_front(segments, mesh) result(self)
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> The line
     type(smooth_front_t) :: self
     type(edges_t) :: edges
     real(wp) :: reach
@@ -117,7 +111,6 @@ contains
   !> Point and normal of the line next to an edge: a parabola fitted to the midpoints of the surrounding edges, with
   !> weights by their projections that decrease to zero within a distance.
   subroutine fit_line(edges, s, reach, place, normal)
-    !> The edges
     type(edges_t), intent(in) :: edges
     !> The edge
     integer, intent(in) :: s
@@ -152,7 +145,6 @@ contains
 
   !> Edges within a distance of an edge, with the images of a symmetric plate.
   pure function neighbours_of(edges, s, reach) result(near)
-    !> The edges
     type(edges_t), intent(in) :: edges
     !> The edge
     integer, intent(in) :: s
@@ -200,7 +192,6 @@ contains
 
   !> Weighted sums along the line about a segment, with weights that decrease to zero within a distance.
   pure function means(self, s, reach, figures, odd) result(smooth)
-    !> The front
     class(smooth_front_t), intent(in) :: self
     !> The segment
     integer, intent(in) :: s
@@ -228,7 +219,6 @@ contains
   !> Weight of a segment, or of its image, in the mean of another: it decreases with the distance and with the cosine
   !> between the normals.
   pure real(wp) function weight(self, s, t, image, reach)
-    !> The front
     class(smooth_front_t), intent(in) :: self
     !> The segment of the mean, and the other one
     integer, intent(in) :: s, t
@@ -245,11 +235,9 @@ contains
 
   !> Nodes within a few cells of the front.
   pure function nodes_near(self, segments, mesh) result(nodes)
-    !> The front
     class(smooth_front_t), intent(in) :: self
     !> Its segments
     type(front_segment_t), intent(in) :: segments(:)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The nodes
     type(near_front_t) :: nodes

@@ -36,7 +36,6 @@ contains
 
   !> Plies above the interfaces of a group; without any, one invalid entry, which the checks refuse.
   pure function plies_above(settings, place, between) result(below)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the group
     integer, intent(in) :: place
@@ -52,7 +51,6 @@ contains
 
   !> True if the interfaces are selected by a word.
   pure logical function names_all(settings, place)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the group
     integer, intent(in) :: place
@@ -63,13 +61,11 @@ contains
 
   !> Reports the interfaces that `all` leaves out, between plies of one angle.
   subroutine remark_left_out(settings, plies, between, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Number of plies
     integer, intent(in) :: plies
     !> Plies below which the angle changes
     integer, intent(in) :: between(:)
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: left_out
     integer :: place, ply

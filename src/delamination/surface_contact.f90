@@ -62,7 +62,6 @@ contains
     real(wp), intent(in) :: thickness
     !> True for steps in time, false for load steps
     logical, intent(in) :: moving
-    !> The law
     type(contact_law_t) :: law
 
     law%method = method
@@ -79,7 +78,6 @@ contains
   !> suffice, in load steps and in steps in time. A new step starts with the slope of the tail equal to the contact
   !> stiffness.
   elemental real(wp) function updated_decay(law, gaps, pressures, largest_pressure, converged) result(decay)
-    !> The law
     type(contact_law_t), intent(in) :: law
     !> Sums over the surfaces of area times pressure times size of the gap, and of area times pressure
     real(wp), intent(in) :: gaps, pressures
@@ -99,7 +97,6 @@ contains
   !> Violation of complementarity: the smaller of the pressure and the pressure that would close the gap by compression
   !> of the layers.
   elemental real(wp) function contact_residual(law, gap, pressure) result(mismatch)
-    !> The law
     type(contact_law_t), intent(in) :: law
     !> Gap, positive when open
     real(wp), intent(in) :: gap
@@ -111,7 +108,6 @@ contains
 
   !> Pressure and its derivative with respect to the gap. The pressure is not negative.
   elemental subroutine contact_pressure(law, decay, gap, multiplier, pressure, slope)
-    !> The law
     type(contact_law_t), intent(in) :: law
     !> Decay beta of the pressure with an open gap, 1/length (Eq. 12); the augmented Lagrangian has none
     real(wp), intent(in) :: decay
@@ -138,7 +134,6 @@ contains
   !> Eq. 12, with an exponential tail where the gap is open. The slope at the closed gap is beta times multiplier
   !> on both sides, with the exponent 1 the larger of it and of k.
   elemental subroutine continuous_pressure(law, decay, gap, multiplier, pressure, slope)
-    !> The law
     type(contact_law_t), intent(in) :: law
     !> Decay beta
     real(wp), intent(in) :: decay
@@ -171,7 +166,6 @@ contains
 
   !> The next multiplier: the pressure found, or zero where the surfaces are open.
   elemental real(wp) function updated_multiplier(law, gap, pressure) result(updated)
-    !> The law
     type(contact_law_t), intent(in) :: law
     !> Gap
     real(wp), intent(in) :: gap

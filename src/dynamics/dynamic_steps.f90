@@ -65,7 +65,6 @@ contains
   !> keeps the velocity: an acceleration would add energy where contact is stiff. Closed contacts stay closed; tied
   !> jumps keep their values.
   subroutine begin(self, at)
-    !> The problem
     class(dynamic_step_t), intent(inout) :: self
     !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
@@ -93,7 +92,6 @@ contains
 
   !> Predictor of the displacement.
   subroutine predict(self, model, old, new)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> State at the start
@@ -115,7 +113,6 @@ contains
 
   !> Residual of the equation of motion (Eq. 1 with the exact internal force).
   subroutine find_residual(self, at)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
@@ -163,7 +160,6 @@ contains
 
   !> Internal forces from the equation of motion, after a correction that solves it to round-off: saves an element loop.
   subroutine find_internal_from_motion(self, model, old, new, energy)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> State at the start
@@ -191,7 +187,6 @@ contains
 
   !> Residual relative to internal, inertia and contact forces.
   real(wp) function residual_norm(self, at)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
@@ -216,7 +211,6 @@ contains
 
   !> The impactor's force is updated only within an iteration, so an impact needs at least one.
   pure logical function may_stop(self, at)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
@@ -226,7 +220,6 @@ contains
 
   !> Solves for a correction by the tangent, and for the impactor's force.
   subroutine find_correction(self, at, tolerance, error)
-    !> The problem
     class(dynamic_step_t), intent(inout) :: self
     !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at
@@ -255,7 +248,6 @@ contains
 
   !> Finds the impactor's force for a displacement.
   subroutine find_force(self, at)
-    !> The problem
     class(dynamic_step_t), intent(inout) :: self
     !> The iteration, the displacement of its state known
     type(newton_iteration_t), intent(inout) :: at
@@ -272,7 +264,6 @@ contains
 
   !> Velocity and acceleration at the end of the step.
   subroutine complete(self, at)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
@@ -285,7 +276,6 @@ contains
 
   !> Completes an accepted step: impactor, indentation and ledger.
   subroutine finish(self, at)
-    !> The problem
     class(dynamic_step_t), intent(in) :: self
     !> The iteration; its state is completed
     type(newton_iteration_t), intent(inout) :: at

@@ -31,7 +31,6 @@ contains
     integer, intent(in) :: max_changes
     !> True: element tangents are used, as the factored operator reduces the residual too little
     logical, intent(in) :: uses_element_tangents
-    !> The tangent
     type(tangent_product_t), intent(out) :: tangent
     !> Set if the operator is singular
     type(error_t), allocatable, intent(inout) :: error
@@ -65,7 +64,6 @@ contains
 
   !> The tangent's model, operator, factors, and the state at which it is taken.
   subroutine set_state(tangent, at, factors)
-    !> The tangent
     type(tangent_product_t), intent(inout) :: tangent
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
@@ -103,7 +101,6 @@ contains
     type(newton_iteration_t), intent(in) :: at
     !> The impactor's side of the step
     type(impact_coupling_t), intent(in) :: coupling
-    !> The tangent
     type(tangent_product_t), intent(inout) :: tangent
     real(wp), allocatable :: push(:, :)
 

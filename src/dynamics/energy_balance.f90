@@ -37,7 +37,6 @@ contains
   !> Records a step.
   subroutine record_step(model, integrator, old, step, force, energy, new)
     type(model_t), intent(in) :: model
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -113,7 +112,6 @@ contains
   !> Energy that the plate's integrator adds to a linear plate in a step, theory (E2): the Newmark formulas and the
   !> weighted equation of motion combined. Zero for alpha_m = alpha_f = gamma = 1/2, beta = 1/4.
   pure real(wp) function integrator_gain(integrator, step, products, pressure_change) result(gain)
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step
@@ -133,7 +131,6 @@ contains
   !> Products of the step's fields, of the full plate.
   subroutine find_products(model, integrator, old, step, energy, new, products)
     type(model_t), intent(in) :: model
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -143,7 +140,6 @@ contains
     real(wp), intent(in) :: energy
     !> State at the end; receives mass times velocity
     type(state_t), intent(inout) :: new
-    !> The products
     type(products_t), intent(out) :: products
     real(wp) :: sums(13)
 
@@ -192,7 +188,6 @@ contains
   pure subroutine multiply_fields(owned, integrator, step, old, new, sums)
     !> Number of points that this rank owns
     integer, intent(in) :: owned
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> Time step
     real(wp), intent(in) :: step

@@ -27,15 +27,11 @@ module impact_coupling
     !> Force at the start of the step, and alpha_f of the equation of motion
     real(wp) :: start_force = 0, alpha_f = 0
   contains
-    !> Force on the plate in its equation of motion.
     procedure :: load
-    !> True: the load on the plate is the unknown force, so that one solution is sufficient.
     procedure :: forces_agree
     !> Solves for the force, and adds the unit-load solution of the plate times its change.
     procedure :: solve
-    !> Finds the force.
     procedure :: find_force
-    !> Decrease of the load with the deflection of the plate.
     procedure :: slope
   end type impact_coupling_t
 
@@ -48,13 +44,11 @@ contains
   !> Coupling in a step.
   pure function begin_coupling(model, integrator, old, step) result(coupling)
     type(model_t), intent(in) :: model
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old
     !> Time step
     real(wp), intent(in) :: step
-    !> The coupling
     type(impact_coupling_t) :: coupling
 
     call predict(model%setup%impactor, old%impactor, step, coupling%free_displacement, coupling%compliance)
@@ -71,7 +65,6 @@ contains
 
   !> Force on the plate in its equation of motion.
   pure real(wp) function load(self)
-    !> The coupling
     class(impact_coupling_t), intent(in) :: self
 
     load = self%share*self%unknown + self%inherited
@@ -80,7 +73,6 @@ contains
   !> True: the load on the plate is the unknown force, so that one solution is sufficient. The mean force over a step is
   !> the plate's load only for alpha_f = 1/2.
   pure logical function forces_agree(self)
-    !> The coupling
     class(impact_coupling_t), intent(in) :: self
 
     forces_agree = .not. self%mean .or. abs(self%alpha_f - 0.5_wp) <= 0
@@ -91,7 +83,6 @@ contains
   !> includes the slope of the force, and the remaining difference to the indentation law is part of the next residual:
   !> the response of the factored operator would open contacts that have closed since the factorization.
   subroutine solve(self, at, is_factored, error)
-    !> The coupling
     class(impact_coupling_t), intent(inout) :: self
     !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at
@@ -114,9 +105,7 @@ contains
 
   !> Decrease of the load with the deflection of the plate, including the motion of the impactor under that load.
   real(wp) function slope(self, law, indentation, patch_mean)
-    !> The coupling
     class(impact_coupling_t), intent(in) :: self
-    !> Indentation law
     type(indentation_law_t), intent(in) :: law
     !> History variables of the indentation at the start of the step
     type(indentation_t), intent(in) :: indentation
@@ -139,9 +128,7 @@ contains
 
   !> Finds the contact force for a mean deflection of the patch and the compliance of the patch.
   subroutine find_force(self, law, indentation, patch_mean, patch_compliance, iterations, error)
-    !> The coupling
     class(impact_coupling_t), intent(inout) :: self
-    !> Indentation law
     type(indentation_law_t), intent(in) :: law
     !> History variables of the indentation at the start of the step
     type(indentation_t), intent(in) :: indentation

@@ -61,7 +61,6 @@ contains
 
   !> Energy stored and dissipated in a plate at rest.
   pure real(wp) function energy_of(state) result(energy)
-    !> The state
     type(state_t), intent(in) :: state
 
     energy = state%ledger%strain + state%ledger%ply_damage + state%ledger%delamination

@@ -15,11 +15,9 @@ module newmark_integrators
     !> Newmark's parameters
     real(wp) :: beta = 0.25_wp, gamma = 0.5_wp
   contains
-    !> Velocity and acceleration at the end of a step from the displacement there.
     procedure :: complete
     !> Factor of the mass in the operator that maps a residual to a correction of the displacement.
     procedure :: mass_factor
-    !> Factor of the tangent stiffness in that operator.
     procedure :: stiffness_factor
   end type plate_integrator_t
 
@@ -29,7 +27,6 @@ contains
   pure function plate_integrator(time) result(self)
     !> Parameters of the deck
     type(time_t), intent(in) :: time
-    !> Coefficients
     type(plate_integrator_t) :: self
     real(wp) :: rho
 
@@ -47,7 +44,6 @@ contains
 
   !> Velocity and acceleration at the end of a step from the displacement there (Newmark's formulas).
   pure subroutine complete(self, step, old, displacement, velocity, acceleration)
-    !> Coefficients
     class(plate_integrator_t), intent(in) :: self
     !> Time step
     real(wp), intent(in) :: step
@@ -65,7 +61,6 @@ contains
   !> The same with all unknowns in one array, so that the compiler vectorises the loop.
   pure subroutine complete_all(self, step, number, displacement, velocity, acceleration, new_displacement, &
                                new_velocity, new_acceleration)
-    !> Coefficients
     class(plate_integrator_t), intent(in) :: self
     !> Time step
     real(wp), intent(in) :: step
@@ -94,7 +89,6 @@ contains
 
   !> Factor of the mass in the effective operator, 1/time**2.
   elemental real(wp) function mass_factor(self, step) result(factor)
-    !> Coefficients
     class(plate_integrator_t), intent(in) :: self
     !> Time step
     real(wp), intent(in) :: step
@@ -104,7 +98,6 @@ contains
 
   !> Factor of the tangent stiffness in the effective operator.
   elemental real(wp) function stiffness_factor(self) result(factor)
-    !> Coefficients
     class(plate_integrator_t), intent(in) :: self
 
     factor = 1 - self%alpha_f

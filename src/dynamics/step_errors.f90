@@ -31,17 +31,11 @@ module step_errors
     !> Largest force, contact stiffness and deflection of the struck point so far
     real(wp) :: force = 0, stiffness = 0, largest = 0
   contains
-    !> Sets the stored states before first contact.
     procedure :: start
-    !> Error of a trial step.
     procedure :: estimate
-    !> Stores a state before it is replaced.
     procedure :: record
-    !> Discards the states before a sudden change.
     procedure :: reset
-    !> True: no further contact is expected.
     procedure :: impact_is_over
-    !> Saves or loads the stored states.
     procedure :: visit
   end type step_error_t
 
@@ -49,7 +43,6 @@ contains
 
   !> Sets the stored states to the plate at rest and the impactor in free flight before first contact.
   subroutine start(self, model, step)
-    !> The estimate
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> A step: the spacing of the states before the first contact
@@ -77,7 +70,6 @@ contains
   !> generalised-alpha c = 1/12 + 3/8 ((1 - rho)/(1 + rho))**2, for Newmark's method beta/2 - 1/24 and, in the second
   !> difference, its damping (gamma - 1/2)/2; found from the roots of their amplification at small w h.
   pure function error_weights(integrator, times) result(weights)
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> Times of the states
     real(wp), intent(in) :: times(:)
@@ -107,7 +99,6 @@ contains
     !> The estimate; updates the largest force and deflection
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Integrator of the plate
     type(plate_integrator_t), intent(in) :: integrator
     !> Expected response of the run
     type(expected_response_t), intent(in) :: expected
@@ -115,7 +106,6 @@ contains
     type(state_t), intent(in) :: now
     !> State at its end
     type(state_t), intent(in) :: trial
-    !> Its error
     real(wp), intent(out) :: error
     real(wp) :: weights(past + 2), square, force, deflection
 
@@ -139,7 +129,6 @@ contains
   !> Stiffness of the contact at a state.
   pure real(wp) function stiffness_of(model, state) result(stiffness)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: state
 
     stiffness = indentation_stiffness(model%setup%indentation, state%indentation, state%indentation%alpha)
@@ -147,11 +136,9 @@ contains
 
   !> True: the impactor has left the plate and moves away from it, and no other contact is expected.
   pure logical function impact_is_over(self, expected, state) result(over)
-    !> The estimate
     class(step_error_t), intent(in) :: self
     !> Expected response of the run
     type(expected_response_t), intent(in) :: expected
-    !> The state
     type(state_t), intent(in) :: state
 
     over = self%force > 0 .and. .not. state%force > 0 .and. state%impactor%velocity < 0 .and. &
@@ -160,7 +147,6 @@ contains
 
   !> Stores a state before it is replaced, and updates the largest values by the next one.
   subroutine record(self, model, now, next)
-    !> The estimate
     class(step_error_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state to be replaced
@@ -184,7 +170,6 @@ contains
   !> abruptly. Divided differences across it give a third derivative that grows as the step gets shorter, although the
   !> step itself has no such error.
   pure subroutine reset(self)
-    !> The estimate
     class(step_error_t), intent(inout) :: self
 
     self%known = 0
@@ -192,9 +177,7 @@ contains
 
   !> Saves or loads the stored states.
   subroutine visit(self, archive, model)
-    !> The estimate
     class(step_error_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
@@ -213,9 +196,7 @@ contains
 
   !> Saves or loads the deflections.
   subroutine visit_deflections(self, archive, model)
-    !> The estimate
     class(step_error_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: field(:, :)

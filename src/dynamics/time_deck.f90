@@ -95,7 +95,6 @@ contains
 
   !> The integrator of the plate chosen in the deck.
   pure integer function integrator_of(settings) result(integrator)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
 
     integrator = code_of(settings%text_of(time_group, key_integrator), &
@@ -105,11 +104,9 @@ contains
 
   !> Checks the lengths of steps against each other, and the parameters of the integrator.
   subroutine check_time(settings, time, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Time integration
     type(time_t), intent(in) :: time
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (time%step > 0 .and. time%end > 0 .and. clear('step end')) then
@@ -150,11 +147,9 @@ contains
 
   !> Checks the parameters of the integrator, and warns of parameters of other integrators.
   subroutine check_parameters(settings, time, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Time integration
     type(time_t), intent(in) :: time
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (time%integrator == integrator_newmark) then

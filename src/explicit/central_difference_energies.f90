@@ -73,7 +73,6 @@ contains
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
@@ -88,7 +87,6 @@ contains
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
@@ -121,7 +119,6 @@ contains
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> The energy
     type(exact_sum_t), intent(inout) :: stored

@@ -71,22 +71,14 @@ module central_differences
     !> Work arrays: motion of the layers, and forces including those at borders between ranks
     real(wp), allocatable, private :: motion(:, :), field(:, :)
   contains
-    !> Initializes for a state.
     procedure :: start
-    !> Longest stable step times step_factor.
     procedure :: longest_step
-    !> Takes one step.
     procedure :: advance
-    !> Finds the forces on the layers.
     procedure :: find_forces
     procedure :: add_loads
-    !> Computes the forces again after a change of stiffness or layers.
     procedure :: renew_forces
-    !> Records the energy dissipated by failed plies.
     procedure :: record_failures
-    !> Resumes from a loaded state.
     procedure :: resume
-    !> Saves or loads.
     procedure :: visit
   end type central_difference_t
 
@@ -94,10 +86,8 @@ contains
 
   !> Initializes for a state. Collective.
   subroutine start(self, model, parameters, now)
-    !> The method
     class(central_difference_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    !> Parameters of central differences
     type(central_difference_parameters_t), intent(in) :: parameters
     !> The state; receives the forces
     type(state_t), intent(inout) :: now
@@ -129,7 +119,6 @@ contains
 
   !> Separates points constrained by a frame or a line from unconstrained ones.
   subroutine separate_constrained_points(self)
-    !> The method
     type(central_difference_t), intent(inout) :: self
     logical :: constrained(size(self%stacks%single))
     integer :: i
@@ -143,10 +132,8 @@ contains
   !> Stable step of elements and contact times step_factor, theory (T6). The highest frequency with added springs is at
   !> most the root of the sum of the squares of the frequencies.
   real(wp) function longest_step(self, model, now) result(step)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     real(wp) :: frequency, square
 
@@ -166,12 +153,10 @@ contains
   !> highest modes (R. D. Skeel, BIT 33 (1993) 172-175); steps therefore do not end exactly at events, but an event is
   !> handled by the first step that reaches it. Collective.
   subroutine advance(self, model, event, kept, now)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Time not to be exceeded, and factor by which damping has multiplied the velocities before the step
     real(wp), intent(in) :: event, kept
-    !> The state
     type(state_t), intent(inout) :: now
     real(wp), allocatable :: rates(:, :)
     real(wp) :: step, longest, load_factors(2)
@@ -218,7 +203,6 @@ contains
   !> then the energy of the initial state, -h^2 F M^-1 F/8 at rest, and is recorded as external work, not as
   !> dissipation. Collective.
   subroutine change_length(self, model, v, sign)
-    !> The method
     type(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Rates of the unknowns before the step or after it, (5, points)
@@ -239,7 +223,6 @@ contains
 
   !> Computes inverse inertia and compliances for the step length.
   subroutine prepare(self, model)
-    !> The method
     type(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
@@ -255,7 +238,6 @@ contains
 
   !> Moves nodes with one layer.
   subroutine move_single(self, model, u, v)
-    !> The method
     type(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns and their rates, (5, points)
@@ -280,7 +262,6 @@ contains
 
   !> Finds the forces on the layers. Collective.
   subroutine find_forces(self, model, now)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state; its plies soften
@@ -301,10 +282,8 @@ contains
 
   !> Adds the forces of pressure and lines to those on the layers, and records their work in the step.
   subroutine add_loads(self, model, now, load_factors)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> Ramps over their full values at the start and at the end of the step
     real(wp), intent(in) :: load_factors(2)
@@ -326,7 +305,6 @@ contains
 
   !> Records the strain energy dissipated by failed plies, and computes the remaining forces. Collective.
   subroutine record_failures(self, model, now)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state; receives the energy in its ledger
@@ -341,10 +319,8 @@ contains
 
   !> Computes the forces again after failures of plies or insertion of layers, without work of the loads. Collective.
   subroutine renew_forces(self, model, now)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(inout) :: now
     real(wp) :: work(size(self%force, 2))
 
@@ -356,10 +332,8 @@ contains
 
   !> Resumes from a loaded state, with the onset energies of its flaws. Collective.
   subroutine resume(self, model, now)
-    !> The method
     class(central_difference_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
@@ -373,9 +347,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The method
     class(central_difference_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 

@@ -28,9 +28,7 @@ module circle_frames
     !> Forces of the last step
     real(wp), allocatable :: forces(:)
   contains
-    !> Computes the matrix for an inertia.
     procedure :: prepare
-    !> Enforces zero deflection of the points at the end of a step.
     procedure :: constrain
   end type circle_frames_t
 
@@ -39,7 +37,6 @@ contains
   !> Support points of the circular frames of a model.
   function create_circle_frames(model) result(self)
     type(model_t), intent(in) :: model
-    !> The points
     type(circle_frames_t) :: self
     type(crossing_t), allocatable :: crossings(:)
     integer :: i, k, cell, nodes(9)
@@ -86,7 +83,6 @@ contains
 
   !> Computes the matrix for an inertia. Collective.
   subroutine prepare(self, model, inverse)
-    !> The points
     class(circle_frames_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Inverse inertia of w of the layers, (points)
@@ -149,7 +145,6 @@ contains
 
   !> Values at the nodes of all points, the same on every rank. Collective.
   function gathered(self, model, values)
-    !> The points
     type(circle_frames_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> (points)

@@ -23,12 +23,10 @@ contains
 
   !> Copies a damaged stack from the state.
   pure subroutine load_stack(stacks, work, model, cohesive, p, u, trial)
-    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Receives it
     type(stack_t), intent(inout) :: work
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> First point of the stack
     integer, intent(in) :: p
@@ -67,14 +65,12 @@ contains
 
   !> Forces of a damaged stack, with corrections where damage grows.
   pure subroutine solve_damaged(stacks, work, model, steps, cohesive, p)
-    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> The stack; receives the forces
     type(stack_t), intent(inout) :: work
     type(model_t), intent(in) :: model
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> First point of the stack
     integer, intent(in) :: p

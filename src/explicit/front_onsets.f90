@@ -28,7 +28,6 @@ module front_onsets
     !> Values of the points of the mesh that this rank needs, (7, points of the mesh)
     real(wp), allocatable, private :: values(:, :)
   contains
-    !> Finds onsets.
     procedure :: find
   end type front_onsets_t
 
@@ -37,7 +36,6 @@ contains
   !> The search in a model. Collective.
   function create_front_onsets(model) result(self)
     type(model_t), intent(in) :: model
-    !> The search
     type(front_onsets_t) :: self
 
     allocate (self%stencils%points(0))
@@ -50,12 +48,10 @@ contains
 
   !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
   subroutine find(self, model, step, stacks, cohesive, u)
-    !> The search
     class(front_onsets_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Number of the step
     integer, intent(in) :: step
-    !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
     !> The interfaces; receive the laws
     type(cohesive_interfaces_t), intent(inout) :: cohesive
@@ -80,9 +76,7 @@ contains
     !> The search; receives the values
     type(front_onsets_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
@@ -103,12 +97,10 @@ contains
 
   !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
   pure subroutine find_at(self, model, i, stacks, cohesive, u)
-    !> The search
     type(front_onsets_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Index of the point among those with an interface
     integer, intent(in) :: i
-    !> The stacks
     type(interface_stacks_t), intent(inout) :: stacks
     !> The interfaces; receive the law
     type(cohesive_interfaces_t), intent(inout) :: cohesive
@@ -139,7 +131,6 @@ contains
 
   !> Energy release rate over the toughness for growth in one direction.
   pure real(wp) function rate_in(self, law, point, near, widths) result(rate)
-    !> The search
     type(front_onsets_t), intent(in) :: self
     !> The law of the undamaged interface
     type(cohesive_law_t), intent(in) :: law
@@ -158,7 +149,6 @@ contains
 
   !> Traction or jump of a node of a stencil; zero without a node.
   pure function taken(self, which, point) result(vector)
-    !> The search
     type(front_onsets_t), intent(in) :: self
     !> Indices of the values
     integer, intent(in) :: which(3)

@@ -32,7 +32,6 @@ contains
   !> Stencils of a model. Collective.
   function create_front_stencils(model) result(self)
     type(model_t), intent(in) :: model
-    !> The stencils
     type(front_stencils_t) :: self
     integer, allocatable :: groups(:, :)
     logical, allocatable :: mine(:)
@@ -57,7 +56,6 @@ contains
 
   !> A point and the points of its stencil. Each of these has the point in its own stencil.
   pure function group_of(mesh, point) result(group)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Point of the mesh
     integer, intent(in) :: point
@@ -73,7 +71,6 @@ contains
 
   !> Stencil of a point in all directions of growth.
   pure subroutine find_stencil(mesh, point, near, widths)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Point of the mesh, with an interface
     integer, intent(in) :: point
@@ -96,7 +93,6 @@ contains
 
   !> Point of an interface at the crossing of two lines of nodes; negative for its image, 0: none.
   pure integer function point_at(mesh, zone, lines) result(point)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Zone of the interface
     integer, intent(in) :: zone
@@ -122,7 +118,6 @@ contains
 
   !> Length that belongs to a line of nodes, by the integrals of the shape functions; 0 beyond the plate.
   pure real(wp) function width_of(mesh, along, line) result(width)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Direction, 1 or 2
     integer, intent(in) :: along

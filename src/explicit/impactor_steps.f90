@@ -30,13 +30,9 @@ module impactor_steps
     !> Energy lost by changes of the step length
     real(wp) :: loss = 0
   contains
-    !> Square of the frequency of the contact spring.
     procedure :: contact_frequency_square
-    !> Updates its motion, and finds the force at the end of the step.
     procedure :: move
-    !> Kinetic energy and potential.
     procedure :: energy
-    !> Saves or loads.
     procedure :: visit
   end type impactor_steps_t
 
@@ -47,7 +43,6 @@ contains
     type(model_t), intent(in) :: model
     !> Its velocity
     real(wp), intent(in) :: velocity
-    !> The impactor
     type(impactor_steps_t) :: self
 
     self%patch = create_struck_patch(model)
@@ -58,7 +53,6 @@ contains
   !> stiffness so far times this factor, theory (T6). The contact with a nose adds the springs of its points, of which
   !> the stiffest on the lightest mass is a bound.
   real(wp) function contact_frequency_square(self, model, indentation) result(square)
-    !> The impactor
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The contact
@@ -79,7 +73,6 @@ contains
 
   !> Updates the motion of the impactor, and finds the force at the end of the step. Collective.
   subroutine move(self, model, steps, now)
-    !> The impactor
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The step and the one before
@@ -121,7 +114,6 @@ contains
 
   !> Velocity at the middle of the step, and the energy lost by a change of its length (`step_lengths`).
   pure subroutine accelerate(self, model, steps, force)
-    !> The impactor
     type(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The step and the one before
@@ -139,12 +131,10 @@ contains
 
   !> Kinetic energy at the end of a step, defined as that of the plate, and potential of gravity.
   pure real(wp) function energy(self, model, step, now)
-    !> The impactor
     class(impactor_steps_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Length of the step
     real(wp), intent(in) :: step
-    !> The state
     type(state_t), intent(in) :: now
 
     associate (parameters => model%setup%impactor)
@@ -155,9 +145,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive)
-    !> The impactor
     class(impactor_steps_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call self%patch%visit(archive)

@@ -30,9 +30,7 @@ module inertia_scaling
     !> Square of the radius of gyration that is added to the rotary inertia of every layer
     real(wp) :: radius_square = 0
   contains
-    !> Scaled masses of the sections of a model.
     procedure :: sections
-    !> Factor of an element.
     procedure :: factor
   end type inertia_scaling_t
 
@@ -44,7 +42,6 @@ contains
     class(setup_t), intent(in) :: setup
     !> The mean factor, at least 1
     real(wp), intent(in) :: mean
-    !> The scaling
     type(inertia_scaling_t) :: self
     real(wp), allocatable :: x(:), y(:)
 
@@ -64,7 +61,6 @@ contains
     real(wp), intent(in) :: ratio
     !> Square of the radius of gyration of the laminate
     real(wp), intent(in) :: radius_square
-    !> The scaling
     type(inertia_scaling_t) :: self
     real(wp) :: shortest, low, high, found
     integer :: bisection, i, j
@@ -127,7 +123,6 @@ contains
   !> Scaled masses of the sections of a model: the factor times I0, I1, I2, and the added rotary inertia. The sum over
   !> layers is the mass of the joined layers, so that the insertion of layers does not change the kinetic energy.
   function sections(self, model) result(masses)
-    !> The scaling
     class(inertia_scaling_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> I0, I1, I2, (lanes, 3, batches)
@@ -147,7 +142,6 @@ contains
 
   !> Factor of in-plane and rotary inertia of an element.
   pure real(wp) function factor(self, sides)
-    !> The scaling
     class(inertia_scaling_t), intent(in) :: self
     !> Sides of the element along x and y
     real(wp), intent(in) :: sides(2)

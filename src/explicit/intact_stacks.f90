@@ -31,7 +31,6 @@ contains
 
   !> Batches of the undamaged stacks among some. Stacks of the same number of layers share batches.
   pure function create_intact_batches(stacks, inertia, candidates) result(batches)
-    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
@@ -56,13 +55,11 @@ contains
 
   !> A batch of stacks.
   pure function new_batch(stacks, inertia, members) result(self)
-    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     !> Indices of at least one and at most `lanes` stacks
     integer, intent(in) :: members(:)
-    !> The batch
     type(intact_batch_t) :: self
     integer :: lane, p
 
@@ -82,7 +79,6 @@ contains
 
   !> Updates the stacks of a batch, and the history of their jumps.
   pure subroutine move_intact(batch, steps, force, stacks, u, v, reaches_onset)
-    !> The batch
     type(intact_batch_t), intent(in) :: batch
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps

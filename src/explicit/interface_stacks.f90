@@ -36,17 +36,13 @@ module interface_stacks
     !> Earlier steps of the jumps
     type(jump_history_t) :: history
   contains
-    !> Finds the compliances for a step.
     procedure :: prepare
-    !> Marks damaged stacks.
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
     procedure :: find_onsets
-    !> Reduces the law of a point, and treats its stack as damaged.
     procedure :: begin_softening
     procedure :: may_separate
     procedure :: mark_damaged
-    !> Copies the state of masters to their dependents.
     procedure :: copy_to_dependents
   end type interface_stacks_t
 
@@ -55,11 +51,9 @@ contains
   !> Stacks of a model.
   function create_interface_stacks(model, cohesive, inertia) result(self)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
-    !> The stacks
     type(interface_stacks_t) :: self
     logical :: is_dependent(model%distribution%owned)
     integer :: i, points
@@ -124,10 +118,8 @@ contains
   !> interfaces of a node below a clamp with a force do not separate: the clamp acts on one node of the mesh, which
   !> could not carry a force that lifts the upper layers.
   pure subroutine find_onsets(self, model, cohesive)
-    !> The stacks
     class(interface_stacks_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     type(cohesive_law_t) :: law
     integer :: i
@@ -146,9 +138,7 @@ contains
 
   !> Marks damaged stacks.
   pure subroutine find_damaged(self, cohesive)
-    !> The stacks
     class(interface_stacks_t), intent(inout) :: self
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: i
 
@@ -161,7 +151,6 @@ contains
 
   !> True for an independent point that no clamp holds.
   pure logical function may_separate(self, p)
-    !> The stacks
     class(interface_stacks_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
@@ -172,7 +161,6 @@ contains
   !> Reduces the law of an undamaged point, and treats its stack as damaged. A smaller stiffness of opening stores less
   !> energy; the difference, a small part of the toughness, is recorded as algorithmic.
   pure subroutine begin_softening(self, model, cohesive, p, factors, u)
-    !> The stacks
     class(interface_stacks_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The interfaces; receive the law
@@ -198,7 +186,6 @@ contains
 
   !> Treats a stack as damaged from the next step on.
   pure subroutine mark_damaged(self, i, cohesive, u)
-    !> The stacks
     class(interface_stacks_t), intent(inout) :: self
     !> Index of the stack
     integer, intent(in) :: i
@@ -220,11 +207,9 @@ contains
 
   !> Copies the state of the interfaces of masters to their dependents.
   pure subroutine copy_to_dependents(self, inertia, cohesive)
-    !> The stacks
     class(interface_stacks_t), intent(in) :: self
     !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     integer :: i
 
@@ -243,7 +228,6 @@ contains
 
   !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
   pure subroutine prepare(self, inertia, step_square)
-    !> The stacks
     class(interface_stacks_t), intent(inout) :: self
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia

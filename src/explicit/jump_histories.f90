@@ -31,11 +31,8 @@ module jump_histories
     !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
-    !> Stores force and change of a step.
     procedure :: record
-    !> Reduces the work done in the last step.
     procedure :: damp
-    !> Change of a jump in the last step with the damped velocity.
     procedure :: last_change
     !> Checkpoint.
     procedure :: visit
@@ -47,7 +44,6 @@ contains
   pure function create_jump_history(points) result(self)
     !> Number of points
     integer, intent(in) :: points
-    !> The history
     type(jump_history_t) :: self
 
     allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%sticking(4, points), &
@@ -57,7 +53,6 @@ contains
 
   !> Stores force and change of a step.
   pure subroutine record(self, p, force, change)
-    !> The history
     class(jump_history_t), intent(inout) :: self
     !> The point
     integer, intent(in) :: p
@@ -72,7 +67,6 @@ contains
   !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
   !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
   pure subroutine damp(self, ratio)
-    !> The history
     class(jump_history_t), intent(inout) :: self
     !> Factor of the work
     real(wp), intent(in) :: ratio
@@ -83,7 +77,6 @@ contains
 
   !> Change of a jump in the last step with the damped velocity, for the kinetic energy and works.
   pure function last_change(self, p, kept) result(change)
-    !> The history
     class(jump_history_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
@@ -97,9 +90,7 @@ contains
 
   !> Writes or reads the history.
   subroutine visit(self, archive, owned, points)
-    !> The history
     class(jump_history_t), intent(inout) :: self
-    !> The checkpoint
     class(archive_t), intent(inout) :: archive
     !> Numbers of this rank's points in the mesh, and number of points of the mesh
     integer, intent(in) :: owned(:), points

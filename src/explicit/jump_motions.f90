@@ -31,7 +31,6 @@ contains
     type(model_t), intent(in) :: model
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
@@ -60,7 +59,6 @@ contains
     !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
@@ -96,7 +94,6 @@ contains
     type(model_t), intent(in) :: model
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)

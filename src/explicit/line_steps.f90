@@ -44,23 +44,14 @@ module line_steps
     !> Work of the lines so far, (points)
     real(wp), allocatable :: work(:)
   contains
-    !> True: a component of a point is prescribed.
     procedure :: is_prescribed
-    !> Projects the prescribed components out of the inverse inertia.
     procedure :: project
-    !> Sets the motion from which the prescribed one starts.
     procedure :: start_from
-    !> Finds the rates of a step.
     procedure :: find_rates
-    !> Sets the prescribed velocity of the layer of a point.
     procedure :: prescribe
-    !> Records the reactions on a point.
     procedure :: react
-    !> Adds the forces of lines with a force.
     procedure :: add_forces
-    !> Force of each line on the full plate.
     procedure :: totals
-    !> Saves or loads.
     procedure :: visit
   end type line_steps_t
 
@@ -71,7 +62,6 @@ contains
     type(model_t), intent(in) :: model
     !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
-    !> The lines
     type(line_steps_t) :: self
     type(prescribed_dof_t), allocatable :: dofs(:)
     logical :: is_dependent(size(model%distribution%points))
@@ -97,7 +87,6 @@ contains
 
   !> True: a component of a point is prescribed.
   pure logical function is_prescribed(self, p)
-    !> The lines
     class(line_steps_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
@@ -107,7 +96,6 @@ contains
 
   !> Projects the prescribed components out of the inverse inertia.
   pure subroutine project(self, inverse)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
     !> Inverse inertia, (7, points)
     real(wp), intent(inout) :: inverse(:, :)
@@ -140,7 +128,6 @@ contains
   !> Sets the motion from which the prescribed one starts: lines and supports move from there to their prescribed
   !> positions. Supported components with a non-zero value are prescribed, too.
   subroutine start_from(self, model, inertia, motion)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Lumped inertia, with constrained unknowns and dependent points
@@ -172,7 +159,6 @@ contains
   !> Sorts prescribed components by point, displacements before rotations: the moment of a line that rotates a layer
   !> excludes the moments of the forces of lines that displace the layer at its middle.
   pure subroutine sort_dofs(self, dofs)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
     !> Prescribed components, in any order
     type(prescribed_dof_t), intent(in) :: dofs(:)
@@ -198,7 +184,6 @@ contains
 
   !> Computes the rates by which each component has its prescribed value at the end of the step.
   pure subroutine find_rates(self, model, steps, load_factor, left, motion)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The step and the one before
@@ -234,7 +219,6 @@ contains
 
   !> Sets the prescribed velocity of the layer of a point.
   pure subroutine prescribe(self, p, velocity)
-    !> The lines
     class(line_steps_t), intent(in) :: self
     !> The point
     integer, intent(in) :: p
@@ -259,7 +243,6 @@ contains
 
   !> Records the reactions on a point: change of the momentum of its layer minus the impulse of the other forces.
   pure subroutine react(self, p, steps, mass, before, after, force)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
     !> The point
     integer, intent(in) :: p
@@ -290,7 +273,6 @@ contains
 
   !> Adds the forces of lines with a force, and their work in a step by the mean of the forces at its ends.
   pure subroutine add_forces(self, model, load_factors, change, forces)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Ramps over their full values at the start and at the end of the step
@@ -323,7 +305,6 @@ contains
 
   !> Force of each line on the full plate. Collective.
   function totals(self, model) result(forces)
-    !> The lines
     class(line_steps_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Reactions of lines that prescribe motion, 0 for others
@@ -341,9 +322,7 @@ contains
 
   !> Saves or loads reactions, changes and work.
   subroutine visit(self, archive, owned, points)
-    !> The lines
     class(line_steps_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Points of the mesh that this rank owns, and all points
     integer, intent(in) :: owned(:), points
@@ -373,7 +352,6 @@ contains
 
   !> Adds the supported components with an offset to the prescribed components.
   pure subroutine add_offset(self, offsets)
-    !> The lines
     type(line_steps_t), intent(inout) :: self
     !> Offset of each component, (5, points)
     real(wp), intent(in) :: offsets(:, :)

@@ -33,12 +33,9 @@ module nodal_inertia
     !> Signs of their motion, (5, dependents)
     real(wp), allocatable :: signs(:, :)
   contains
-    !> Computes the inverse for a step.
     procedure :: invert
-    !> Adds forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: move_dependents
-    !> Inverse inertia of w as if each image moved independently.
     procedure :: inverse_of_images
   end type nodal_inertia_t
 
@@ -49,7 +46,6 @@ contains
     type(model_t), intent(in) :: model
     !> Scaling of in-plane and rotary inertia
     type(inertia_scaling_t), intent(in) :: scaling
-    !> The inertia
     type(nodal_inertia_t) :: self
     real(wp), allocatable :: scaled(:, :)
     integer :: points
@@ -69,7 +65,6 @@ contains
   !> Dependent points of this rank, and unknowns constrained by supports and symmetry.
   subroutine find_dependents(model, self)
     type(model_t), intent(in) :: model
-    !> Receives them
     type(nodal_inertia_t), intent(inout) :: self
     integer :: master(model%mesh%points()), i
     real(wp) :: signs(5, model%mesh%points())
@@ -87,7 +82,6 @@ contains
 
   !> Adds the inertia of dependent points to that of their masters, so that the kinetic energy is that of both.
   pure subroutine fold_mass(self, mass)
-    !> The inertia
     type(nodal_inertia_t), intent(in) :: self
     !> A nodal quantity without sign, (:, points)
     real(wp), intent(inout) :: mass(:, :)
@@ -102,7 +96,6 @@ contains
   !> Stiffness of clamps and elastic edges at the points of the first layer, edges lumped like the mass.
   subroutine find_springs(model, self)
     type(model_t), intent(in) :: model
-    !> Receives them
     type(nodal_inertia_t), intent(inout) :: self
     real(wp), allocatable :: field(:, :)
     integer :: i, k
@@ -129,7 +122,6 @@ contains
 
   !> Computes the inverse for a step length, with the stiffness of springs times its square.
   pure subroutine invert(self, step_square)
-    !> The inertia
     class(nodal_inertia_t), intent(inout) :: self
     !> Product of the step and the mean of it and the step before
     real(wp), intent(in) :: step_square
@@ -173,7 +165,6 @@ contains
   !> Inverse inertia of w at each point, as if images of a point moved independently: that of their master times the
   !> number of images, since images have the same inertia.
   pure function inverse_of_images(self) result(inverse)
-    !> The inertia
     class(nodal_inertia_t), intent(in) :: self
     !> (points)
     real(wp) :: inverse(size(self%inverse, 2))
@@ -189,7 +180,6 @@ contains
 
   !> Adds forces on dependent points to those on their masters.
   pure subroutine fold(self, forces)
-    !> The inertia
     class(nodal_inertia_t), intent(in) :: self
     !> Forces, (5, points); those on dependents become zero
     real(wp), intent(inout) :: forces(:, :)
@@ -205,7 +195,6 @@ contains
 
   !> Sets the motion of dependent points to that of their masters.
   pure subroutine move_dependents(self, motion)
-    !> The inertia
     class(nodal_inertia_t), intent(in) :: self
     !> Displacement or velocity, (5, points)
     real(wp), intent(inout) :: motion(:, :)

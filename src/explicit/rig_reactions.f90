@@ -20,7 +20,6 @@ contains
     !> The method
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
     !> 0 for rigs that the deck does not have
     real(wp) :: reactions(max_supports)

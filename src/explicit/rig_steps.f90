@@ -23,12 +23,9 @@ module rig_steps
     !> length
     real(wp), allocatable :: frame_loss(:), step_loss(:)
   contains
-    !> Stops a node at its frame.
     procedure :: stop_at_frame
-    !> Adds the forces of springs.
     procedure :: add_spring_forces
     procedure :: record_springs
-    !> Saves or loads.
     procedure :: visit
   end type rig_steps_t
 
@@ -37,7 +34,6 @@ contains
   !> Frames of a model.
   pure function create_rig_steps(model) result(self)
     type(model_t), intent(in) :: model
-    !> Their state
     type(rig_steps_t) :: self
     integer :: points
 
@@ -65,7 +61,6 @@ contains
 
   !> Stops a layer that would penetrate its frame, and records the energy dissipated.
   pure subroutine stop_at_frame(self, p, steps, inverse, w, rate)
-    !> The frames
     class(rig_steps_t), intent(inout) :: self
     !> First point of the node
     integer, intent(in) :: p
@@ -93,7 +88,6 @@ contains
 
   !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
   pure subroutine add_spring_forces(self, springs, steps, u, v, force)
-    !> The springs' state
     class(rig_steps_t), intent(in) :: self
     !> Stiffness, (5, points)
     real(wp), intent(in) :: springs(:, :)
@@ -115,7 +109,6 @@ contains
   !> the sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
   !> (v_old**2 + v**2)/4), where the change of step length is recorded with the force -k (u_old + h v_old).
   pure subroutine record_springs(self, springs, steps, before, after)
-    !> The springs' state
     class(rig_steps_t), intent(inout) :: self
     !> Stiffness, (5, points)
     real(wp), intent(in) :: springs(:, :)
@@ -136,9 +129,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, owned, points)
-    !> The frames
     class(rig_steps_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Points of the mesh that this rank owns, and all points
     integer, intent(in) :: owned(:), points

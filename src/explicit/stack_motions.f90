@@ -22,7 +22,6 @@ contains
 
   !> Work arrays for the stacks of a model, one for each number of interfaces.
   pure function new_workspaces(stacks) result(work)
-    !> The stacks
     type(interface_stacks_t), intent(in) :: stacks
     !> (largest number of interfaces)
     type(stack_t), allocatable :: work(:)
@@ -93,7 +92,6 @@ contains
     !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
@@ -131,7 +129,6 @@ contains
 
   !> Prescribes the velocities of layers on lines.
   pure subroutine prescribe_layers(lines, first, layer)
-    !> The lines
     type(line_steps_t), intent(in) :: lines
     !> First point of the stack
     integer, intent(in) :: first
@@ -152,7 +149,6 @@ contains
     !> Index of the stack
     integer, intent(in) :: i
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)

@@ -12,9 +12,7 @@ module step_lengths
     !> Factor by which damping has multiplied the velocities of the step before
     real(wp) :: kept = 1
   contains
-    !> Time between the mid-step velocities of both steps.
     procedure :: mean
-    !> Additional displacement over which the force at the end of a step does work when the step length changes.
     procedure :: shift
   end type step_lengths_t
 
@@ -22,7 +20,6 @@ contains
 
   !> Time between the mid-step velocities of both steps.
   pure real(wp) function mean(self)
-    !> The steps
     class(step_lengths_t), intent(in) :: self
 
     mean = (self%now + self%last)/2
@@ -32,7 +29,6 @@ contains
   !> kinetic energy at whole steps, v M v/2 + h R v/2, changes by R (h_mean (v_old + v)/2 + h v/2) - h_old R_old
   !> v_old/2; for equal steps this is R dq + (R - R_old) dq_old/2.
   elemental real(wp) function shift(self, before, after)
-    !> The steps
     class(step_lengths_t), intent(in) :: self
     !> Change of the coordinate in the step before, and in this step
     real(wp), intent(in) :: before, after

@@ -25,17 +25,11 @@ module struck_patches
     !> The nose; unallocated: the patch
     type(nose_t), allocatable, private :: nose
   contains
-    !> Deflections of the points.
     procedure :: find_deflections
-    !> Gathers the inverse inertia of the points.
     procedure :: gather
-    !> Indentation at a position of the impactor.
     procedure :: find_indentation
-    !> Adds the nodal forces of a force.
     procedure :: add_force
-    !> Weights at this rank's points.
     procedure :: local_weights
-    !> Saves or loads.
     procedure :: visit
   end type struck_patch_t
 
@@ -44,7 +38,6 @@ contains
   !> The points within reach of the impactor. Collective.
   function create_struck_patch(model) result(self)
     type(model_t), intent(in) :: model
-    !> The points
     type(struck_patch_t) :: self
     real(wp) :: weights(model%mesh%points())
     integer, allocatable :: reached(:)
@@ -70,7 +63,6 @@ contains
 
   !> Deflections of the points and that of the struck point, the same on every rank: one message. Collective.
   subroutine find_deflections(self, model, displacement, w, struck)
-    !> The points
     class(struck_patch_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -94,7 +86,6 @@ contains
 
   !> Gathers the inverse inertia of the points from their ranks. Collective.
   subroutine gather(self, model, inverse)
-    !> The points
     class(struck_patch_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Inverse inertia of w, (points)
@@ -112,7 +103,6 @@ contains
   !> Indentation at a position of the impactor: from the mean deflection of the patch, or by the contact of the nose,
   !> with which the force distribution changes.
   pure subroutine find_indentation(self, w, position, indentation)
-    !> The points
     class(struck_patch_t), intent(inout) :: self
     !> Their deflections, (reached)
     real(wp), intent(in) :: w(:)
@@ -136,7 +126,6 @@ contains
 
   !> Adds the nodal forces of a force on the full plate.
   pure subroutine add_force(self, multiplicity, force, forces)
-    !> The points
     class(struck_patch_t), intent(in) :: self
     !> Models that make up the full plate
     integer, intent(in) :: multiplicity
@@ -153,7 +142,6 @@ contains
 
   !> Weights at this rank's points.
   pure function local_weights(self, points) result(weights)
-    !> The points
     class(struck_patch_t), intent(in) :: self
     !> Number of points of this rank
     integer, intent(in) :: points
@@ -169,9 +157,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive)
-    !> The points
     class(struck_patch_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('explicit/patch_weights', self%weights)

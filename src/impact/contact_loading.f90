@@ -13,7 +13,6 @@ contains
 
   !> Contact force.
   pure real(wp) function loading_force(law, alpha) result(force)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Indentation, at least 0
     real(wp), intent(in) :: alpha
@@ -27,7 +26,6 @@ contains
 
   !> Derivative of the contact force by the indentation.
   pure real(wp) function loading_stiffness(law, alpha) result(stiffness)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Indentation, at least 0
     real(wp), intent(in) :: alpha
@@ -37,7 +35,6 @@ contains
 
   !> Indentation at which the contact force has a value.
   pure real(wp) function loading_indentation(law, force) result(alpha)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> The force, at least 0
     real(wp), intent(in) :: force
@@ -49,7 +46,6 @@ contains
 
   !> Mean of the contact force between two indentations, without cancellation.
   pure real(wp) function mean_loading_force(law, lower, upper) result(mean)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Indentations, from 0 up; the second is the larger one
     real(wp), intent(in) :: lower, upper
@@ -64,7 +60,6 @@ contains
 
   !> Indentation at the start of the linear branch.
   pure real(wp) function yield(law)
-    !> The law
     type(indentation_law_t), intent(in) :: law
 
     yield = huge(yield)

@@ -33,7 +33,6 @@ contains
   !> the indentations from the start to alpha_end. Either is a non-decreasing function of alpha_end, so there is exactly
   !> one such force.
   subroutine solve_impact_force(step, x, alpha_end, force_end, iterations, error)
-    !> The step
     type(contact_step_t), intent(in) :: step
     !> The unknown
     real(wp), intent(out) :: x
@@ -68,7 +67,6 @@ contains
   !> The step ends without contact: the work is that of unloading to zero force, which gives a quadratic equation for
   !> the displacement.
   pure subroutine release(step, zero_force, x, alpha_end)
-    !> The step
     type(contact_step_t), intent(in) :: step
     !> Indentation of zero force
     real(wp), intent(in) :: zero_force
@@ -94,7 +92,6 @@ contains
 
   !> Newton's iteration on the indentation, safeguarded by a bracket of the solution.
   pure subroutine solve_in_contact(step, zero_force, x, alpha_end, iterations)
-    !> The step
     type(contact_step_t), intent(in) :: step
     !> Indentation of zero force, below the solution
     real(wp), intent(in) :: zero_force
@@ -129,7 +126,6 @@ contains
 
   !> Force of a step that ends at a given indentation.
   pure real(wp) function force_of_step(step, alpha_end) result(x)
-    !> The step
     type(contact_step_t), intent(in) :: step
     !> Indentation at its end
     real(wp), intent(in) :: alpha_end
@@ -144,7 +140,6 @@ contains
   !> Derivative of `force_of_step` with respect to the indentation at the end. For small increments the derivative of
   !> the mean suffers from cancellation and is replaced by half the stiffness.
   pure real(wp) function slope_of_step(step, alpha_end, x) result(slope)
-    !> The step
     type(contact_step_t), intent(in) :: step
     !> Indentation at its end
     real(wp), intent(in) :: alpha_end

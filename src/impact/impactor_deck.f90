@@ -52,7 +52,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(impactor_parameters_t), intent(inout) :: impactor
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     call require_mass(settings, problems)
@@ -75,9 +74,7 @@ contains
 
   !> Computes the velocity from the energy, and reports if neither or both are given.
   subroutine set_velocity_from_energy(settings, problems)
-    !> Keys in effect
     type(settings_t), intent(inout) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: mass, energy
 
@@ -98,9 +95,7 @@ contains
 
   !> Reports if the mass is missing; an impactor with prescribed travel needs none.
   subroutine require_mass(settings, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. settings%has_group(impactor_group) .or. settings%is_given(impactor_group, key_travel)) return
@@ -111,7 +106,6 @@ contains
 
   !> Names of the keys of the impactor's velocity, separated by blanks.
   pure function keys_of_motion(settings) result(keys)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The names
     character(len=:), allocatable :: keys

@@ -98,7 +98,6 @@ contains
   pure function largest_safe_step(parameters, law, state, alpha, approach) result(step)
     !> Mass, integrator
     type(impactor_parameters_t), intent(in) :: parameters
-    !> Indentation law
     type(indentation_law_t), intent(in) :: law
     !> Committed state of the contact
     type(indentation_t), intent(in) :: state

@@ -28,7 +28,6 @@ module impactors
     !> Velocities before those steps
     real(wp) :: past_velocity(past_points) = 0
   contains
-    !> Saves or loads the state
     procedure :: visit => visit_impactor
   end type impactor_t
 
@@ -58,7 +57,6 @@ contains
 
   !> Saves or loads the state.
   subroutine visit_impactor(self, archive)
-    !> The state
     class(impactor_t), intent(inout) :: self
     !> Where the state is saved to or loaded from
     class(archive_t), intent(inout) :: archive

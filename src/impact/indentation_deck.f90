@@ -64,9 +64,7 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> The struck face
     type(struck_face_t), intent(in) :: face
-    !> Receives the law
     type(indentation_law_t), intent(inout) :: law
 
     law%law = law_hertz
@@ -89,9 +87,7 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> The struck face
     type(struck_face_t), intent(in) :: face
-    !> Receives the stiffness
     type(indentation_law_t), intent(inout) :: law
     real(wp) :: compliance
 
@@ -118,9 +114,7 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Radius of the impactor's nose
     real(wp), intent(in) :: radius
-    !> The struck face
     type(struck_face_t), intent(in) :: face
-    !> Receives the indentation
     type(indentation_law_t), intent(inout) :: law
 
     if (settings%is_given(indentation_group, key_alpha_critical)) return
@@ -135,7 +129,6 @@ contains
 
   !> True: the struck face has the properties of the laminate.
   logical function takes_laminate(settings)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
 
     takes_laminate = .false.
@@ -145,7 +138,6 @@ contains
 
   !> Default law without the group, for the list of keys in effect.
   subroutine echo_without_group(law, lines)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -156,9 +148,7 @@ contains
 
   !> Checks keys required by the law, and keys without effect.
   subroutine check_indentation(settings, law, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
@@ -205,11 +195,8 @@ contains
 
   !> Checks the exponents of a law that creates no energy: 1.5 <= reload <= q; the rows have the lower bound.
   subroutine check_exponents(settings, law, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The law
     type(indentation_law_t), intent(in) :: law
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. are_clear(settings, problems, indentation_group, 'q reload')) return

@@ -27,11 +27,8 @@ module nose_contacts
     !> each point, (points)
     real(wp), allocatable :: area(:), inner(:), outer(:)
   contains
-    !> Position of the tip at first contact.
     procedure :: first_contact
-    !> Contact at a position of the nose.
     procedure :: press
-    !> Forces of points as on an elastic foundation.
     procedure :: foundation
   end type nose_t
 
@@ -55,7 +52,6 @@ contains
     real(wp), intent(in) :: radius
     !> Area of each point on the full plate, and its distance from the struck point, below the radius, (points)
     real(wp), intent(in) :: area(:), distance(:)
-    !> The nose
     type(nose_t) :: self
     real(wp) :: inside, within
     integer :: i
@@ -85,7 +81,6 @@ contains
 
   !> Position of the tip at which the nose touches the face.
   pure real(wp) function first_contact(self, w)
-    !> The nose
     class(nose_t), intent(in) :: self
     !> Deflections of the points
     real(wp), intent(in) :: w(:)
@@ -95,13 +90,11 @@ contains
 
   !> Contact at a position of the nose.
   pure subroutine press(self, w, position, contact)
-    !> The nose
     class(nose_t), intent(in) :: self
     !> Deflections of the points
     real(wp), intent(in) :: w(:)
     !> Displacement of the tip
     real(wp), intent(in) :: position
-    !> The contact
     type(nose_contact_t), intent(out) :: contact
     real(wp) :: depth(size(w)), settlement, force, energy
 
@@ -129,7 +122,6 @@ contains
 
   !> Forces of the points, up to a factor, as on an elastic foundation with the depth of half the indentation.
   pure function foundation(self, w, indentation) result(forces)
-    !> The nose
     class(nose_t), intent(in) :: self
     !> Deflections of the points
     real(wp), intent(in) :: w(:)
@@ -146,7 +138,6 @@ contains
   !> Settlement of the face, half of Hertz's indentation for the force of the local depths, by Newton's method with a
   !> bracket. Forces and energies are divided by the contact stiffness k.
   pure real(wp) function settlement_of(self, depth, approach) result(settlement)
-    !> The nose
     class(nose_t), intent(in) :: self
     !> Depths without settlement, (points)
     real(wp), intent(in) :: depth(:)
@@ -177,7 +168,6 @@ contains
 
   !> Force of local depths and its derivative, without the pressures.
   pure subroutine find_force(self, depth, force, slope)
-    !> The nose
     class(nose_t), intent(in) :: self
     !> Local depths at the inner circles, (points)
     real(wp), intent(in) :: depth(:)
@@ -201,7 +191,6 @@ contains
   !> Forces of the points, their slopes, the local energy and the area under pressure: means over the circles of each
   !> point of the pressure sqrt(2 x) and its integral.
   pure subroutine find_pressures(self, depth, contact, energy)
-    !> The nose
     class(nose_t), intent(in) :: self
     !> Local depths at the inner circles, (points)
     real(wp), intent(in) :: depth(:)

@@ -34,7 +34,6 @@ module tan_sun_indentation
     !> Work of the contact force on the indentation so far, stored and dissipated
     real(wp) :: work = 0
   contains
-    !> Saves or loads the state
     procedure :: visit => visit_indentation
   end type indentation_t
 
@@ -54,7 +53,6 @@ contains
 
   !> Indentation below which the contact force is zero.
   pure function zero_force_indentation(law, state) result(zero_force)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -68,7 +66,6 @@ contains
 
   !> Contact force.
   pure function indentation_force(law, state, alpha) result(force)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -90,7 +87,6 @@ contains
 
   !> Indentation at which the contact force has a value.
   pure real(wp) function indentation_of(law, state, force) result(alpha)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -110,7 +106,6 @@ contains
 
   !> Derivative of the contact force; at the largest indentation that of the branch below it.
   pure function indentation_stiffness(law, state, alpha) result(stiffness)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -133,7 +128,6 @@ contains
 
   !> Mean of the contact force between two indentations, without cancellation; the force if they are equal.
   pure function mean_indentation_force(law, state, alpha_from, alpha_to) result(mean)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -164,7 +158,6 @@ contains
 
   !> Work of the contact force along a monotonic path.
   pure function indentation_work(law, state, alpha_from, alpha_to) result(work)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -180,7 +173,6 @@ contains
 
   !> Upper bound of the ratio of the present contact stiffness to that of Hertz at the same indentation.
   pure function stiffening(law, state) result(ratio)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -197,7 +189,6 @@ contains
 
   !> Accepts a new indentation, reached monotonically from the committed one.
   pure subroutine commit_indentation(law, state, alpha)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> State, advanced by the step
     type(indentation_t), intent(inout) :: state
@@ -218,7 +209,6 @@ contains
 
   !> Saves or loads the state.
   subroutine visit_indentation(self, archive)
-    !> The state
     class(indentation_t), intent(inout) :: self
     !> Where the state is saved to or loaded from
     class(archive_t), intent(inout) :: archive
@@ -233,7 +223,6 @@ contains
 
   !> Unloading or reloading curve, whichever applies; empty for Hertz and before the first contact.
   pure function current_branch(law, state) result(branch)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
@@ -262,7 +251,6 @@ contains
   !> Permanent dent after unloading from an indentation, theory (F6) and (F7) (Tan and Sun 1985; Yang and Sun 1982;
   !> Thornton 1997, with the larger radius of the deformed face in unloading).
   pure function permanent_dent(law, alpha_max) result(dent)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> Largest indentation
     real(wp), intent(in) :: alpha_max

@@ -39,15 +39,11 @@ module cohesive_interfaces
     !> Consistent tangents, used in load steps instead, unsymmetric, (3, 3, local points)
     real(wp), allocatable :: tangents(:, :, :)
   contains
-    !> Adds the forces of the tractions on the jumps.
     procedure :: add_forces
     !> Consistent tangents of the forces.
     procedure :: tangents_at
-    !> Energy dissipated since an earlier state.
     procedure :: dissipation
-    !> Derivative of that energy.
     procedure :: add_dissipation_slopes
-    !> Area and energy dissipated.
     procedure :: area
     procedure :: energy => dissipated_energy
     !> Damage, dissipated fraction of the toughness, fraction of shear, and pressure at the points.
@@ -57,10 +53,8 @@ module cohesive_interfaces
     procedure :: pressure
     !> True for zones in which damage has reached the border.
     procedure :: border_reached
-    !> Surfaces of an interface, and law of a point.
     procedure :: surfaces_of
     procedure :: law_at
-    !> Saves or loads.
     procedure :: visit
   end type cohesive_interfaces_t
 
@@ -71,7 +65,6 @@ contains
     type(model_t), intent(in) :: model
     !> True for jumps released by starters, (local points)
     logical, intent(in) :: free(:)
-    !> The interfaces
     type(cohesive_interfaces_t) :: self
     integer :: i
 
@@ -95,7 +88,6 @@ contains
 
   !> Adds the forces of the tractions on the jumps, and updates the history variables of the trial state.
   pure subroutine add_forces(self, model, old, displacement, force, energy)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The interfaces in the last accepted state
@@ -129,7 +121,6 @@ contains
 
   !> Derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows in a mixed mode.
   pure function tangents_at(self, model, old, displacement) result(tangents)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The interfaces in the last accepted state
@@ -155,7 +146,6 @@ contains
 
   !> Stores a consistent tangent and its diagonal for the operator.
   pure subroutine store_tangent(self, i, tangent)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
     !> Point of this rank
     integer, intent(in) :: i
@@ -169,7 +159,6 @@ contains
 
   !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
   pure subroutine add_dissipation_slopes(self, model, old, displacement, slopes)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The interfaces in the last accepted state
@@ -189,7 +178,6 @@ contains
 
   !> Energy dissipated since an earlier state, of the full plate, the same on every rank.
   real(wp) function dissipation(self, model, old) result(energy)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The interfaces in the earlier state
@@ -206,7 +194,6 @@ contains
   !> Area dissipated in each zone of the full plate: sum of the points' areas times the dissipated fraction of their
   !> toughness. The same on every rank.
   function area(self, model)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The area, (zones); zero for zones without a cohesive law
@@ -217,7 +204,6 @@ contains
 
   !> Energy dissipated in each zone of the full plate, the same on every rank.
   function dissipated_energy(self, model) result(energy)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The energy, (zones); zero for zones without a cohesive law
@@ -229,7 +215,6 @@ contains
 
   !> Sum of the areas of the cohesive points times a value, in each zone of the full plate. Collective.
   function total_in_zones(self, model, values) result(totals)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Values, (local points)
@@ -249,7 +234,6 @@ contains
 
   !> Damage of this rank's points.
   pure function damage(self, model)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
@@ -261,7 +245,6 @@ contains
 
   !> Dissipated fraction of the toughness at this rank's points.
   pure function dissipated_fractions(self, model)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
@@ -279,7 +262,6 @@ contains
 
   !> Fraction of shear in the energy of the jumps at this rank's points.
   pure function shear_share(self, model, displacement)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -297,7 +279,6 @@ contains
 
   !> Pressure on closed surfaces at this rank's points.
   pure function pressure(self, model, displacement)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -326,7 +307,6 @@ contains
 
   !> True for zones with a damaged point next to the border, where growth ends. The same on every rank.
   function border_reached(self, model)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> (zones)
@@ -347,7 +327,6 @@ contains
 
   !> Law of one of this rank's cohesive points. The toughness of one whose damage is held is not reached.
   pure type(cohesive_law_t) function law_at(self, model, i) result(law)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The point
@@ -361,7 +340,6 @@ contains
 
   !> Surfaces at one of this rank's cohesive points.
   pure type(cohesive_surfaces_t) function surfaces_of(self, model, i) result(surfaces)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The point
@@ -374,9 +352,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The interfaces
     class(cohesive_interfaces_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

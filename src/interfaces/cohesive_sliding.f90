@@ -18,7 +18,6 @@ contains
   !> Updates the friction limits by pressures and damage. A time step uses the limits in the next step; a load step is
   !> repeated until the limits have converged.
   subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -50,7 +49,6 @@ contains
 
   !> True if any interface has friction.
   pure logical function present_in(interfaces, model)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(in) :: interfaces
     type(model_t), intent(in) :: model
 
@@ -74,9 +72,7 @@ contains
 
   !> Saves or loads.
   subroutine visit_friction(interfaces, archive, model)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

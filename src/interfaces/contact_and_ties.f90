@@ -25,19 +25,12 @@ module contact_and_ties
     !> Largest pressure so far
     real(wp) :: peak = 0
   contains
-    !> Adds contact and penalty forces to a residual and removes the residual of tied jumps.
     procedure :: add_to_residual
-    !> Updates the multipliers by the pressures found.
     procedure :: update_contact
-    !> Violation of complementarity of pressures and gaps.
     procedure :: complementarity
-    !> Work of contact and penalty ties in a step.
     procedure :: work
-    !> Keeps closed contacts closed in the predictor, and open ones from penetrating.
     procedure :: keep_contact_closed
-    !> Stiffness that ties and contact add to the diagonal.
     procedure :: added_stiffness
-    !> Saves or loads.
     procedure :: visit
   end type contact_and_ties_t
 
@@ -51,7 +44,6 @@ contains
   !> All interfaces with their starters.
   pure function new_contact_and_ties(model) result(self)
     type(model_t), intent(in) :: model
-    !> The state
     type(contact_and_ties_t) :: self
     integer :: points
 
@@ -93,7 +85,6 @@ contains
 
   !> Force of contact or a penalty tie on the jumps at a point. Pressures are those of the last residual.
   pure function force(self, model, i, jumps)
-    !> The state
     type(contact_and_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Point of this rank
@@ -114,7 +105,6 @@ contains
 
   !> Updates the multipliers by the pressures found, which have converged once they are consistent with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
-    !> The state
     class(contact_and_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -135,7 +125,6 @@ contains
 
   !> Sets the multipliers to the pressures of the last residual, and updates the decay by the gaps.
   subroutine update_multipliers(self, model, displacement, converged)
-    !> The state
     type(contact_and_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -166,7 +155,6 @@ contains
   !> Violation of complementarity: pressure on open surfaces or negative pressure, relative to the largest pressure so
   !> far. The same on every rank.
   real(wp) function complementarity(self, model, displacement)
-    !> The state
     class(contact_and_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -191,7 +179,6 @@ contains
 
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function work(self, model, displacement, change)
-    !> The state
     class(contact_and_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns at the end of the step and their change, (5, points)
@@ -207,7 +194,6 @@ contains
   !> Keeps closed contacts closed in the predictor, and open ones from penetrating: the stiff law would turn small
   !> errors of the predictor into large pressures.
   subroutine keep_contact_closed(self, model, guess)
-    !> The state
     class(contact_and_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
@@ -223,7 +209,6 @@ contains
 
   !> Stiffness that ties and contact add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, added)
-    !> The state
     class(contact_and_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
@@ -264,9 +249,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The state
     class(contact_and_ties_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

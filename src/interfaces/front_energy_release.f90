@@ -41,7 +41,6 @@ contains
     integer, intent(in) :: zone
     !> release_two_state or release_vcct
     integer, intent(in) :: method
-    !> The front
     type(front_energy_release_t) :: front
     integer :: s
 
@@ -64,7 +63,6 @@ contains
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Its smooth line
     type(smooth_front_t), intent(in) :: line
@@ -98,7 +96,6 @@ contains
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Its smooth line
     type(smooth_front_t), intent(in) :: line

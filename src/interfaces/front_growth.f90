@@ -71,11 +71,9 @@ contains
   !> Delaminates the cells ahead of the most loaded segments of one front.
   subroutine release_cells(model, state, zone, front, fracture, grown)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(inout) :: state
     !> Index of the zone
     integer, intent(in) :: zone
-    !> The front
     type(front_energy_release_t), intent(in) :: front
     !> Fracture energy of the full plate; that of the new surfaces is added
     real(wp), intent(inout) :: fracture
@@ -128,7 +126,6 @@ contains
   !> Of the candidate cells within the averaging length, those whose centre is closest to the front: a rate averaged
   !> over that length cannot distinguish between them.
   pure function closest_to_front(front, open, reach) result(first)
-    !> The front
     type(front_energy_release_t), intent(in) :: front
     !> True for segments with candidate cells
     logical, intent(in) :: open(:)
@@ -157,7 +154,6 @@ contains
     type(model_t), intent(in) :: model
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
-    !> The interfaces
     type(interface_state_t), intent(inout) :: state
     logical, allocatable :: before(:)
     integer :: i

@@ -60,7 +60,6 @@ contains
   !> Delaminated area. Collective.
   function area_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column, of the full plate
     real(wp) :: values(size(area_rows))
@@ -72,7 +71,6 @@ contains
   !> Collective.
   function release_values(model, interfaces, displacement) result(values)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -87,7 +85,6 @@ contains
   !> Zones whose border is reached, and projected areas. Collective.
   function border_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column
     real(wp) :: values(size(border_rows))
@@ -98,9 +95,7 @@ contains
   !> Forces of the rigs. Collective.
   function rig_values(model, interfaces, motion, loads) result(values)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> The motion
     type(motion_t), intent(in) :: motion
     !> Forces of pressure and lines at the owned points, (5, points)
     real(wp), intent(in) :: loads(:, :)
@@ -113,7 +108,6 @@ contains
   !> Quantities of each interface, one interface after the other. Collective.
   function interface_values(model, interfaces) result(values)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column and interface
     real(wp) :: values(size(interface_rows)*size(model%mesh%zones))

@@ -50,13 +50,11 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Requested fields
     type(output_t), intent(in) :: output
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -85,9 +83,7 @@ contains
   !> Writes the quantities of interfaces in history and summary, for pictures at the times of the fields.
   subroutine write_figures(model, interfaces, fields, error)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -114,11 +110,9 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -145,7 +139,6 @@ contains
   !> 1 in elements whose interface above has delaminated.
   function delaminated_above(model, interfaces) result(delaminated)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> 1 or 0, with a cohesive law between them, (1, elements)
     real(wp), allocatable :: delaminated(:, :)
@@ -202,7 +195,6 @@ contains
   !> Contact pressure at the interface above each point's layer.
   pure function pressures(model, interfaces, displacement)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)

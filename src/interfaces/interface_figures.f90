@@ -34,7 +34,6 @@ contains
   !> Results of all interfaces, in the order of the zones. Collective.
   function figures_of(model, interfaces) result(figures)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> (zones)
     type(interface_figures_t) :: figures(size(model%mesh%zones))
@@ -60,7 +59,6 @@ contains
   !> Stage of failure of each interface. Collective.
   function stages_of(model, interfaces) result(stages)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> (zones)
     integer :: stages(size(model%mesh%zones))
@@ -81,7 +79,6 @@ contains
 
   !> Stage of failure of a cohesive point.
   pure integer function stage_of(point) result(stage)
-    !> The point
     type(cohesive_point_t), intent(in) :: point
 
     stage = stage_intact
@@ -93,7 +90,6 @@ contains
   !> where fronts release ties. Collective.
   function bounds_of(model, interfaces) result(bounds)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> (4, zones); `empty_bound` without delamination
     real(wp) :: bounds(4, size(model%mesh%zones))
@@ -121,7 +117,6 @@ contains
   !> Largest -x, x, -y and y of the delaminated cells of a zone.
   pure function cell_bounds(model, interfaces, zone) result(bounds)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Index of the zone
     integer, intent(in) :: zone

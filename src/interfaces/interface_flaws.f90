@@ -19,7 +19,6 @@ contains
   !> of a cracked cell is farther away than the cell itself and need not be considered; with point symmetry cells beyond
   !> the cut are images of cells of the modelled part.
   pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Index of the zone
@@ -48,7 +47,6 @@ contains
 
   !> Reduces the strengths of the undamaged points of an interface within a distance of a rectangle.
   pure subroutine weaken_around(interfaces, model, zone, x, y, reach, part)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Index of the zone
@@ -98,7 +96,6 @@ contains
 
   !> Cells of the mesh within the distance of a zone in which a crack affects its interface.
   pure function reachable_cells(mesh, zone, reach) result(reachable)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Index of the zone
     integer, intent(in) :: zone
@@ -134,9 +131,7 @@ contains
 
   !> Saves or loads.
   subroutine visit_flaws(interfaces, archive, model)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

@@ -32,21 +32,13 @@ module interface_states
     !> True after a front or damage has reached the border of its zone, where growth ends, (zones)
     logical, allocatable :: border_reached(:)
   contains
-    !> Adds the forces of ties and contact to a residual.
     procedure :: add_to_residual
-    !> Sets the multipliers to the contact pressures found.
     procedure :: update_contact
-    !> Keeps closed contacts closed in the predictor.
     procedure :: keep_contact_closed
-    !> Work of contact and penalty ties in a step.
     procedure :: contact_work
-    !> Energy recorded as fracture energy but not released by fronts.
     procedure :: unreleased
-    !> Stiffness that ties, contact and cohesive laws add to the diagonal.
     procedure :: added_stiffness
-    !> Frictional heat since an earlier state.
     procedure :: friction_heat
-    !> Saves or loads the state.
     procedure :: visit
   end type interface_state_t
 
@@ -55,7 +47,6 @@ contains
   !> All interfaces with their starters.
   pure function new_interface_state(model) result(self)
     type(model_t), intent(in) :: model
-    !> The state
     type(interface_state_t) :: self
 
     allocate (self%border_reached(size(model%mesh%zones)), source=.false.)
@@ -67,7 +58,6 @@ contains
 
   !> Adds the forces of ties and contact to a residual and sets that of tied jumps to zero.
   subroutine add_to_residual(self, model, displacement, residual)
-    !> The state
     class(interface_state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -82,7 +72,6 @@ contains
 
   !> Sets the multipliers of surfaces and frames to the contact pressures found.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
-    !> The state
     class(interface_state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -106,7 +95,6 @@ contains
 
   !> Keeps closed contacts of surfaces and frames closed in the predictor.
   subroutine keep_contact_closed(self, model, guess)
-    !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
@@ -118,7 +106,6 @@ contains
 
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function contact_work(self, model, displacement, change) result(work)
-    !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns at the end of the step and their change, (5, points)
@@ -130,7 +117,6 @@ contains
 
   !> Frictional heat since an earlier state, of the full plate, the same on every rank.
   real(wp) function friction_heat(self, model, old) result(heat)
-    !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The earlier state
@@ -142,7 +128,6 @@ contains
   !> Energy recorded as fracture energy but not yet released by fronts in equilibrium, which is not an error of the
   !> integrator.
   pure real(wp) function unreleased(self, model)
-    !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     integer :: zone
@@ -156,7 +141,6 @@ contains
 
   !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)
-    !> The state
     class(interface_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
@@ -178,9 +162,7 @@ contains
 
   !> Saves or loads the state.
   subroutine visit(self, archive, model)
-    !> The state
     class(interface_state_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer, allocatable :: reached(:)

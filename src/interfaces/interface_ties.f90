@@ -25,19 +25,12 @@ module interface_ties
     !> Fracture energy of the cells that fronts have released, of the full plate, (zones), the same on every rank
     real(wp), allocatable :: fracture(:)
   contains
-    !> Updates the free jumps after growth.
     procedure :: free_jumps
-    !> Kind of connection at a point.
     procedure :: connection
-    !> Owned points with contact of surfaces.
     procedure :: in_contact
-    !> Sets the correction of tied jumps to zero.
     procedure :: constrain_correction
-    !> Largest penetration.
     procedure :: penetration
-    !> Delaminated area of each zone of the full plate.
     procedure :: area
-    !> Saves or loads.
     procedure :: visit
   end type interface_ties_t
 
@@ -46,7 +39,6 @@ contains
   !> Ties of all interfaces with their starters.
   pure subroutine create_interface_ties(model, self)
     type(model_t), intent(in) :: model
-    !> The connections
     class(interface_ties_t), intent(inout) :: self
     integer :: zone
 
@@ -65,7 +57,6 @@ contains
 
   !> Updates the free jumps: those at nodes around which all cells have delaminated.
   pure subroutine free_jumps(self, model)
-    !> The connections
     class(interface_ties_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     integer :: i, line(2)
@@ -79,7 +70,6 @@ contains
 
   !> Kind of connection at a point.
   pure integer function connection(self, model, i)
-    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Point of this rank
@@ -113,7 +103,6 @@ contains
 
   !> Owned points with contact of surfaces.
   pure function in_contact(self, model) result(points)
-    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Points of this rank, ascending
@@ -127,7 +116,6 @@ contains
 
   !> Sets the correction of tied jumps to zero.
   pure subroutine constrain_correction(self, model, correction)
-    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Correction of the unknowns, (5, points)
@@ -142,7 +130,6 @@ contains
 
   !> Largest penetration of separated surfaces, the same on every rank.
   real(wp) function penetration(self, model, displacement)
-    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -161,7 +148,6 @@ contains
 
   !> Delaminated area of each zone of the full plate where fronts release ties.
   pure function area(self, model)
-    !> The connections
     class(interface_ties_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> The area, (zones); zero for zones with a cohesive law
@@ -182,9 +168,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The connections
     class(interface_ties_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: zone

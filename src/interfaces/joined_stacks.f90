@@ -30,7 +30,6 @@ contains
     real(wp), intent(in) :: delaminated(:, :)
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> The stacks
     type(joined_stacks_t) :: self
     real(wp), allocatable :: layers(:, :)
     integer :: cell, first, last

@@ -16,7 +16,6 @@ contains
 
   !> Replaces the damage by the dissipated fraction of the toughness.
   pure subroutine put_fractions(interfaces, model)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
 
@@ -25,7 +24,6 @@ contains
 
   !> Replaces the dissipated fraction of the toughness by the damage.
   pure subroutine set_damage(interfaces, model)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     integer :: i
@@ -44,7 +42,6 @@ contains
   !> Corrects slips so that friction is within its limit: means of slips are not consistent with the interpolated jumps,
   !> and the elastic energy of forces above the limit would be spurious.
   pure subroutine set_slips(interfaces, model, displacement)
-    !> The interfaces
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)

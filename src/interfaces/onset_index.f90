@@ -82,7 +82,6 @@ contains
     type(model_t), intent(in) :: model
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
-    !> The data
     type(onset_t) :: self
 
     self%stacks = stacks
@@ -92,7 +91,6 @@ contains
 
   !> Indices of the interfaces below a range of plies of an element's stack.
   pure function indices(self, model, element, range)
-    !> The data
     class(onset_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Element of the mesh

@@ -27,7 +27,6 @@ contains
   !> All points of a node belong to one rank, so that only the sums are collective.
   function projected_areas_of(model, interfaces) result(areas)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> In the order of the rules
     real(wp) :: areas(area_rules)
@@ -66,7 +65,6 @@ contains
   !> Delaminated area of each point by all rules. Collective.
   function areas_of_points(model, interfaces) result(areas)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> (rules, local points); at the border of a zone a point of the joined layers has its part
     real(wp) :: areas(area_rules, size(model%zone))
@@ -89,7 +87,6 @@ contains
   !> Largest part of delaminated cells at each point, of all zones in which fronts release ties. Collective.
   function areas_of_fronts(model, interfaces) result(areas)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> (local points)
     real(wp) :: areas(size(model%zone))

@@ -22,7 +22,6 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -51,7 +50,6 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -110,7 +108,6 @@ contains
   !> Extents of the damaged points. Collective.
   function around_damage(model, interfaces) result(extents)
     type(model_t), intent(in) :: model
-    !> The interfaces
     type(interface_state_t), intent(in) :: interfaces
     !> Full extents along x and y, (2, zones)
     real(wp) :: extents(2, size(model%mesh%zones))

@@ -26,21 +26,13 @@ module rig_contact
     !> Forces of the rigs computed in an explicit step, (max_supports)
     real(wp), allocatable :: found(:)
   contains
-    !> Adds the pressure's forces to a residual.
     procedure :: add_to_residual
-    !> Adds the forces of springs to internal forces.
     procedure :: add_springs
-    !> Sets the multipliers to the pressures found.
     procedure :: update_contact
-    !> Work of the pressure in a step.
     procedure :: work
-    !> Keeps closed contacts closed in the predictor.
     procedure :: keep_contact_closed
-    !> Stiffness that frames and clamps add to the diagonal.
     procedure :: add_stiffness
-    !> Forces of each rig on the plate.
     procedure :: reactions
-    !> Saves or loads.
     procedure :: visit
   end type rig_contact_t
 
@@ -50,7 +42,6 @@ contains
   !> force. Slopes are those of contact, so that frames support it from the first step.
   pure function new_rig_contact(model) result(self)
     type(model_t), intent(in) :: model
-    !> The state
     type(rig_contact_t) :: self
 
     if (.not. model%rig%unilateral) return
@@ -97,7 +88,6 @@ contains
 
   !> Adds the forces of springs and of clamps with a force to internal forces, and their stored energy.
   pure subroutine add_springs(self, model, displacement, force, energy)
-    !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -119,7 +109,6 @@ contains
 
   !> Sets the multipliers to the pressures found; they have converged once they agree with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
-    !> The state
     class(rig_contact_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, (5, points)
@@ -148,7 +137,6 @@ contains
 
   !> Work of the pressure in a step, of this rank's points.
   pure real(wp) function work(self, model, change)
-    !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Change of the unknowns, (5, points)
@@ -163,7 +151,6 @@ contains
 
   !> Keeps closed contacts closed in the predictor, and open ones from penetrating.
   subroutine keep_contact_closed(self, model, guess)
-    !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
@@ -178,7 +165,6 @@ contains
 
   !> Adds the stiffness of frames and clamps to that of the diagonal.
   pure subroutine add_stiffness(self, model, stiffness_factor, added)
-    !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Factor of internal forces in the operator
@@ -201,7 +187,6 @@ contains
   !> Forces of each rig on the full plate, positive against the impact: residual of the equations of motion at
   !> constrained w, pressure on its frame, and springs of its clamps. The same on every rank.
   function reactions(self, model, displacement, internal, inertia, loads)
-    !> The state
     class(rig_contact_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Unknowns, internal forces and inertia forces at the owned points, (5, points)
@@ -242,9 +227,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The state
     class(rig_contact_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

@@ -26,17 +26,11 @@ module tie_release
     !> Time until the last of them is zero, the same on every rank
     real(wp) :: left = 0
   contains
-    !> Releases ties.
     procedure :: release
-    !> Energy released by the first opening of newly released ties.
     procedure :: first_opening
-    !> Reduces the forces over a step.
     procedure :: ramp_down
-    !> Adds the forces to a residual.
     procedure :: add_to_residual
-    !> Records the work against the forces in a step.
     procedure :: record
-    !> Saves or loads.
     procedure :: visit
   end type tie_release_t
 
@@ -45,7 +39,6 @@ contains
   !> No tie has been released.
   pure function new_tie_release(model) result(self)
     type(model_t), intent(in) :: model
-    !> The ties
     type(tie_release_t) :: self
     !> Number of elements that a shear wave crosses while the force of a released tie decreases to zero. With 10 the
     !> energy released is the same within a few per cent for all shorter steps. With 5 and 20 the force history changes
@@ -68,7 +61,6 @@ contains
   !> Releases the ties whose jumps have become free. Where surfaces are under pressure, contact, if it is modelled,
   !> carries the normal force at once, so that only the shear forces are ramped down.
   pure subroutine release(self, model, free_before, free, forces)
-    !> The ties
     class(tie_release_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> True where jumps were free and where they are now, (local points)
@@ -113,7 +105,6 @@ contains
 
   !> Reduces the forces over a step.
   pure subroutine ramp_down(self, model, step)
-    !> The ties
     class(tie_release_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Time step
@@ -137,7 +128,6 @@ contains
 
   !> Adds the forces to a residual.
   pure subroutine add_to_residual(self, model, residual)
-    !> The ties
     class(tie_release_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Residual at the owned points, (5, points)
@@ -185,9 +175,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The ties
     class(tie_release_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)

@@ -30,11 +30,9 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
-    !> Motion
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Zero, G, zero, (3, segments)
     real(wp), allocatable :: modes(:, :)
@@ -54,7 +52,6 @@ contains
   !> Energy release rates of the segments from the states at their nodes.
   function rates_of_states(model, segments, found, stiffness) result(rates)
     type(model_t), intent(in) :: model
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Extrapolated strains, (8, 3 nodes, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: found(:, :, :, :, :)
@@ -91,7 +88,6 @@ contains
 
   !> Stiffness for the comparison of the states of a layer on both sides of a segment: that of the stiffer side.
   pure function common_stiffness(segment, stiffness) result(common)
-    !> The segment
     type(front_segment_t), intent(in) :: segment
     !> Stiffness of the layer, (21, 2 sides)
     real(wp), intent(in) :: stiffness(:, :)
@@ -128,7 +124,6 @@ contains
   !> State at a node of a segment: mean over the segments that share the node and border on cells of the same stiffness.
   !> Between cells of different stiffness strains are discontinuous.
   pure function smooth_state(segments, states, common, s, line) result(smooth)
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Strains, (8, 3 nodes, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: states(:, :, :, :, :)
@@ -158,7 +153,6 @@ contains
     type(model_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Elements, (2 layers, 2 sides, segments)
     integer :: elements(2, 2, size(segments))
@@ -184,7 +178,6 @@ contains
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion of every layer, (5, points)
     real(wp), intent(in) :: field(:, :)
-    !> The front
     type(front_segment_t), intent(in) :: segments(:)
     !> Elements of this rank, layer by layer, side by side, segment by segment; 0: none
     integer, intent(in) :: elements(4*size(segments))

@@ -201,7 +201,6 @@ contains
     type(crack_band_t), intent(in) :: band
     !> Part of G12 that is lost
     real(wp), intent(in) :: loss
-    !> The law
     type(crack_band_t) :: law
 
     law = band

@@ -74,7 +74,6 @@ contains
     integer, intent(in) :: criteria
     !> True: plies soften by their fracture energies, with criteria of the in-plane stresses
     logical, intent(in) :: bands
-    !> The material
     type(material_t), intent(in) :: material
     !> For example `XT, Sf`
     character(len=:), allocatable :: names

@@ -39,7 +39,6 @@ contains
   pure subroutine fibre_toughness_lines(markdown, lines)
     !> True: as tables for the manual
     logical, intent(in) :: markdown
-    !> The lines
     type(line_t), allocatable, intent(out) :: lines(:)
     type(line_t), allocatable :: cells(:)
     integer :: row

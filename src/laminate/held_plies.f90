@@ -17,7 +17,6 @@ contains
 
   !> Modulus through the thickness of a laminate whose strains in the plane are held: layers in series.
   pure real(wp) function held_modulus(laminate, materials) result(modulus)
-    !> The laminate
     type(laminate_t), intent(in) :: laminate
     !> Materials that it refers to
     type(material_t), intent(in) :: materials(:)
@@ -30,7 +29,6 @@ contains
 
   !> Modulus C33 of a ply across its fibres if its other strains are zero.
   pure real(wp) function modulus_of(material) result(modulus)
-    !> The material
     type(material_t), intent(in) :: material
     real(wp) :: product
 
@@ -41,7 +39,6 @@ contains
   !> Ratio of the pressure in the plane across the fibres to that through the thickness, C23/C33, if the strains in the
   !> plane are zero.
   pure real(wp) function held_ratio(material) result(ratio)
-    !> The material
     type(material_t), intent(in) :: material
     real(wp) :: product
 

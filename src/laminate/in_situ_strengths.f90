@@ -30,7 +30,6 @@ contains
     type(material_t), intent(in) :: materials(:)
     !> True: in-situ strengths
     type(ply_damage_t), intent(in) :: damage
-    !> The material
     type(material_t) :: material
     real(wp) :: strengths(2)
     logical :: at_face(2)
@@ -53,7 +52,6 @@ contains
     type(material_t), intent(in) :: materials(:)
     !> True: in-situ strengths
     type(ply_damage_t), intent(in) :: damage
-    !> The strengths
     type(matrix_strengths_t) :: strengths
 
     strengths = matrix_strengths(material_in_place(plies, ply, materials, damage), criteria_puck)

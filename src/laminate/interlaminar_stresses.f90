@@ -13,7 +13,6 @@ module interlaminar_stresses
     !> tau_xz and tau_yz for Qx = 1 and Qy = 1, and the parts of these forces that plies above carry, (2, 2, plies - 1)
     real(wp), allocatable :: shear(:, :, :), carried(:, :, :)
   contains
-    !> Normal stress.
     procedure :: opening
     !> Onset index of interfaces.
     procedure :: onset_indices
@@ -25,7 +24,6 @@ contains
   pure function unit_stresses_of(stack) result(self)
     !> The plies, from the struck face
     type(ply_t), intent(in) :: stack(:)
-    !> The stresses
     type(unit_stresses_t) :: self
     real(wp) :: in_plane(6, size(stack))
     integer :: i
@@ -40,7 +38,6 @@ contains
   !> interpreted as pressure on the upper or lower face. Inertia and membrane forces of a curved plate are neglected;
   !> the stress is too low by at most their force per area.
   pure real(wp) function opening(self, ply, gradient) result(stress)
-    !> The stresses
     class(unit_stresses_t), intent(in) :: self
     !> The ply above the interface, from the top of the stack
     integer, intent(in) :: ply
@@ -52,7 +49,6 @@ contains
 
   !> Stresses over strengths in each interface, sqrt((tau/S)**2 + (sigma/T)**2), pressure left out.
   pure function onset_indices(self, strengths, force, gradient) result(indices)
-    !> The stresses
     class(unit_stresses_t), intent(in) :: self
     !> Strengths in shear and opening of the interface below each ply; 0: not known, and without a shear strength the
     !> interface cannot fail, (2, plies - 1)

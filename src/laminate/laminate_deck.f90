@@ -50,11 +50,9 @@ contains
   subroutine fill_laminate(settings, materials, laminate, problems)
     !> Keys in effect; receive angles and thicknesses of the stacking sequence
     type(settings_t), intent(inout) :: settings
-    !> The materials
     type(material_t), intent(in) :: materials(:)
     !> Receives them
     type(laminate_t), intent(inout) :: laminate
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: angles(:), thicknesses(:)
     type(line_t), allocatable :: names(:)
@@ -89,7 +87,6 @@ contains
   subroutine choose_correction(settings, materials, laminate)
     !> Keys in effect; receive the chosen one
     type(settings_t), intent(inout) :: settings
-    !> The materials
     type(material_t), intent(in) :: materials(:)
     !> The plies; receives it
     type(laminate_t), intent(inout) :: laminate
@@ -122,9 +119,7 @@ contains
 
   !> Turns stacking and ply_thickness into angles and thicknesses, and reports missing and repeated values.
   subroutine resolve_stacking(settings, problems)
-    !> Keys in effect
     type(settings_t), intent(inout) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     character(len=*), parameter :: listed(2) = [character(len=11) :: key_angles, key_thicknesses], &
                                    noted(2) = [character(len=13) :: key_stacking, key_ply_thickness]
@@ -191,7 +186,6 @@ contains
 
   !> Checks that a list has one value, or one per ply.
   subroutine check_number(settings, key, number, plies, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Name of the list
     character(len=*), intent(in) :: key
@@ -199,7 +193,6 @@ contains
     integer, intent(in) :: number
     !> Number of plies
     integer, intent(in) :: plies
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (number <= 1 .or. number == plies) return
@@ -209,13 +202,10 @@ contains
 
   !> Index of a material by its name, 0 if there is none.
   subroutine find_material(settings, materials, name, problems, index)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The materials
     type(material_t), intent(in) :: materials(:)
     !> Name of the material
     character(len=*), intent(in) :: name
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     !> The index
     integer, intent(out) :: index

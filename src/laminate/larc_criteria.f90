@@ -38,7 +38,6 @@ contains
   !> Constants of a material. Without fracture energies their ratio is that of a thick ply, 1.12**2 (1/E2 - nu21**2/E1)
   !> 2 G12 (YT/S12)**2. Without XC and YC its fibres do not kink, and its matrix is not crushed.
   pure function larc_of(material) result(larc)
-    !> The material
     type(material_t), intent(in) :: material
     !> The constants
     type(larc_t) :: larc

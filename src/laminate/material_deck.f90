@@ -102,7 +102,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Receives them
     type(material_t), allocatable, intent(out) :: materials(:)
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: i, j
 
@@ -125,7 +124,6 @@ contains
     integer, intent(in) :: place
     !> Receives it
     type(material_t), intent(inout) :: material
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     logical :: complete
     integer :: mode
@@ -163,7 +161,6 @@ contains
 
   !> Largest over smallest modulus of a material.
   pure real(wp) function contrast(material)
-    !> The material
     type(material_t), intent(in) :: material
     real(wp) :: moduli(6)
 
@@ -174,7 +171,6 @@ contains
 
   !> Smallest and largest modulus as text.
   pure function contrast_text(material) result(words)
-    !> The material
     type(material_t), intent(in) :: material
     !> Such as `its moduli G23 = 2980 and E1 = 139e9`
     character(len=:), allocatable :: words
@@ -191,11 +187,9 @@ contains
 
   !> Whether the elastic constants are complete and valid; reports missing ones.
   subroutine check_completeness(settings, place, problems, complete)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the material
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     !> True: they are complete and valid
     logical, intent(out) :: complete
@@ -229,7 +223,6 @@ contains
 
   !> Those of some keys that the deck gives, or those that it does not.
   function words_with(settings, place, keys, given) result(words)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the material
     integer, intent(in) :: place
@@ -255,7 +248,6 @@ contains
     type(line_t), intent(in) :: missing(:)
     !> Index of the material
     integer, intent(in) :: place
-    !> The faults so far
     type(problems_t), intent(in) :: problems
     integer :: i
 
@@ -264,7 +256,6 @@ contains
 
   !> Constants of an isotropic material.
   subroutine fill_isotropic(settings, place, material)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the material
     integer, intent(in) :: place
@@ -305,9 +296,7 @@ contains
 
   !> Checks that every material has a density, which a run in time requires.
   subroutine require_densities(settings, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -321,11 +310,9 @@ contains
   !> Compliance of a half-space in Sun's formula: 1/E2; Hertz' (1 - nu**2)/E if isotropic; 0 if the constants are not
   !> known.
   pure real(wp) function normal_compliance(settings, place, material) result(compliance)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Index of the material
     integer, intent(in) :: place
-    !> The material
     type(material_t), intent(in) :: material
 
     compliance = 0

@@ -73,7 +73,6 @@ contains
   pure function library_values(name) result(values)
     !> Its name in any case
     character(len=*), intent(in) :: name
-    !> The values
     type(library_value_t), allocatable :: values(:)
     type(line_t), allocatable :: names(:), cells(:), words(:)
     type(library_value_t) :: value

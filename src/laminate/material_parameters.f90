@@ -47,7 +47,6 @@ contains
 
   !> True: the moduli along the fibres in tension and in compression differ.
   elemental logical function modulus_differs(material)
-    !> The material
     type(material_t), intent(in) :: material
 
     modulus_differs = material%e1c > 0 .and. abs(material%e1c - material%e1) > 0
@@ -55,7 +54,6 @@ contains
 
   !> First material with equal constants: two names with equal constants are one material.
   pure integer function first_alike(materials, index) result(first)
-    !> All materials
     type(material_t), intent(in) :: materials(:)
     !> The material
     integer, intent(in) :: index
@@ -68,7 +66,6 @@ contains
 
   !> Everything about a material but its name.
   pure function constants_of(material) result(values)
-    !> The material
     type(material_t), intent(in) :: material
     !> In the order of the type
     real(wp) :: values(constants)

@@ -32,7 +32,6 @@ contains
   !> Strengths of a material. The criteria of Hou et al. have S12 where those of Hashin have the shear strength across
   !> the fibres. Without Sm23 the latter is YC/2, with which Hashin's crushing becomes (s22/YC)**2 + (s12/S12)**2.
   pure function matrix_strengths(material, criteria) result(strengths)
-    !> The material
     type(material_t), intent(in) :: material
     !> criteria_hou, criteria_hashin, criteria_puck or criteria_larc
     integer, intent(in) :: criteria
@@ -71,7 +70,6 @@ contains
   !> Exposure after Puck (A. Puck, H. Schuermann, Composites Science and Technology 58 (1998) 1045-1067; theory (M8)),
   !> modes A, B, C.
   pure real(wp) function puck_exposure(strengths, across, shear) result(exposure)
-    !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> Stress across the fibres, and in-plane shear stress
     real(wp), intent(in) :: across, shear
@@ -95,7 +93,6 @@ contains
 
   !> Shear strength R of the action plane across the fibres over S12, from YC, theory (M7).
   pure real(wp) function action_plane(strengths) result(plane)
-    !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
 
     associate (pc => inclination_compression)
@@ -107,7 +104,6 @@ contains
   !> theory (D5) and (D6)). The ratio of inclination to strength is the same for shear along and across the fibres, as
   !> in modes A, B and C, which are reproduced without transverse shear.
   pure real(wp) function plane_exposure(strengths, stress, enough) result(exposure)
-    !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
@@ -139,7 +135,6 @@ contains
   !> True if stresses crack the matrix on a plane. Planes are evaluated only where an upper bound of their exposures
   !> reaches 1.
   pure logical function cracks_on_a_plane(strengths, stress) result(cracks)
-    !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
@@ -153,7 +148,6 @@ contains
 
   !> Exposure of one plane.
   pure real(wp) function exposure_of(strengths, normal, shear) result(exposure)
-    !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
     !> Stress normal to the plane, and shear stress in it over its strength
     real(wp), intent(in) :: normal, shear
@@ -169,7 +163,6 @@ contains
 
   !> Transverse shear stress s23 that cracks the matrix if it acts alone, usually in tension on the plane at 45 degrees.
   pure real(wp) function shear_across_strength(strengths) result(strength)
-    !> Strengths
     type(matrix_strengths_t), intent(in) :: strengths
 
     strength = 1/plane_exposure(strengths, [0.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])

@@ -37,7 +37,6 @@ contains
   !> A ply with its modulus in bending, for estimates of plates whose plies are in tension on one side of the mid-plane
   !> and in compression on the other.
   elemental function in_bending(ply) result(same)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> The ply with one modulus
     type(ply_t) :: same
@@ -52,7 +51,6 @@ contains
 
   !> Relative error of the bending stiffness of a unidirectional laminate by the thickness of the sub-plies of a ply.
   elemental real(wp) function bending_error_of(ply, thickness) result(error)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Thickness of the laminate
     real(wp), intent(in) :: thickness
@@ -66,11 +64,9 @@ contains
   !> Number of sub-plies of a ply for an error of the bending stiffness: in a unidirectional laminate in pure bending,
   !> half of the sub-plies have the modulus E1 for their deviations where E1c would be right, theory (M24).
   elemental integer function sub_plies_of(ply, thickness, error) result(number)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Thickness of the laminate
     real(wp), intent(in) :: thickness
-    !> Largest relative error
     real(wp), intent(in) :: error
     real(wp) :: excess
 
@@ -83,7 +79,6 @@ contains
 
   !> Height of the mid-plane of a sub-ply.
   pure real(wp) function sub_ply_middle(ply, number) result(z)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Number of the sub-ply, from the top
     integer, intent(in) :: number
@@ -94,7 +89,6 @@ contains
 
   !> Strains along and across the fibres at a height, without stress-free strains.
   pure function mean_strains_at(ply, strains, z) result(mean)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy
     real(wp), intent(in) :: strains(6)

@@ -46,7 +46,6 @@ contains
 
   !> Elastic constants of a material without damage.
   pure function elasticity_of(material) result(elasticity)
-    !> The material
     type(material_t), intent(in) :: material
     !> Its constants
     type(elasticity_t) :: elasticity
@@ -90,7 +89,6 @@ contains
   !> Objection to the elastic constants of a material, or an empty text: the strain energy must be positive for any
   !> strain, in plane stress and, where nu23 is given, also in three dimensions with E3 = E2 and nu13 = nu12.
   pure function material_objection(material) result(objection)
-    !> The material
     type(material_t), intent(in) :: material
     !> One clause for the user, without the name of the material; empty: admissible
     character(len=:), allocatable :: objection
@@ -124,7 +122,6 @@ contains
 
   !> Turns the fibres of a ply to an angle.
   pure subroutine set_angle(ply, angle)
-    !> The ply
     type(ply_t), intent(inout) :: ply
     !> Fibre angle from x, degrees
     real(wp), intent(in) :: angle

@@ -42,7 +42,6 @@ contains
 
   !> Damage of the plies.
   subroutine fill_ply_damage(settings, damage)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(ply_damage_t), intent(inout) :: damage

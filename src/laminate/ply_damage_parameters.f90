@@ -49,7 +49,6 @@ contains
 
   !> Numbers of the damage in the order of their names; choices by their number in the list of the deck.
   pure function numbers_of(damage) result(numbers)
-    !> The damage
     type(ply_damage_t), intent(in) :: damage
     !> One a name
     real(wp) :: numbers(size(damage_names))

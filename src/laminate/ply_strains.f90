@@ -70,7 +70,6 @@ contains
 
   !> Strains of a ply in its material axes, minus stress-free strains.
   pure function strains_of_ply(ply, moments) result(strains)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Strains of the element
     type(strain_moments_t), intent(in) :: moments

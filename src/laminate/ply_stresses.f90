@@ -49,7 +49,6 @@ contains
 
   !> Stresses in the mid-plane of a ply, which are also its averages over the thickness.
   pure function middle_stress(ply, elasticity, strains, shear) result(stress)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Its present elastic constants
     type(elasticity_t), intent(in) :: elasticity
@@ -63,7 +62,6 @@ contains
 
   !> Stresses on both faces of a ply, where the in-plane ones are largest.
   pure function face_stresses(ply, elasticity, strains, shear) result(stresses)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Its present elastic constants
     type(elasticity_t), intent(in) :: elasticity

@@ -26,7 +26,6 @@ contains
 
   !> The change of the temperature.
   subroutine fill_thermal(settings, change)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives it
     real(wp), intent(inout) :: change
@@ -37,11 +36,8 @@ contains
   !> Warns of a change of temperature without effect, or with strains that are not small, as when expansions are given
   !> in 1e-6 per degree.
   subroutine check_thermal(settings, materials, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> All materials
     type(material_t), intent(in) :: materials(:)
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: change
     integer :: i, direction

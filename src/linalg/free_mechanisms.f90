@@ -23,7 +23,6 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Applies the factor
     type(tKSP), intent(in) :: solver
-    !> The matrix
     type(petsc_matrix_t), intent(inout) :: matrix
     !> Approximate eigenvector, this rank's rows; unallocated: none is known, or there is a mechanism
     real(wp), allocatable, intent(inout) :: mode(:)

@@ -30,7 +30,6 @@ module krylov_solvers
     !> Product with a vector. Collective.
     subroutine find_product(self, vector, product, error)
       import :: linear_system_t, error_t, wp
-      !> The equations
       class(linear_system_t), intent(inout) :: self
       !> The vector, (rows of this rank)
       real(wp), intent(in) :: vector(:)
@@ -58,11 +57,8 @@ module krylov_solvers
     !> Right-hand side and solution
     type(tVec), private :: right, left
   contains
-    !> Creates the solver.
     procedure :: define
-    !> Solves.
     procedure :: solve
-    !> Deallocates it.
     procedure :: release
   end type krylov_solver_t
 
@@ -100,7 +96,6 @@ contains
 
   !> Creates the solver. Collective.
   subroutine define(self, communicator, rows, method, error)
-    !> The solver
     class(krylov_solver_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -108,7 +103,6 @@ contains
     integer, intent(in) :: rows
     !> PETSc's name of the method, `fgmres` or `cg`
     character(len=*), intent(in) :: method
-    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: total, ierr(15)
 
@@ -137,7 +131,6 @@ contains
   !> Solves to a tolerance, or until the Krylov space has its largest dimension. If a product fails, the solver must be
   !> defined again. Collective.
   subroutine solve(self, system, row_factors, right_hand_side, tolerance, solution, error)
-    !> The solver
     class(krylov_solver_t), intent(inout) :: self
     !> The equations
     class(linear_system_t), target, intent(inout) :: system
@@ -178,7 +171,6 @@ contains
   subroutine find_products(matrix, products, ierr)
     !> The matrix
     type(tMat), intent(in) :: matrix
-    !> The products
     type(products_t), pointer, intent(out) :: products
     !> PETSc's code
     integer, intent(out) :: ierr
@@ -232,7 +224,6 @@ contains
 
   !> Deallocates the solver. Collective.
   subroutine release(self)
-    !> The solver
     class(krylov_solver_t), intent(inout) :: self
     integer :: ierr
 

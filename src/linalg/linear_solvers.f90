@@ -46,17 +46,11 @@ module linear_solvers
     !> Motion of least stiffness, by which mechanisms of the structure are found
     real(wp), allocatable, private :: mode(:)
   contains
-    !> Sets the pattern of the matrix, replacing a previous one. Collective.
     procedure :: define
-    !> Factorizes the assembled matrix. Collective.
     procedure :: factorize
-    !> Solves for one right-hand side. Collective.
     procedure :: solve
-    !> Size of the factor, the same on every rank.
     procedure :: statistics
-    !> Name of the package that factorizes the matrix, and the number of factorizations by the second package.
     procedure :: package_used
-    !> Deallocates matrix and factors.
     procedure :: release
     procedure, private :: set_up_factor
     procedure, private :: factorize_current

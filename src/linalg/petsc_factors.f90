@@ -38,15 +38,10 @@ module petsc_factors
     !> True: the caller declares the matrix positive definite
     logical, private :: positive_definite = .true.
   contains
-    !> Chooses the package.
     procedure :: define
-    !> Factorizes a matrix.
     procedure :: factorize
-    !> Usual name of the package.
     procedure :: title
-    !> Size of the factors.
     procedure :: statistics
-    !> Deallocates the factors.
     procedure :: release
     procedure, private :: choose_package
     procedure, private :: gather_on_one_rank
@@ -174,7 +169,6 @@ contains
     type(tMat), intent(in) :: matrix
     !> Memory beyond MUMPS' estimate in %, negative for its own choice
     integer, intent(in) :: memory_margin
-    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(5)
 

@@ -31,21 +31,13 @@ module petsc_matrices
     !> First code that PETSc returned for an added matrix, 0 for success
     integer, private :: first_error = 0
   contains
-    !> Creates the matrix with all entries of the pattern.
     procedure :: define
-    !> Zeroes the values.
     procedure :: clear
-    !> Adds an element's matrix.
     procedure :: add
-    !> Completes the assembly.
     procedure :: finish_assembly
-    !> The diagonal.
     procedure :: diagonal
-    !> Product with a vector.
     procedure :: multiply
-    !> Solution of the matrix' equations by a solver of PETSc.
     procedure :: solve
-    !> Frees the matrix and its vectors.
     procedure :: release
   end type petsc_matrix_t
 
@@ -62,7 +54,6 @@ contains
     integer, intent(in) :: row_start(:)
     !> Columns of the owned rows in both triangles, from 0, ascending within a row, diagonal included
     integer, intent(in) :: columns(:)
-    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: rows, row, ierr(5), inner(size(row_start) - 1), outer(size(row_start) - 1)
     logical :: is_inner(size(columns))
@@ -176,7 +167,6 @@ contains
     real(wp), intent(in) :: vector(:)
     !> Owned part of the product
     real(wp), intent(out) :: product(:)
-    !> Raised when PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3)
 

@@ -23,18 +23,12 @@ module cell_grids
     !> True along directions in which the model begins at the plate's centre, and in which it is mirrored there
     logical :: halved(2) = .false., mirrored(2) = .false.
   contains
-    !> Number of nodes.
     procedure :: nodes
-    !> Sides and area of a cell.
     procedure :: cell_sides
     procedure :: cell_area
-    !> True where a cell lies under the loaded patch.
     procedure :: in_patch
-    !> Side on which a cell borders on a line through the struck point.
     procedure :: struck_side
-    !> Node with the same motion as a given node on the cut line of point symmetry.
     procedure :: turned_node
-    !> True for a dependent node.
     procedure :: is_dependent
   end type cell_grid_t
 
@@ -46,7 +40,6 @@ contains
     type(plate_t), intent(in) :: plate
     !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
-    !> The grid
     class(cell_grid_t), intent(inout) :: self
 
     self%multiplicity = parts_of(plate%symmetry)
@@ -196,14 +189,12 @@ contains
 
   !> Number of nodes.
   pure integer function nodes(self)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     nodes = size(self%node_coordinates, 2)
   end function nodes
 
   !> Sides of a cell along x and y.
   pure function cell_sides(self, place) result(sides)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Column and row, from 1
     integer, intent(in) :: place(2)
@@ -215,7 +206,6 @@ contains
 
   !> Area of a cell.
   pure real(wp) function cell_area(self, place) result(area)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Column and row, from 1
     integer, intent(in) :: place(2)
@@ -226,7 +216,6 @@ contains
   !> Image of a node on the cut line of point symmetry: the image of (0, y) is (0, -y). Both have the same w; in-plane
   !> displacements and rotations have the opposite sign. The centre is its own image; other nodes have no image, 0.
   pure integer function turned_node(self, node) result(image)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Node
     integer, intent(in) :: node
@@ -240,7 +229,6 @@ contains
 
   !> True for a dependent node: its image has the lower number and determines its motion.
   pure logical function is_dependent(self, node)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Node
     integer, intent(in) :: node
@@ -250,7 +238,6 @@ contains
 
   !> True where a cell lies under the loaded patch.
   pure logical function in_patch(self, cell, patch)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Cell
     integer, intent(in) :: cell
@@ -265,7 +252,6 @@ contains
   !> Along x and y: -1 where the lower side of a cell lies on the line through the struck point normal to that
   !> direction, 1 where its upper side does, 0 elsewhere.
   pure function struck_side(self, place) result(side)
-    !> The grid
     class(cell_grid_t), intent(in) :: self
     !> Column and row, from 1
     integer, intent(in) :: place(2)

@@ -15,7 +15,6 @@ contains
 
   !> Finds the master of each point. Components that symmetry would reverse at a point on the centre are fixed.
   pure subroutine find_masters(mesh, master, signs, fixed, images)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Master of each point; 0: none, (points)
     integer, intent(out) :: master(:)
@@ -37,7 +36,6 @@ contains
 
   !> Makes each point dependent on the first of its images, if that has a lower number.
   pure subroutine link_images(images, master, signs, fixed)
-    !> The images
     type(symmetry_images_t), intent(in) :: images
     !> Receives the masters, (points)
     integer, intent(inout) :: master(:)

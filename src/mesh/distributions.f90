@@ -33,13 +33,10 @@ contains
 
   !> Distributes the mesh over the ranks of a communicator. Every rank finds the same distribution.
   subroutine distribute(mesh, communicator, self, error, first_image)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> This rank's part
     type(distribution_t), intent(out) :: self
-    !> Set if METIS fails
     type(error_t), allocatable, intent(out) :: error
     !> First of the images of each cell, including itself, which are all assigned to one rank; left out: no images
     integer, intent(in), optional :: first_image(:)
@@ -65,7 +62,6 @@ contains
 
   !> Distributes cells over ranks, weighted by their elements; images of each other are assigned to one rank.
   subroutine partition_cells(mesh, ranks, first, part, error)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Number of ranks
     integer, intent(in) :: ranks
@@ -73,7 +69,6 @@ contains
     integer, intent(in) :: first(:)
     !> Rank of each cell
     integer, allocatable, intent(out) :: part(:)
-    !> Set if METIS fails
     type(error_t), allocatable, intent(out) :: error
     integer, allocatable :: row_start(:), neighbours(:), folded_start(:), folded(:), part_of_first(:), work(:)
     integer :: cell, firsts, place(size(first))
@@ -109,7 +104,6 @@ contains
 
   !> Graph of the cells that share an edge, compressed rows.
   pure subroutine cell_graph(mesh, row_start, neighbours)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Start of each cell's neighbours, (cells + 1)
     integer, allocatable, intent(out) :: row_start(:)
@@ -135,7 +129,6 @@ contains
 
   !> Assigns each point to the lowest rank with a cell at its node or at its master node.
   pure subroutine own_points(mesh, part, owner)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Rank of each cell
     integer, intent(in) :: part(:)
@@ -163,7 +156,6 @@ contains
     integer, intent(in) :: owner(:)
     !> Number of ranks
     integer, intent(in) :: ranks
-    !> Receives `first` and `number`
     type(distribution_t), intent(inout) :: self
     integer :: next(0:ranks), point, rank
 
@@ -184,7 +176,6 @@ contains
 
   !> Lists this rank's points: owned, then ghosts.
   pure subroutine gather_points(mesh, rank, owner, self)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> This rank
     integer, intent(in) :: rank

@@ -30,13 +30,10 @@ contains
 
   !> Springs on the sides of a cell.
   pure function edge_springs(grid, plate, cell) result(springs)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The cell
     integer, intent(in) :: cell
-    !> The springs
     type(edge_spring_t), allocatable :: springs(:)
     integer :: place(2), edge, normal
     logical :: borders(4)
@@ -56,7 +53,6 @@ contains
 
   !> Adds the springs of one unknown on one side.
   pure subroutine add_springs(grid, nodes, side, component, stiffness, springs)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> Nodes of the cell, and those on the side
     integer, intent(in) :: nodes(9), side(3)

@@ -20,11 +20,8 @@ module layer_maps
     !> Height z of the interface between a point and the one above it, (points)
     real(wp), allocatable :: height(:)
   contains
-    !> Motion of every layer from the unknowns.
     procedure :: to_motion
-    !> Forces on the unknowns from forces on every layer.
     procedure :: to_unknowns
-    !> An element's matrix on the unknowns of its points and the points above them.
     procedure :: expand
   end type layer_map_t
 
@@ -32,13 +29,11 @@ contains
 
   !> The map of a rank's points.
   pure function create_layer_map(mesh, distribution, interface_heights) result(self)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> This rank's points
     type(distribution_t), intent(in) :: distribution
     !> Height of each zone's interface
     real(wp), intent(in) :: interface_heights(:)
-    !> The map
     type(layer_map_t) :: self
     integer :: i, point
 
@@ -55,7 +50,6 @@ contains
 
   !> Motion of every layer from the unknowns, in place. Points of a node follow each other downwards.
   pure subroutine to_motion(self, field)
-    !> The map
     class(layer_map_t), intent(in) :: self
     !> Unknowns on entry, motion on return, (5, points)
     real(wp), intent(inout) :: field(:, :)
@@ -72,7 +66,6 @@ contains
 
   !> Forces on the unknowns from forces on every layer, in place: the transpose of `to_motion`.
   pure subroutine to_unknowns(self, force)
-    !> The map
     class(layer_map_t), intent(in) :: self
     !> Forces on the layers on entry, on the unknowns on return, (5, points)
     real(wp), intent(inout) :: force(:, :)
@@ -90,7 +83,6 @@ contains
 
   !> An element's matrix on the unknowns of its points and of all points above them.
   pure subroutine expand(self, points, matrix, unknown_points, expanded)
-    !> The map
     class(layer_map_t), intent(in) :: self
     !> Points of the element
     integer, intent(in) :: points(:)
@@ -126,7 +118,6 @@ contains
   !> Matrix times the map from unknowns to motion. The motion of a layer is that of the layer above plus its own
   !> unknowns, so that no product of matrices is needed.
   pure function times_map(self, points, matrix, count) result(product)
-    !> The map
     class(layer_map_t), intent(in) :: self
     !> Points of the columns of the matrix
     integer, intent(in) :: points(:)

@@ -36,16 +36,13 @@ module layered_meshes
     !> First and last ply of each element, (2, elements)
     integer, allocatable :: element_plies(:, :)
   contains
-    !> Numbers of points and elements.
     procedure :: points
     procedure :: elements
-    !> Element of a cell that contains a ply, and point of a node below an interface.
     procedure :: element_at
     procedure :: lower_point
     !> Area of a zone, and length of its mean cell.
     procedure :: zone_area
     procedure :: mean_cell
-    !> Master of a point.
     procedure :: master
   end type layered_mesh_t
 
@@ -61,7 +58,6 @@ contains
     integer, intent(in) :: plies
     !> Layered rectangles, from the struck face downwards
     type(zone_t), intent(in) :: zones(:)
-    !> The mesh
     type(layered_mesh_t) :: self
 
     call create_grid(plate, mesh, self)
@@ -104,7 +100,6 @@ contains
 
   !> True if every cell around a node belongs to a zone; the model's own border counts as inside.
   pure logical function inside_zone(self, zone, node) result(inside)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: self
     !> Index of the zone
     integer, intent(in) :: zone
@@ -162,7 +157,6 @@ contains
 
   !> Element of a cell whose layer contains a ply.
   pure integer function element_at(self, cell, ply) result(element)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     !> Cell
     integer, intent(in) :: cell
@@ -177,7 +171,6 @@ contains
 
   !> Point of a node in the layer below a zone's interface; 0: the node has none.
   pure integer function lower_point(self, node, zone) result(point)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     !> Node
     integer, intent(in) :: node
@@ -192,7 +185,6 @@ contains
 
   !> Master point of a point on the cut line of point symmetry; 0: it is independent.
   pure integer function master(self, point)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     !> Point
     integer, intent(in) :: point
@@ -205,7 +197,6 @@ contains
 
   !> True if a zone covers a cell.
   pure logical function covers(zone, place)
-    !> The zone
     type(zone_t), intent(in) :: zone
     !> Column and row of the cell
     integer, intent(in) :: place(2)
@@ -215,7 +206,6 @@ contains
 
   !> Points of the layer that begins with a ply: at each node the lowest point not below that ply's top.
   pure function layer_points(self, cell, first_ply) result(points)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: self
     !> Cell
     integer, intent(in) :: cell
@@ -236,21 +226,18 @@ contains
 
   !> Number of points.
   pure integer function points(self)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     points = size(self%point_node)
   end function points
 
   !> Number of elements.
   pure integer function elements(self)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     elements = size(self%element_cell)
   end function elements
 
   !> Area of a zone in the modelled part.
   pure real(wp) function zone_area(self, zone) result(area)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     !> Index of the zone
     integer, intent(in) :: zone
@@ -263,7 +250,6 @@ contains
 
   !> Length of the mean cell of a zone: the root of its mean area.
   pure real(wp) function mean_cell(self, zone) result(length)
-    !> The mesh
     class(layered_mesh_t), intent(in) :: self
     !> Index of the zone
     integer, intent(in) :: zone

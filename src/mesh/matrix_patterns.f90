@@ -11,7 +11,6 @@ contains
 
   !> Columns of some rows.
   pure subroutine find_pattern(mesh, equation, nodes, row_start, columns, folded)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equation (from 0) of every unknown of the mesh; -1: fixed, (5, points)
     integer, intent(in) :: equation(:, :)
@@ -45,7 +44,6 @@ contains
 
   !> Number of equations that a node is coupled to.
   pure integer function columns_around(mesh, equation, node, folded) result(columns)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
@@ -71,7 +69,6 @@ contains
   !> True for a node that shares a cell with the cut of a plate with point symmetry: equations may occur twice around
   !> this node, and the equations around its image are coupled, too.
   pure logical function near_cut(mesh, node)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The node
     integer, intent(in) :: node
@@ -83,7 +80,6 @@ contains
 
   !> The equations that a node is coupled to, ascending.
   pure subroutine list_columns(mesh, equation, node, folded, columns)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
@@ -104,7 +100,6 @@ contains
 
   !> Equations of all points at the nodes that share a cell with a node.
   pure function equations_around(mesh, equation, node) result(list)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
@@ -134,7 +129,6 @@ contains
 
   !> First and last point on each line of nodes, of those that share a cell with a node.
   pure subroutine find_points_around(mesh, node, lines, first, last)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The node
     integer, intent(in) :: node

@@ -42,7 +42,6 @@ contains
 
   !> The mesh without the choices of its element and without required lines.
   subroutine fill_mesh(settings, mesh)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(mesh_t), intent(inout) :: mesh
@@ -56,11 +55,8 @@ contains
 
   !> Checks the number of elements, the grading, and keys that require each other.
   subroutine check_mesh(settings, mesh, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The mesh
     type(mesh_t), intent(in) :: mesh
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (product(real(mesh%elements, wp)) > max_elements) call report(settings, problems, mesh_group, key_elements, &

@@ -76,7 +76,6 @@ contains
 
   !> Stress-free initial deflection of the plate: half waves over its lengths.
   pure real(wp) function initial_deflection(plate, at) result(deflection)
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The point, from the centre of the plate
     real(wp), intent(in) :: at(2)
@@ -86,7 +85,6 @@ contains
 
   !> True if the initial deflection has the symmetry of the modelled part, so that it is that of the full plate.
   pure logical function has_symmetric_imperfection(plate, symmetry) result(alike)
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The part
     integer, intent(in) :: symmetry

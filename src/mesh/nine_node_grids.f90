@@ -12,13 +12,10 @@ module nine_node_grids
     !> Cells along x and y
     integer :: cells(2) = 0
   contains
-    !> Cell of a column and a row, and column and row of a cell.
     procedure, non_overridable :: cell_at
     procedure, non_overridable :: place_of
-    !> Node on two lines of nodes, and the lines that cross at a node.
     procedure, non_overridable :: node_at
     procedure, non_overridable :: lines_of
-    !> The nine nodes of a cell.
     procedure, non_overridable :: cell_nodes
   end type nine_node_grid_t
 
@@ -71,7 +68,6 @@ contains
 
   !> Cell of a column and a row.
   pure integer function cell_at(self, column, row) result(cell)
-    !> The grid
     class(nine_node_grid_t), intent(in) :: self
     !> Column and row, from 1
     integer, intent(in) :: column, row
@@ -80,7 +76,6 @@ contains
 
   !> Column and row of a cell.
   pure function place_of(self, cell) result(place)
-    !> The grid
     class(nine_node_grid_t), intent(in) :: self
     !> Cell
     integer, intent(in) :: cell
@@ -91,7 +86,6 @@ contains
 
   !> Node on two lines of nodes.
   pure integer function node_at(self, i, j) result(node)
-    !> The grid
     class(nine_node_grid_t), intent(in) :: self
     !> Lines of nodes of one x and of one y, 0 to twice the cells
     integer, intent(in) :: i, j
@@ -100,7 +94,6 @@ contains
 
   !> The two lines of nodes that cross at a node.
   pure function lines_of(self, node) result(lines)
-    !> The grid
     class(nine_node_grid_t), intent(in) :: self
     !> Node
     integer, intent(in) :: node
@@ -111,7 +104,6 @@ contains
 
   !> The nine nodes of a cell, tensor order.
   pure function cell_nodes(self, cell) result(nodes)
-    !> The grid
     class(nine_node_grid_t), intent(in) :: self
     !> Cell
     integer, intent(in) :: cell

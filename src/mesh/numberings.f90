@@ -38,14 +38,10 @@ module numberings
     !> Point and component of each row of this rank, (2, rows)
     integer, allocatable, private :: places(:, :)
   contains
-    !> True if this rank has an equation.
     procedure :: owns
-    !> Point and component of an equation of this rank.
     procedure :: place_of
-    !> Copies between fields over points and vectors of this rank's rows.
     procedure :: gather
     procedure :: scatter
-    !> Adds the forces on dependent points to those on their masters; sets the motion of dependent points.
     procedure :: fold
     procedure :: spread
   end type numbering_t
@@ -54,13 +50,11 @@ contains
 
   !> Numbers the unconstrained unknowns and finds the pattern of this rank's rows.
   subroutine number_equations(mesh, distribution, fixed, self, images, is_separate)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Owners of the points
     type(distribution_t), intent(in) :: distribution
     !> Fixed unknowns of every point of the mesh, (5, points)
     logical, intent(in) :: fixed(:, :)
-    !> The numbering
     type(numbering_t), intent(out) :: self
     !> Images of the points, all images of a point on one rank; left out: none
     type(symmetry_images_t), intent(in), optional :: images
@@ -110,7 +104,6 @@ contains
 
   !> Removes the columns of bending from the rows of in-plane displacements, and the reverse.
   pure subroutine drop_coupling(self, equation)
-    !> The numbering
     type(numbering_t), intent(inout) :: self
     !> Equations of every point
     integer, intent(in) :: equation(:, :)
@@ -134,7 +127,6 @@ contains
 
   !> Point and component of each row.
   pure subroutine find_places(self)
-    !> The numbering
     type(numbering_t), intent(inout) :: self
     integer :: point, component
 
@@ -150,7 +142,6 @@ contains
 
   !> True if this rank has an equation.
   pure logical function owns(self, equation)
-    !> The numbering
     class(numbering_t), intent(in) :: self
     !> Equation, from 0
     integer, intent(in) :: equation
@@ -160,7 +151,6 @@ contains
 
   !> Point and component of an equation of this rank.
   pure subroutine place_of(self, equation, point, component)
-    !> The numbering
     class(numbering_t), intent(in) :: self
     !> Equation, from 0
     integer, intent(in) :: equation
@@ -211,7 +201,6 @@ contains
 
   !> Rows of this rank from a field of forces over its points.
   pure subroutine gather(self, field, vector)
-    !> The numbering
     class(numbering_t), intent(in) :: self
     !> (5, local points)
     real(wp), intent(in) :: field(:, :)
@@ -241,7 +230,6 @@ contains
   !> Field of motion over the owned points from the rows of this rank; constrained unknowns become zero, ghosts are not
   !> changed.
   pure subroutine scatter(self, vector, field)
-    !> The numbering
     class(numbering_t), intent(in) :: self
     !> (rows)
     real(wp), intent(in) :: vector(:)
@@ -266,7 +254,6 @@ contains
 
   !> Adds forces on this rank's dependent points to those on their masters, and sets them to zero.
   pure subroutine fold(self, field)
-    !> The numbering
     class(numbering_t), intent(in) :: self
     !> The first components of forces or of stiffness, (up to 5, local points)
     real(wp), intent(inout) :: field(:, :)
@@ -281,7 +268,6 @@ contains
 
   !> Sets the motion of this rank's dependent points to that of their masters.
   pure subroutine spread(self, field)
-    !> The numbering
     class(numbering_t), intent(in) :: self
     !> (5, local points)
     real(wp), intent(inout) :: field(:, :)

@@ -50,7 +50,6 @@ contains
 
   !> The plate.
   subroutine fill_plate(settings, plate)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(plate_t), intent(inout) :: plate
@@ -78,11 +77,8 @@ contains
 
   !> Checks the ratio of the plate's sides, and its supports and imperfection against its symmetry.
   subroutine check_plate(settings, plate, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The plate
     type(plate_t), intent(in) :: plate
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: slope
     logical :: halved(2)
@@ -121,11 +117,8 @@ contains
 
   !> Checks that edges support a plate without rigs; only a static analysis needs them.
   subroutine check_edges(settings, plate, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The plate
     type(plate_t), intent(in) :: plate
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. settings%is_known(plate_group, 'edges')) return

@@ -42,7 +42,6 @@ contains
 
   !> Nodes supported by a frame.
   pure function nodes_on_frame(grid, support) result(on_frame)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> The rig
     type(support_t), intent(in) :: support
@@ -64,7 +63,6 @@ contains
   !> Points where the edge of a circular window crosses the sides of a cell. Each side belongs to the cell above it or
   !> to its right, a side at the border of the grid to its only cell.
   pure function circle_crossings(grid, support, cell) result(crossings)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> The rig
     type(support_t), intent(in) :: support
@@ -86,7 +84,6 @@ contains
 
   !> Adds the points where a circle crosses one side of a cell.
   pure subroutine add_crossings(grid, radius, nodes, side, along, crossings)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> Radius of the circle
     real(wp), intent(in) :: radius
@@ -115,7 +112,6 @@ contains
   !> Nodes at the clamps of a rig; clamps in parts that are not modelled are represented by their images. Of nodes at
   !> the same distance the one closest to the plate's centre is chosen, so that symmetric clamps have symmetric nodes.
   pure function clamp_nodes(grid, plate, support) result(nodes)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
@@ -141,7 +137,6 @@ contains
   !> Fraction of a clamp's stiffness in the model: the deck lists each clamp of the plate, and each has an image in
   !> every part of the plate.
   pure real(wp) function clamp_share(grid)
-    !> The grid
     class(cell_grid_t), intent(in) :: grid
 
     clamp_share = 1.0_wp/grid%multiplicity

@@ -82,9 +82,7 @@ contains
 
   !> Checks each rig, and its fit to the plate.
   subroutine check_rigs(settings, plate, supports, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The rigs
     type(support_t), intent(in) :: supports(:)
@@ -129,7 +127,6 @@ contains
 
   !> Checks that a rig has a support, and no key without effect for its shape.
   subroutine check_parts(settings, support, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> The rig
     type(support_t), intent(in) :: support
@@ -170,15 +167,12 @@ contains
 
   !> A window that the plate covers.
   subroutine check_window(settings, plate, support, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
 
     if (support%shape == window_rectangle .and. any(support%window > plate%length)) then
@@ -192,15 +186,12 @@ contains
 
   !> Clamps given in pairs of coordinates, on the plate.
   subroutine check_clamps(settings, plate, support, place, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The rig
     type(support_t), intent(in) :: support
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -219,7 +210,6 @@ contains
 
   !> Checks that rigs support the plate without inertia.
   subroutine check_static_rigs(settings, symmetry, lines_hold, supports, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Symmetry of the plate
     integer, intent(in) :: symmetry
@@ -227,7 +217,6 @@ contains
     logical, intent(in) :: lines_hold
     !> The rigs
     type(support_t), intent(in) :: supports(:)
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: points(:)
     integer :: place

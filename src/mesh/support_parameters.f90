@@ -32,9 +32,7 @@ module support_parameters
     !> Force with which a clamp presses the plate on the frame below it; 0: no limit
     real(wp) :: clamp_force = 0
   contains
-    !> Distance of a point from the window's edge.
     procedure :: beyond
-    !> True where the frame supports the plate.
     procedure :: carries
   end type support_t
 
@@ -57,7 +55,6 @@ contains
   !> True where the frame supports the plate: over its face, which includes the corners beside a window, or only on the
   !> edge of a rectangular window. The edge of a circle crosses the sides of cells and supports no node.
   pure logical function carries(self, point)
-    !> The rig
     class(support_t), intent(in) :: self
     !> Coordinates from the plate's centre
     real(wp), intent(in) :: point(2)

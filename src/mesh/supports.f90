@@ -12,7 +12,6 @@ contains
 
   !> Table of the unknowns fixed by supports and symmetry, and of all in-plane displacements if they are zero.
   pure function fixed_unknowns(mesh, plate, membrane_idle, pin_plane) result(fixed)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
     type(plate_t), intent(in) :: plate
@@ -35,7 +34,6 @@ contains
 
   !> Unknowns fixed at a node by the borders it is on.
   pure function fixed_on_borders(mesh, plate, line) result(fixed)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Supports and symmetry
     type(plate_t), intent(in) :: plate
@@ -66,7 +64,6 @@ contains
     integer, intent(in) :: edge
     !> Direction of the edge's normal: 1 for x, 2 for y
     integer, intent(in) :: normal
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> u, v, w, theta_x, theta_y
     logical :: fixed(5)
@@ -82,7 +79,6 @@ contains
   !> Fixes the in-plane rigid-body motions that symmetry does not exclude: displacements at the struck node, and the
   !> rotation at the node beside it along x.
   pure subroutine pin(mesh, motions, fixed)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Those to be fixed: along x, along y, rotation
     logical, intent(in) :: motions(3)

@@ -24,7 +24,6 @@ module symmetry_images
     !> Signs of their motion, (5, images)
     real(wp), allocatable :: signs(:, :)
   contains
-    !> First of the images of each cell.
     procedure :: first_cells
   end type symmetry_images_t
 
@@ -39,7 +38,6 @@ contains
     integer, intent(in) :: symmetry
     !> Unknowns fixed by supports, (5, points of the mesh)
     logical, intent(in) :: fixed(:, :)
-    !> The images
     type(symmetry_images_t) :: self
     logical, allocatable :: flips(:, :)
     integer, allocatable :: points(:, :)
@@ -62,7 +60,6 @@ contains
 
   !> Image of each point; 0: there is none.
   pure function image_of_points(mesh, flips) result(images)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> True for coordinates that change their sign
     logical, intent(in) :: flips(2)
@@ -90,9 +87,7 @@ contains
 
   !> First of the images of each cell, including the cell itself.
   pure function first_cells(self, mesh) result(first)
-    !> The images
     class(symmetry_images_t), intent(in) :: self
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Cells, (cells)
     integer :: first(product(mesh%cells))

@@ -18,15 +18,10 @@ module contact_areas
     !> Index of each point among those of this rank; 0: on another rank, (points)
     integer, allocatable :: local(:)
   contains
-    !> Deflections of the points.
     procedure :: deflections
-    !> Contact of the nose, from the deflections on this rank.
     procedure :: find_contact
-    !> Position of the nose at first contact.
     procedure :: first_contact
-    !> Values of the points at this rank's points.
     procedure :: to_local
-    !> Area of the points with a weight.
     procedure :: area_of
   end type contact_area_t
 
@@ -40,7 +35,6 @@ contains
     real(wp), intent(in) :: area(:), distance(:)
     !> Index of each point among those that this rank owns, or 0
     integer, intent(in) :: local(:)
-    !> The nose
     type(contact_area_t) :: self
     logical :: is_reached(size(area))
 
@@ -51,7 +45,6 @@ contains
 
   !> Deflections of the points, the same on every rank. Collective.
   function deflections(self, communicator, w)
-    !> The points
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -70,7 +63,6 @@ contains
 
   !> Contact of the nose, from the deflections on this rank. Collective.
   function find_contact(self, communicator, w, position) result(contact)
-    !> The points
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -78,7 +70,6 @@ contains
     real(wp), intent(in) :: w(:)
     !> Displacement of the nose's tip
     real(wp), intent(in) :: position
-    !> The contact
     type(nose_contact_t) :: contact
 
     call self%nose%press(self%deflections(communicator, w), position, contact)
@@ -86,7 +77,6 @@ contains
 
   !> Position of the nose's tip at first contact. Collective.
   real(wp) function first_contact(self, communicator, w)
-    !> The points
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -98,7 +88,6 @@ contains
 
   !> Values of the points at this rank's points.
   pure function to_local(self, values, points) result(field)
-    !> The points
     class(contact_area_t), intent(in) :: self
     !> (points)
     real(wp), intent(in) :: values(:)
@@ -116,7 +105,6 @@ contains
 
   !> Area of the points with a weight, on the full plate. Collective.
   real(wp) function area_of(self, communicator, weights) result(area)
-    !> The points
     class(contact_area_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator

@@ -23,9 +23,7 @@ module contact_patches
     !> Mean of a deflection, and deflection of the plate under the impactor.
     procedure :: mean
     procedure :: deflection
-    !> Sets other weights.
     procedure :: spread
-    !> Adds the nodal forces of a force.
     procedure :: add_force
   end type contact_patch_t
 
@@ -33,7 +31,6 @@ contains
 
   !> Mean of a deflection over the patch, the same on every rank.
   real(wp) function mean(self, communicator, displacement)
-    !> The patch
     class(contact_patch_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -45,7 +42,6 @@ contains
 
   !> Deflection of the plate under the impactor, the same on every rank.
   real(wp) function deflection(self, communicator, displacement)
-    !> The patch
     class(contact_patch_t), intent(in) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -57,7 +53,6 @@ contains
 
   !> Sets other weights.
   pure subroutine spread(self, weights, offset)
-    !> The patch
     class(contact_patch_t), intent(inout) :: self
     !> Weights, (local points); ghosts zero
     real(wp), intent(in) :: weights(:)
@@ -72,7 +67,6 @@ contains
 
   !> Adds the nodal forces of a force.
   pure subroutine add_force(self, force, forces)
-    !> The patch
     class(contact_patch_t), intent(in) :: self
     !> The force on the modelled part
     real(wp), intent(in) :: force

@@ -51,11 +51,8 @@ module discretizations
     !> True: u and v are zero (linear, no coupling) and have no equations
     logical :: membrane_idle = .false.
   contains
-    !> Motion of every layer from the unknowns.
     procedure :: motion_of
-    !> Deflection at the struck point.
     procedure :: deflection
-    !> Product of two fields over all points of the plate's modelled part.
     procedure :: product => field_product
   end type discretization_t
 

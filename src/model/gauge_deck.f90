@@ -30,7 +30,6 @@ contains
 
   !> All gauges, in the order of the deck.
   subroutine fill_gauges(settings, all)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(gauge_t), allocatable, intent(out) :: all(:)
@@ -46,13 +45,10 @@ contains
 
   !> Checks that gauges lie on the plate.
   subroutine check_gauges(settings, length, all, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
-    !> The gauges
     type(gauge_t), intent(in) :: all(:)
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     integer :: place
 

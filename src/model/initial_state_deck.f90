@@ -27,7 +27,6 @@ contains
 
   !> The initial state.
   subroutine fill_initial_state(settings, initial)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives it
     type(initial_state_t), intent(inout) :: initial

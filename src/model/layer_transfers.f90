@@ -38,9 +38,7 @@ module layer_transfers
     !> Their number
     integer :: items = 0
   contains
-    !> Switches from saving to loading.
     procedure :: turn_to
-    !> Copies the items that rank 0 has saved to every rank.
     procedure :: broadcast
     procedure :: real_item
     procedure :: integer_item
@@ -49,10 +47,8 @@ module layer_transfers
     procedure :: integers_item
     procedure :: table_item
     procedure :: field
-    !> Stores an item, and finds it.
     procedure :: keep
     procedure :: find
-    !> Stores a field of all ranks.
     procedure :: keep_field
   end type layer_transfer_t
 
@@ -62,7 +58,6 @@ contains
   !> of the old one, so that every saved point has a target. Parts of the plate modelled only by the new mesh originate
   !> from their images in the old one.
   subroutine turn_to(self, old, new)
-    !> The archive
     class(layer_transfer_t), intent(inout) :: self
     !> The mesh saved, and the one to load
     type(layered_mesh_t), intent(in) :: old, new
@@ -128,7 +123,6 @@ contains
 
   !> Stores an item.
   subroutine keep(self, name, values)
-    !> The archive
     class(layer_transfer_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -149,7 +143,6 @@ contains
 
   !> Index of an item; it exists, as states of one setup consist of the same items.
   pure integer function find(self, name) result(item)
-    !> The archive
     class(layer_transfer_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -161,7 +154,6 @@ contains
 
   !> Copies the items of an archive that only rank 0 has saved to every rank. Collective.
   subroutine broadcast(self, communicator)
-    !> The archive
     class(layer_transfer_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -310,7 +302,6 @@ contains
 
   !> Stores a field of all ranks. Collective.
   subroutine keep_field(self, name, columns, global_columns, value)
-    !> The archive
     class(layer_transfer_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name

@@ -47,7 +47,6 @@ contains
 
   !> All lines, in the order of the deck.
   subroutine fill_lines(settings, end_time, lines)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> End of a run in time; 0: load steps
     real(wp), intent(in) :: end_time
@@ -75,9 +74,7 @@ contains
 
   !> Checks that each line has one value, of a kind that suits its component.
   subroutine check_lines(settings, lines, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The lines
     type(line_load_t), intent(in) :: lines(:)
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems

@@ -36,15 +36,10 @@ module line_loads
     !> Rise of its motion or load, relative to the run; 0: at once
     real(wp) :: rise = 0
   contains
-    !> Value at a time, and its first and second derivative.
     procedure :: motion_at
-    !> True: its displacement is applied before a run in time.
     procedure :: precedes
-    !> Value at a load factor.
     procedure :: at_factor
-    !> Change of the value with the load factor.
     procedure :: slope
-    !> True: it constrains or displaces an end of the plate in its plane, in tension or compression.
     procedure :: is_end
   end type line_load_t
 
@@ -52,7 +47,6 @@ contains
 
   !> Value at a load factor.
   elemental real(wp) function at_factor(self, load_factor) result(value)
-    !> The line
     class(line_load_t), intent(in) :: self
     !> Ramps over their full values
     real(wp), intent(in) :: load_factor
@@ -67,7 +61,6 @@ contains
 
   !> Value at a time, and its first and second time derivative.
   pure function motion_at(self, time, end) result(values)
-    !> The line
     class(line_load_t), intent(in) :: self
     !> The time, and the end of the run
     real(wp), intent(in) :: time, end
@@ -87,7 +80,6 @@ contains
 
   !> True: its displacement is applied before a run in time.
   elemental logical function precedes(self)
-    !> The line
     class(line_load_t), intent(in) :: self
 
     precedes = self%prescribed .and. self%history == line_fixed .and. .not. self%rise > 0 .and. abs(self%value) > 0
@@ -95,7 +87,6 @@ contains
 
   !> Change of the value with the load factor.
   elemental real(wp) function slope(self)
-    !> The line
     class(line_load_t), intent(in) :: self
 
     slope = 0
@@ -104,7 +95,6 @@ contains
 
   !> True: it constrains or displaces an end of the plate in its plane, in tension or compression.
   pure logical function is_end(self, length)
-    !> The line
     class(line_load_t), intent(in) :: self
     !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)

@@ -40,24 +40,16 @@ module load_cases
     !> Start of the loads of lines, and duration of their ramps; not used in load steps
     real(wp) :: load_start = 0, ramp_time = 1
   contains
-    !> True: load steps.
     procedure :: is_static
-    !> True: inertia forces act.
     procedure :: has_inertia
     !> True: an impactor moves freely, or is pressed into the plate in load steps.
     procedure :: moves_impactor
     procedure :: presses_impactor
-    !> True: an impactor with an initial velocity.
     procedure :: is_impact
-    !> Name of the quantity that increases from step to step.
     procedure :: progress_name
-    !> Pressure over its full value.
     procedure :: pressure_factor
-    !> Loads over those at the end.
     procedure :: load_level
-    !> Ramps of lines over their full values at a time.
     procedure :: load_factor_at
-    !> Factor of the offsets between initial and prescribed displacements of supports and lines.
     procedure :: offset_left
   end type load_case_t
 
@@ -65,7 +57,6 @@ contains
 
   !> True: load steps.
   elemental logical function is_static(self)
-    !> The load case
     class(load_case_t), intent(in) :: self
 
     is_static = self%analysis == analysis_by_load_steps
@@ -74,7 +65,6 @@ contains
   !> True: inertia forces act. Without them rigid-body motions must be constrained, and a softening plate has an
   !> indefinite tangent.
   elemental logical function has_inertia(self)
-    !> The load case
     class(load_case_t), intent(in) :: self
 
     has_inertia = self%analysis == analysis_in_time
@@ -82,7 +72,6 @@ contains
 
   !> True: an impactor moves freely or with a prescribed travel in time.
   elemental logical function moves_impactor(self)
-    !> The load case
     class(load_case_t), intent(in) :: self
 
     moves_impactor = self%has_impactor .and. self%has_inertia()
@@ -90,7 +79,6 @@ contains
 
   !> True: an impactor is pressed into the plate in load steps.
   elemental logical function presses_impactor(self)
-    !> The load case
     class(load_case_t), intent(in) :: self
 
     presses_impactor = self%has_impactor .and. self%is_static()
@@ -98,7 +86,6 @@ contains
 
   !> True: an impactor of known mass and contact stiffness has an initial velocity.
   elemental logical function is_impact(self)
-    !> The load case
     class(load_case_t), intent(in) :: self
 
     is_impact = self%moves_impactor() .and. self%impactor%mass > 0 .and. self%impactor%velocity > 0 .and. &
@@ -107,7 +94,6 @@ contains
 
   !> Name of the quantity that increases from step to step.
   pure function progress_name(self) result(name)
-    !> The load case
     class(load_case_t), intent(in) :: self
     !> The name
     character(len=:), allocatable :: name
@@ -118,7 +104,6 @@ contains
 
   !> Pressure over its full value.
   elemental real(wp) function pressure_factor(self, time, load_factor)
-    !> The load case
     class(load_case_t), intent(in) :: self
     !> Time of a motion, factor of all loads in load steps
     real(wp), intent(in) :: time, load_factor
@@ -133,7 +118,6 @@ contains
   !> Loads relative to those at the end, the largest of a travel, pressure and lines; 1 in time with a free impactor,
   !> residual stresses or an initial state.
   elemental real(wp) function load_level(self, time)
-    !> The load case
     class(load_case_t), intent(in) :: self
     !> Time, or progress of load steps from 0 to 1
     real(wp), intent(in) :: time
@@ -158,7 +142,6 @@ contains
 
   !> Ramps of lines over their full values at a time of a run by central differences.
   pure real(wp) function load_factor_at(self, time) result(load_factor)
-    !> The load case
     class(load_case_t), intent(in) :: self
     !> The time
     real(wp), intent(in) :: time
@@ -169,7 +152,6 @@ contains
   !> Factor at a time of the offsets between initial and prescribed displacements of supports and lines: it decreases
   !> smoothly to zero until the loads start, and is constant without time for that.
   pure real(wp) function offset_left(self, time) result(left)
-    !> The load case
     class(load_case_t), intent(in) :: self
     !> The time
     real(wp), intent(in) :: time

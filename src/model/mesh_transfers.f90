@@ -38,7 +38,6 @@ contains
   !> Switches from saving to loading, and computes the overlaps of both meshes. Section stiffnesses are computed again,
   !> not mapped.
   subroutine turn_to(self, old, new)
-    !> The archive
     class(mesh_transfer_t), intent(inout) :: self
     !> The mesh saved, and the one to load
     type(layered_mesh_t), intent(in) :: old, new
@@ -105,7 +104,6 @@ contains
 
   !> Motion of the old elements at a point.
   pure function motion_at(self, saved, point) result(motion)
-    !> The archive
     class(mesh_transfer_t), intent(in) :: self
     !> Unknowns of the old points, (5, points)
     real(wp), intent(in) :: saved(:, :)
@@ -139,7 +137,6 @@ contains
 
   !> Unknowns of the layer below a zone at a node, with zero jumps where layers are not separate.
   pure function unknowns_at(mesh, saved, node, zone) result(unknowns)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Unknowns of all points, (5, points)
     real(wp), intent(in) :: saved(:, :)
@@ -175,7 +172,6 @@ contains
 
   !> Means over the area of a node; where the old mesh has no such layer, the present value is used.
   pure subroutine find_at_node(self, saved, point, name, values)
-    !> The archive
     class(mesh_transfer_t), intent(in) :: self
     !> Values of the old points, (rows, points)
     real(wp), intent(in) :: saved(:, :)
@@ -214,7 +210,6 @@ contains
 
   !> Means over the area of a cell; for quantities per ply, also between layers that differ.
   pure subroutine find_in_cells(self, saved, element, name, values)
-    !> The archive
     class(mesh_transfer_t), intent(in) :: self
     !> Values of the old elements, (rows, elements)
     real(wp), intent(in) :: saved(:, :)
@@ -255,7 +250,6 @@ contains
 
   !> Position of intervals of x and y in the part of the plate modelled by the old mesh.
   pure subroutine find_image(self, x, y, i, j, intervals, place, turned)
-    !> The archive
     class(mesh_transfer_t), intent(in) :: self
     !> Overlaps of an interval with those of the old mesh along x and y
     type(line_overlap_t), intent(in) :: x, y

@@ -89,7 +89,6 @@ contains
 
   !> True if no in-plane motion occurs, so that u and v are zero.
   pure logical function is_membrane_idle(setup, zones, section) result(idle)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Number of zones of layers
     integer, intent(in) :: zones
@@ -124,7 +123,6 @@ contains
 
   !> In-plane rigid-body motions of a static plate without support: along x, along y, rotation.
   pure function unrestrained(setup)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> True: it must be constrained unless symmetry does
     logical :: unrestrained(3)
@@ -150,7 +148,6 @@ contains
 
   !> Lines that constrain or displace the plate in its plane.
   pure function lines_in_plane(setup) result(in_plane)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> True for each such line
     logical, allocatable :: in_plane(:)
@@ -224,7 +221,6 @@ contains
 
   !> The cells of each interface's layered rectangle.
   pure function zones_of(setup) result(zones)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> One zone an interface
     type(zone_t), allocatable :: zones(:)
@@ -308,7 +304,6 @@ contains
 
   !> True if a point lies next to the border of its zone, except where this is the border of the model.
   pure logical function beside_border(mesh, point)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> The point
     integer, intent(in) :: point

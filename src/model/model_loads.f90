@@ -83,7 +83,6 @@ contains
 
   !> Creates the nose over the struck face. Collective.
   subroutine build_nose(self)
-    !> The model
     type(model_t), intent(inout) :: self
     real(wp) :: local_area(self%halo%points), area(self%mesh%points())
     integer :: local(self%mesh%points()), i

@@ -88,7 +88,6 @@ contains
   !> The setup with the largest zones that adaptive layers may reach: the full plate with central differences, where
   !> waves of failing fibres may reach the strength of interfaces anywhere; the core with implicit steps.
   pure function with_largest_zones(setup, explicit) result(largest)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> True: central differences
     logical, intent(in) :: explicit
@@ -121,7 +120,6 @@ contains
 
   !> Number of cells of a zone.
   pure real(wp) function cells_in(zone)
-    !> The zone
     type(zone_t), intent(in) :: zone
 
     cells_in = real(zone%columns(2) - zone%columns(1) + 1, wp)*real(zone%rows(2) - zone%rows(1) + 1, wp)

@@ -54,15 +54,11 @@ module models
     !> Nose that determines the present patch; unallocated: the present patch is that of the deck
     type(contact_area_t), allocatable :: nose
   contains
-    !> Internal forces and strain energy of a displacement field.
     procedure :: internal
     procedure, private :: add_elements
     procedure, private :: add_inertia
-    !> Mass times a field.
     procedure :: inertia
-    !> Unknowns that implicit steps hold.
     procedure :: held_unknowns
-    !> Stiffness per area that is negligible in an operator but keeps it from being singular.
     procedure :: negligible_stiffness
   end type model_t
 

@@ -26,11 +26,9 @@ contains
   !> Writes the requested fields.
   subroutine write_motion_fields(model, motion, output, fields, error)
     type(model_t), intent(in) :: model
-    !> The motion
     type(motion_t), intent(in) :: motion
     !> Requested fields
     type(output_t), intent(in) :: output
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error

@@ -10,7 +10,6 @@ contains
 
   !> Edges of the cells along x or y.
   pure function edges_of(mesh, direction) result(edges)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction

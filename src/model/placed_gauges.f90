@@ -47,7 +47,6 @@ contains
 
   !> The first two gauges back to back: at one point and angle on the front and on the back; 0: there are none.
   pure function back_to_back(gauges) result(pair)
-    !> The gauges
     type(gauge_t), intent(in) :: gauges(:)
     !> That on the front, and that on the back
     integer :: pair(2)
@@ -77,7 +76,6 @@ contains
   !> contribute.
   subroutine add_strain(model, gauge, motion, total)
     type(model_t), intent(in) :: model
-    !> The gauge
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -129,7 +127,6 @@ contains
   !> Position of a gauge or its image in the modelled part, and its direction there.
   pure subroutine find_place(model, gauge, at, angle)
     type(model_t), intent(in) :: model
-    !> The gauge
     type(gauge_t), intent(in) :: gauge
     !> The point
     real(wp), intent(out) :: at(2)

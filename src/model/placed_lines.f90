@@ -45,19 +45,12 @@ module placed_lines
     !> these nodes
     real(wp), allocatable :: left_out(:)
   contains
-    !> Motion of a node of the line.
     procedure :: motion_at
-    !> Total force of the line, for a node with weight 1.
     procedure :: force_at
-    !> Adds the nodal forces of the line.
     procedure :: add_forces
-    !> Sets the motion of the nodes of the line in a field.
     procedure :: move_to
-    !> Adds the nodal forces that hold a line at zero displacement.
     procedure :: add_holding_forces
-    !> Adds the change of the nodal forces with the load factor.
     procedure :: add_slopes
-    !> Mean motion and force of the line, of this rank's nodes.
     procedure :: totals
   end type placed_line_t
 
@@ -65,9 +58,7 @@ contains
 
   !> Finds nodes and weights of a line on the mesh.
   pure function place_line(load, mesh, distribution, map, fixed, plies, section, symmetry) result(self)
-    !> The line
     type(line_load_t), intent(in) :: load
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> This rank's points
     type(distribution_t), intent(in) :: distribution
@@ -109,7 +100,6 @@ contains
 
   !> Excludes nodes constrained by supports in a prescribed component: its springs would act on the supports.
   pure subroutine leave_out_fixed(self, fixed)
-    !> The line
     type(placed_line_t), intent(inout) :: self
     !> True for unknowns constrained by supports, (5, points of this rank)
     logical, intent(in) :: fixed(:, :)
@@ -153,9 +143,7 @@ contains
 
   !> Adds a node with the layers on which the line acts, each with its fraction of the thickness.
   pure subroutine add_layers(self, mesh, map, plies, first_point, local, weight)
-    !> The line
     type(placed_line_t), intent(inout) :: self
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
@@ -189,7 +177,6 @@ contains
 
   !> Adds the unknowns that determine the motion of a layer at a node: its own and those of the points above it.
   pure subroutine add_unknowns(self, map, lowest, height)
-    !> The line
     type(placed_line_t), intent(inout) :: self
     !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
@@ -217,7 +204,6 @@ contains
 
   !> Motion of a node of the line.
   pure real(wp) function motion_at(self, node, displacement) result(motion)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Index of the node on this rank
     integer, intent(in) :: node
@@ -233,7 +219,6 @@ contains
 
   !> Total force of the line, for a node with weight 1.
   pure real(wp) function force_at(self, node, displacement, load_factor) result(force)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Index of the node on this rank
     integer, intent(in) :: node
@@ -248,7 +233,6 @@ contains
 
   !> Adds the nodal forces of the line.
   pure subroutine add_forces(self, displacement, load_factor, forces)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -265,7 +249,6 @@ contains
 
   !> Sets the motion of the nodes of the line in a field, by the unknowns of their own layers.
   pure subroutine move_to(self, value, field)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Its displacement, velocity or acceleration
     real(wp), intent(in) :: value
@@ -283,7 +266,6 @@ contains
 
   !> Adds the nodal forces that hold a line at zero displacement; none if it is not prescribed.
   pure subroutine add_holding_forces(self, displacement, forces)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -299,7 +281,6 @@ contains
 
   !> Adds the change of the nodal forces with the load factor.
   pure subroutine add_slopes(self, forces)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Forces on the unknowns of the owned points, (5, points)
     real(wp), intent(inout) :: forces(:, :)
@@ -312,7 +293,6 @@ contains
 
   !> Adds a node's fraction of the total force of the line.
   pure subroutine spread(self, node, force, forces)
-    !> The line
     type(placed_line_t), intent(in) :: self
     !> Index of the node on this rank
     integer, intent(in) :: node
@@ -330,7 +310,6 @@ contains
   !> Force and mean motion of the line, of this rank's nodes, as exact sums, so that totals do not depend on the number
   !> of ranks.
   pure function totals(self, displacement, load_factor)
-    !> The line
     class(placed_line_t), intent(in) :: self
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)

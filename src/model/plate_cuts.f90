@@ -15,11 +15,8 @@ module plate_cuts
     !> Sides along x and y
     real(wp) :: length(2) = 0
   contains
-    !> True if nothing is cut away.
     procedure :: is_whole
-    !> True if it lies within a plate.
     procedure :: lies_within
-    !> Part of the area of each node, and of each cell, inside of the cut.
     procedure :: of_nodes
     procedure :: of_cells
   end type plate_cut_t
@@ -28,7 +25,6 @@ contains
 
   !> True if nothing is cut away.
   pure logical function is_whole(self, length)
-    !> The cut
     class(plate_cut_t), intent(in) :: self
     !> Lengths of the plate
     real(wp), intent(in) :: length(2)
@@ -38,7 +34,6 @@ contains
 
   !> True if it lies within a plate.
   pure logical function lies_within(self, length)
-    !> The cut
     class(plate_cut_t), intent(in) :: self
     !> Lengths of the plate
     real(wp), intent(in) :: length(2)
@@ -48,7 +43,6 @@ contains
 
   !> Part of the area of each node inside of the cut.
   pure function of_nodes(self, mesh) result(parts)
-    !> The cut
     class(plate_cut_t), intent(in) :: self
     !> Mesh of the plate, or of its modelled part
     type(layered_mesh_t), intent(in) :: mesh
@@ -71,7 +65,6 @@ contains
 
   !> Part of the area of each cell inside of the cut.
   pure function of_cells(self, mesh) result(parts)
-    !> The cut
     class(plate_cut_t), intent(in) :: self
     !> Mesh of the plate, or of its modelled part
     type(layered_mesh_t), intent(in) :: mesh
@@ -90,7 +83,6 @@ contains
 
   !> Part of each interval of a line inside of the cut, and inside of the image of the cut on the other side of 0.
   pure function parts_of_intervals(self, bounds, direction) result(parts)
-    !> The cut
     class(plate_cut_t), intent(in) :: self
     !> Ascending bounds of the intervals
     real(wp), intent(in) :: bounds(:)
@@ -110,7 +102,6 @@ contains
 
   !> Part of a rectangle and of its images in the full plate: their mean.
   pure real(wp) function part_of(mesh, x, y) result(part)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Parts of its intervals along x and y, and of their images
     real(wp), intent(in) :: x(2), y(2)

@@ -29,7 +29,6 @@ contains
 
   !> Fills in the pressure; a ramp ends with the run.
   subroutine fill_pressure(settings, end_time, pressure)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> End of the run
     real(wp), intent(in) :: end_time
@@ -45,11 +44,8 @@ contains
 
   !> Remarks on a pressure without effect.
   subroutine check_pressure(settings, pressure, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The pressure
     type(pressure_t), intent(in) :: pressure
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (settings%is_known(pressure_group, 'value') .and. abs(pressure%value) <= 0) &

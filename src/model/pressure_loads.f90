@@ -21,7 +21,6 @@ module pressure_loads
     !> distribution_uniform or distribution_sine
     integer :: distribution = distribution_uniform
   contains
-    !> Pressure at a time over its full value.
     procedure :: amplitude
   end type pressure_t
 
@@ -29,7 +28,6 @@ contains
 
   !> Pressure at a time over its full value.
   elemental real(wp) function amplitude(self, time)
-    !> The pressure
     class(pressure_t), intent(in) :: self
     !> Time
     real(wp), intent(in) :: time

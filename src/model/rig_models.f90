@@ -40,9 +40,7 @@ module rig_models
     !> Weights, (3, lines), and stiffness, (lines)
     real(wp), allocatable :: line_weights(:, :), line_stiffness(:)
   contains
-    !> Prepares the sums of forces of lines between ranks.
     procedure :: join_ranks
-    !> Adds the forces of supported lines.
     procedure :: add_line_forces
   end type rig_model_t
 
@@ -50,7 +48,6 @@ contains
 
   !> The rigs at a rank's points.
   pure function new_rig_model(mesh, plate, supports, distribution, rigid) result(self)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
@@ -108,9 +105,7 @@ contains
 
   !> Finds the supports on the sides of this rank's cells: w on the edges of circular windows, and elastic edges.
   pure subroutine find_lines(mesh, plate, supports, distribution, rigid, self)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> The rigs
     type(support_t), intent(in) :: supports(:)
@@ -118,7 +113,6 @@ contains
     type(distribution_t), intent(in) :: distribution
     !> Penalty stiffness of a rigid frame
     real(wp), intent(in) :: rigid
-    !> Receives the points
     type(rig_model_t), intent(inout) :: self
     type(crossing_t), allocatable :: crossings(:)
     type(edge_spring_t), allocatable :: springs(:)
@@ -149,7 +143,6 @@ contains
 
   !> Adds a point on a line.
   pure subroutine add_line(self, rig, points, component, weights, stiffness)
-    !> Receives it
     type(rig_model_t), intent(inout) :: self
     !> The rig that it belongs to; 0: an elastic edge
     integer, intent(in) :: rig
@@ -167,7 +160,6 @@ contains
 
   !> Prepares the sums of forces of lines at points on the borders between ranks, in the order of the mesh. Collective.
   subroutine join_ranks(self, communicator, halo)
-    !> The rigs
     class(rig_model_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -182,7 +174,6 @@ contains
 
   !> Adds the forces of supported lines to the internal forces, and their stored energy. Collective.
   subroutine add_line_forces(self, displacement, force, energy)
-    !> The rigs
     class(rig_model_t), intent(in) :: self
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -207,7 +198,6 @@ contains
 
   !> Adds the forces of supported lines to their columns.
   pure subroutine add_to_columns(self, displacement, field, energy)
-    !> The rigs
     class(rig_model_t), intent(in) :: self
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -230,7 +220,6 @@ contains
 
   !> Stiffness that one clamp of the deck adds to the model.
   pure function springs_of(mesh, plate, support) result(springs)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
@@ -246,7 +235,6 @@ contains
   !> Adds the unknowns fixed by rigs to a table. Frames and clamps that fix w fix it at both faces, so that all layers
   !> are held.
   pure subroutine fix_by_rigs(mesh, plate, supports, fixed)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
@@ -279,7 +267,6 @@ contains
   !> Adds the openings over frames from which the plate may lift off, and over circular ones. Implicit steps hold the
   !> layers together there: these frames act on w of the first layer, and would otherwise pull it off the layers below.
   pure subroutine hold_openings(mesh, plate, supports, fixed)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate

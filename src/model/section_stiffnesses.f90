@@ -12,7 +12,6 @@ contains
 
   !> Saves or loads a section stiffness.
   subroutine visit_stiffness(archive, name, model, stiffness)
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Name of the item
     character(len=*), intent(in) :: name

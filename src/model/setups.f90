@@ -33,9 +33,7 @@ module setups
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
     type(delamination_t), allocatable :: delaminations(:)
   contains
-    !> True: plies soften by their fracture energies.
     procedure :: has_crack_bands
-    !> True: moduli along the fibres in tension and in compression differ; sections change in a run.
     procedure :: is_bimodular
     procedure :: has_variable_sections
   end type setup_t
@@ -44,7 +42,6 @@ contains
 
   !> True: plies soften by their fracture energies, instead of sudden failure.
   pure logical function has_crack_bands(self)
-    !> The setup
     class(setup_t), intent(in) :: self
     integer :: i
 
@@ -56,7 +53,6 @@ contains
 
   !> True: the moduli along the fibres in tension and in compression of a ply differ.
   pure logical function is_bimodular(self)
-    !> The setup
     class(setup_t), intent(in) :: self
     integer :: i
 
@@ -68,7 +64,6 @@ contains
 
   !> True: the sections of the elements depend on their state, by failure of plies or the sign of their stresses.
   pure logical function has_variable_sections(self)
-    !> The setup
     class(setup_t), intent(in) :: self
 
     has_variable_sections = self%has_ply_damage .or. self%is_bimodular()

@@ -30,9 +30,7 @@ module border_sums
     !> Column of the field, or minus the number of a received column, in the order of addition
     integer, allocatable, private :: terms(:)
   contains
-    !> Finds the columns of the contributions.
     procedure :: define
-    !> Adds the contributions to their points.
     procedure :: add
   end type border_sum_t
 

@@ -17,7 +17,6 @@ module column_exchanges
     !> True: there are some
     logical, private :: needed = .false.
   contains
-    !> Copies the columns of other ranks.
     procedure :: update
   end type column_exchange_t
 
@@ -32,7 +31,6 @@ contains
     !> Columns of the group of each column, including itself, padded with zeros, (largest group, columns). A rank that
     !> computes one column of a group needs all of them
     integer, intent(in) :: groups(:, :)
-    !> The exchange
     type(column_exchange_t) :: self
     integer :: sent(0:communicator%size - 1), received(0:communicator%size - 1), rank
     integer, allocatable :: outward(:), inward(:), owner(:)
@@ -80,7 +78,6 @@ contains
 
   !> Copies the columns of other ranks that are needed here. Collective among neighbours.
   subroutine update(self, field)
-    !> The exchange
     class(column_exchange_t), intent(in) :: self
     !> Values, (components, columns)
     real(wp), intent(inout) :: field(:, :)

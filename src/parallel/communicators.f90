@@ -19,11 +19,9 @@ module communicators
     !> Copies a value of rank 0, or a list of any rank, to every rank.
     generic :: broadcast => broadcast_real, broadcast_reals, broadcast_integer, broadcast_integers, &
       broadcast_logical, broadcast_characters
-    !> Copies a text of rank 0, whatever its length, to every rank.
     procedure :: broadcast_text
     !> Concatenates the parts of all ranks on every rank, in the order of ranks.
     generic :: allgather => allgather_reals, allgather_integers
-    !> If any rank failed, gives every rank the error of the lowest rank that did.
     procedure :: agree
     procedure, private :: broadcast_real, broadcast_reals, broadcast_integer, broadcast_integers
     procedure, private :: broadcast_logical, broadcast_characters

@@ -29,11 +29,8 @@ module halos
     !> Owned points that are ghosts on other ranks, and ghosts of this rank
     type(message_plan_t), private :: shared, ghosts_of_others
   contains
-    !> Determines the exchange of ghosts between ranks.
     procedure :: define
-    !> Copies values of owned points to their ghosts.
     procedure :: update
-    !> Adds values of ghosts to their owned points and zeroes the ghosts.
     procedure :: accumulate
   end type halo_t
 

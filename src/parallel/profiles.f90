@@ -41,13 +41,9 @@ module profiles
     !> The data; null: no profile
     type(record_t), pointer, private :: record => null()
   contains
-    !> Begins a part.
     procedure :: enter
-    !> Ends the part begun last.
     procedure :: leave
-    !> The parts so far.
     procedure :: rows
-    !> Deallocates the shared data.
     procedure :: release
   end type profile_t
 
@@ -68,7 +64,6 @@ contains
   function new_profile(requested) result(self)
     !> False: only the clock is read
     logical, intent(in) :: requested
-    !> The profile
     type(profile_t) :: self
 
     self%begun = wall_time()

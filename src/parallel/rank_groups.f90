@@ -18,9 +18,7 @@ module rank_groups
     !> MPI's own object, undefined until MPI has been started; for the modules of this folder only
     type(MPI_Comm) :: group
   contains
-    !> The integer handle for PETSc and HDF5.
     procedure :: handle
-    !> Whether this is rank 0, which writes.
     procedure :: is_root
     !> Replaces a value by its sum over the ranks, the same on every rank.
     generic :: sum => sum_real, sum_reals, sum_table, sum_integer, sum_long, sum_longs
@@ -28,13 +26,9 @@ module rank_groups
     generic :: maximum => maximum_real, maximum_reals, maximum_integer
     !> Replaces a value by its least over the ranks.
     generic :: minimum => minimum_real, minimum_integer
-    !> Whether a flag is raised on at least one rank.
     procedure :: any => any_flag
-    !> Whether a flag is raised on every rank.
     procedure :: all => all_flags
-    !> Sum of a count over the ranks before this one.
     procedure :: preceding
-    !> Waits for all ranks.
     procedure :: barrier
     procedure, private :: sum_real, sum_reals, sum_table, sum_integer, sum_long, sum_longs
     procedure, private :: maximum_real, maximum_reals, maximum_integer, minimum_real, minimum_integer

@@ -28,11 +28,8 @@ module timers
     !> Profile to which the times are added, too
     type(profile_t) :: profile
   contains
-    !> Starts a timer.
     procedure :: start
-    !> Stops the timer and adds the interval.
     procedure :: stop => stop_timer
-    !> A table for the log, one line per timer.
     procedure :: lines
     procedure, private :: position
   end type timer_set_t

@@ -16,7 +16,6 @@ contains
 
   !> Sets the initial deflection w0 of a plate that is free of stress in this shape.
   subroutine set_initial_shape(batches, deflection)
-    !> The elements
     type(element_batches_t), intent(inout) :: batches
     !> Initial deflection of each point
     real(wp), intent(in) :: deflection(:)
@@ -36,7 +35,6 @@ contains
   !> Membrane strains and curvatures at the Gauss points of a batch, relative to the stress-free shape w0 (K. Marguerre,
   !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101; theory (P10)): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
   pure subroutine strains_of_batch(batches, b, kinematics, r, strains, slopes)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
@@ -166,7 +164,6 @@ contains
 
   !> Transverse shear strains of a batch at its shear points.
   pure subroutine shear_strains(batches, b, r, strains)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
@@ -184,7 +181,6 @@ contains
 
   !> Adds the nodal forces of transverse shear forces at the shear points of a batch.
   pure subroutine add_shear_forces(batches, b, shear, f)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b

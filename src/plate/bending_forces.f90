@@ -15,7 +15,6 @@ contains
 
   !> Adds the internal force of all elements to the forces on the points, components 3 to 5.
   subroutine add_bending_force(batches, stiffness, u, f, energy, energies)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
@@ -55,7 +54,6 @@ contains
 
   !> Adds the consistent mass times the accelerations of all elements, components 3 to 5.
   subroutine add_bending_inertia(batches, a, f)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Accelerations of the unknowns (5, points)
     real(wp), contiguous, intent(in) :: a(:, :)

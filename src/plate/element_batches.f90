@@ -53,13 +53,9 @@ module element_batches
     !> Slopes w0,x and w0,y of the stress-free shape (lanes, 9, 2, batches); unallocated: the plate is flat
     real(wp), allocatable :: initial_slopes(:, :, :, :)
   contains
-    !> Builds the batches from a mesh.
     procedure :: create
-    !> Gives one element its section.
     procedure :: set_section
-    !> Sets the columns that contributions are added to.
     procedure :: set_targets
-    !> Lanes of a batch that hold elements.
     procedure :: lanes_used
   end type element_batches_t
 
@@ -67,7 +63,6 @@ contains
 
   !> Builds the batches from a mesh; sections are zero until set.
   subroutine create(self, coordinates, connectivity, shear, error)
-    !> The batches
     class(element_batches_t), intent(out) :: self
     !> Position x, y of each point (2, points)
     real(wp), intent(in) :: coordinates(:, :)
@@ -99,7 +94,6 @@ contains
 
   !> Gives one element its section.
   pure subroutine set_section(self, element, stiffness, mass)
-    !> The batches
     class(element_batches_t), intent(inout) :: self
     !> Number of the element
     integer, intent(in) :: element
@@ -112,7 +106,6 @@ contains
 
   !> Sets the columns that contributions are added to; without it these are the points.
   pure subroutine set_targets(self, targets)
-    !> The batches
     class(element_batches_t), intent(inout) :: self
     !> Column of each node, (9, elements)
     integer, intent(in) :: targets(:, :)
@@ -127,7 +120,6 @@ contains
 
   !> Lanes of a batch that hold elements: all but in the last batch.
   pure integer function lanes_used(self, b)
-    !> The batches
     class(element_batches_t), intent(in) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -177,7 +169,6 @@ contains
 
   !> Geometry of one element.
   subroutine set_geometry(self, b, lane, x, element, error)
-    !> The batches
     type(element_batches_t), intent(inout) :: self
     !> Batch and lane of the element, and its number
     integer, intent(in) :: b, lane, element

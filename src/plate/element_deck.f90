@@ -26,7 +26,6 @@ contains
 
   !> Kinematics of the case.
   subroutine fill_kinematics(settings, kinematics)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> kinematics_von_karman or kinematics_linear
     integer, intent(out) :: kinematics
@@ -37,7 +36,6 @@ contains
 
   !> Transverse shear and mass of the mesh's elements.
   subroutine fill_element(settings, shear, mass)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> shear_assumed, shear_full or shear_selective
     integer, intent(out) :: shear

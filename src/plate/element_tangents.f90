@@ -18,7 +18,6 @@ contains
 
   !> stiffness_factor * tangent stiffness + mass_factor * consistent mass of the elements of a batch.
   subroutine tangent(batches, b, stiffness, kinematics, u, stiffness_factor, mass_factor, k, free)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b

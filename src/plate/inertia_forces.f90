@@ -12,7 +12,6 @@ contains
 
   !> Adds the consistent mass times the accelerations of all elements, rotary inertia and eccentricity included.
   subroutine add_inertia_force(batches, a, f)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Accelerations of the unknowns (5, points)
     real(wp), contiguous, intent(in) :: a(:, :)
@@ -68,7 +67,6 @@ contains
   !> Adds the mass of all elements lumped at their nodes by summing the rows of the consistent mass; for this element
   !> this is Simpson's nodal quadrature, so that every nodal mass is positive.
   subroutine add_lumped_mass(batches, sections, mass)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> I0, I1, I2 of their sections, (lanes, 3, batches)
     real(wp), intent(in) :: sections(:, :, :)

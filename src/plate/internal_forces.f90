@@ -15,7 +15,6 @@ contains
 
   !> Adds the internal force of all elements to the forces on the points.
   subroutine add_internal_force(batches, stiffness, kinematics, u, f, energy, law, free, energies)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)
@@ -68,13 +67,11 @@ contains
 
   !> Passes the strains of sections with a common state to a law. Collective.
   subroutine share_strains(batches, kinematics, u, law)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
     !> Unknowns (5, points)
     real(wp), contiguous, intent(in) :: u(:, :)
-    !> The law
     class(section_law_t), intent(inout) :: law
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2)
     integer :: b
@@ -90,7 +87,6 @@ contains
 
   !> Replaces the unknowns of a batch by its nodal forces, for linear strains.
   pure subroutine batch_force(batches, b, c, r)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
@@ -108,7 +104,6 @@ contains
   !> Computes the nodal forces of a batch from its unknowns and in-plane strains, or from a motion and the change of the
   !> strains by it.
   pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b

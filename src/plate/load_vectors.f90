@@ -11,7 +11,6 @@ contains
 
   !> Adds the consistent forces of a pressure that varies over the elements.
   pure subroutine add_pressure(batches, pressure, f)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Pressure at the Gauss points (9, elements), positive downward
     real(wp), intent(in) :: pressure(:, :)
@@ -28,7 +27,6 @@ contains
   !> the area of the patch, they give its mean deflection, and a force on the patch is distributed over the nodes by the
   !> same weights, so that force and mean deflection are work-conjugate.
   pure subroutine add_patch_weights(batches, elements, weights)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Numbers of the elements of the patch
     integer, intent(in) :: elements(:)
@@ -43,7 +41,6 @@ contains
 
   !> Adds the integrals of the shape functions of one element times a function given at its Gauss points.
   pure subroutine add_nodal_shares(batches, element, values, shares)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the element
     integer, intent(in) :: element
@@ -65,7 +62,6 @@ contains
 
   !> Position of the Gauss points of all elements.
   pure subroutine gauss_coordinates(batches, coordinates, x)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Position of the points (2, points)
     real(wp), intent(in) :: coordinates(:, :)

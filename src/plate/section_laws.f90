@@ -10,7 +10,6 @@ module section_laws
   !> strains with others.
   type, abstract :: section_law_t
   contains
-    !> True for a batch with elements that soften by common strains; accumulates these strains; sends them to all ranks.
     procedure :: needs_joined_strains
     procedure :: accumulate_strains
     procedure :: exchange
@@ -41,7 +40,6 @@ contains
 
   !> True for a batch with elements that soften by common strains, which must be known before any section softens.
   pure logical function needs_joined_strains(self, b)
-    !> The law
     class(section_law_t), intent(in) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -51,7 +49,6 @@ contains
 
   !> Adds the trial strains of a batch to the common strains.
   subroutine accumulate_strains(self, b, weight, strains)
-    !> The law
     class(section_law_t), intent(inout) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -63,7 +60,6 @@ contains
 
   !> Sends the common strains to all ranks. Collective.
   subroutine exchange(self)
-    !> The law
     class(section_law_t), intent(inout) :: self
   end subroutine exchange
 end module section_laws

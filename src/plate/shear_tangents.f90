@@ -13,7 +13,6 @@ contains
 
   !> Adds the shear stiffness of a batch to the blocks of node pairs a <= b.
   subroutine add_shear_tangent(batches, b, c, k)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b

@@ -15,7 +15,6 @@ contains
 
   !> Strains at the 3x3 Gauss points of a batch.
   subroutine gauss_strains(batches, b, kinematics, u, strains)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
@@ -44,7 +43,6 @@ contains
   !> elements are most accurate. Parabolas through the 3x3 points extrapolate the error of the quadratic part to the
   !> nodes: at the front of a square delamination of four cells per side they gave an energy release rate 8 % too low.
   subroutine nodal_strains(batches, b, kinematics, u, strains)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
@@ -65,7 +63,6 @@ contains
 
   !> Mean strains over the area of each element of a batch.
   subroutine mean_strains(batches, b, kinematics, u, strains)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b

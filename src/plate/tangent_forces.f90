@@ -16,7 +16,6 @@ contains
 
   !> Adds the tangent stiffness at a displacement times a motion to the forces on the points.
   subroutine add_tangent_force(batches, stiffness, kinematics, u, v, f, free, mean_change)
-    !> The elements
     type(element_batches_t), intent(in) :: batches
     !> Section stiffness left, as in the batches (lanes, 21, batches)
     real(wp), contiguous, intent(in) :: stiffness(:, :, :)

@@ -19,18 +19,15 @@ module band_states
     !> The state of a ply of an element has this index plus the number of the ply, (elements)
     integer, allocatable :: offset(:)
   contains
-    !> Accepts the trial states of an element.
     procedure :: accept
     !> Accepted states of an element; true if one has damage.
     procedure :: of_element
     procedure :: damaged
-    !> Failed modes of a ply of an element; whether its fibres failed by compression.
     procedure :: failed_modes
     procedure :: fibres_crushed
     !> Damage of a ply of an element, and the stresses that its closed cracks carry.
     procedure :: accepted_damage
     procedure :: carried_by_cracks
-    !> Saves or loads.
     procedure :: visit
   end type band_states_t
 
@@ -40,7 +37,6 @@ contains
   pure function new_band_states(range) result(self)
     !> First and last ply of each element, (2, elements)
     integer, intent(in) :: range(:, :)
-    !> The states
     type(band_states_t) :: self
     integer :: i, next
 
@@ -56,7 +52,6 @@ contains
 
   !> Accepts the trial states of one element.
   pure subroutine accept(self, element)
-    !> The states
     class(band_states_t), intent(inout) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -69,7 +64,6 @@ contains
 
   !> Accepted states of an element.
   pure function of_element(self, element) result(states)
-    !> The states
     class(band_states_t), intent(in) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -81,7 +75,6 @@ contains
 
   !> True if a ply of an element has damage in the accepted state.
   pure logical function damaged(self, element)
-    !> The states
     class(band_states_t), intent(in) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -92,7 +85,6 @@ contains
   !> Failed modes of a ply of an element in the trial: the ply has failed where its stress is zero, its matrix by
   !> crushing where it has dissipated more energy in transverse compression than in tension.
   pure function failed_modes(self, ply, element) result(failed)
-    !> The states
     class(band_states_t), intent(in) :: self
     !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
@@ -110,7 +102,6 @@ contains
   !> True: the fibres of a ply of an element have failed and dissipated more energy in compression than in tension, in
   !> the trial.
   pure logical function fibres_crushed(self, ply, element)
-    !> The states
     class(band_states_t), intent(in) :: self
     !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
@@ -122,7 +113,6 @@ contains
 
   !> Damage of fibres and matrix of a ply of an element in the last accepted state.
   pure function accepted_damage(self, ply, element) result(damage)
-    !> The states
     class(band_states_t), intent(in) :: self
     !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
@@ -134,7 +124,6 @@ contains
 
   !> Stresses along and across the fibres that closed cracks of a ply of an element carry in the trial.
   pure function carried_by_cracks(self, ply, element) result(stresses)
-    !> The states
     class(band_states_t), intent(in) :: self
     !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
@@ -146,9 +135,7 @@ contains
 
   !> Saves or loads the accepted states. Collective.
   subroutine visit(self, archive, model)
-    !> The states
     class(band_states_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer, parameter :: numbers = 3 + energy_modes

@@ -29,9 +29,7 @@ module bimodular_sections
     !> First and last ply of each element, (2, elements)
     integer, allocatable, private :: range(:, :)
   contains
-    !> Resultants of a batch under trial strains.
     procedure :: soften
-    !> Takes over the reduced constants of an element.
     procedure :: reduce
   end type bimodular_sections_t
 
@@ -40,7 +38,6 @@ contains
   !> Sections without strains.
   function new_bimodular_sections(model) result(self)
     type(model_t), intent(in) :: model
-    !> The sections
     type(bimodular_sections_t) :: self
 
     self%signs = new_mean_sections(model)
@@ -55,7 +52,6 @@ contains
 
   !> Takes over the reduced constants of the plies of an element.
   subroutine reduce(self, element, constants, tensile)
-    !> The sections
     class(bimodular_sections_t), intent(inout) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -101,7 +97,6 @@ contains
 
   !> Change of the section of an element with failed plies.
   pure function change_of(self, element, means) result(change)
-    !> The sections
     type(bimodular_sections_t), intent(in) :: self
     !> Element of this rank
     integer, intent(in) :: element

@@ -58,26 +58,19 @@ module crack_band_sections
     !> True for elements with damage in the trial, (elements)
     logical, allocatable, private :: touched(:)
   contains
-    !> Stiffness of the sections of a batch under trial strains.
     procedure :: soften
-    !> Strains of elements that share their state.
     procedure :: needs_joined_strains
     procedure :: accumulate_strains
     procedure :: exchange
-    !> Accepts the trial state; returns changed sections.
     procedure :: commit
     procedure :: commit_sections
-    !> Energy that the trial dissipates in each mode, on this rank.
     procedure :: dissipation_sums
-    !> Energy dissipated so far in each mode, on this rank.
     procedure :: dissipated
-    !> Reduced elastic constants of a ply of an element.
     procedure :: elasticity
     !> Adjacent plies of an element with their permanent strains; resultants of stress-free strains.
     procedure :: strained
     procedure, private :: free_resultants_of
     procedure, private :: signed_resultants
-    !> Saves or loads.
     procedure :: visit
   end type crack_band_sections_t
 
@@ -86,7 +79,6 @@ contains
   !> Plies without damage.
   function new_crack_band_sections(model) result(self)
     type(model_t), intent(in) :: model
-    !> The plies
     type(crack_band_sections_t) :: self
     integer :: i
 
@@ -123,7 +115,6 @@ contains
 
   !> True for a batch with elements that share their state.
   pure logical function needs_joined_strains(self, b)
-    !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -133,7 +124,6 @@ contains
 
   !> Accumulates the strains of elements that share their state.
   subroutine accumulate_strains(self, b, weight, strains)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -158,7 +148,6 @@ contains
 
   !> Sends them to all ranks. Collective.
   subroutine exchange(self)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
 
     call self%joined%exchange()
@@ -201,7 +190,6 @@ contains
 
   !> Resultants of stress-free strains of a batch in the trial, where plies have E1c.
   function signed_resultants(self, b, weight, strains) result(resultants)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -234,7 +222,6 @@ contains
 
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -276,7 +263,6 @@ contains
 
   !> Accepts the trial state.
   pure subroutine commit(self)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     integer :: element
 
@@ -287,7 +273,6 @@ contains
 
   !> Accepts the trial state, and returns the sections of changed elements.
   pure subroutine commit_sections(self, stiffness, free)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
     !> Section stiffness, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
@@ -306,7 +291,6 @@ contains
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
   pure function dissipation_sums(self) result(energies)
-    !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes
     type(exact_sum_t) :: energies(energy_modes)
@@ -316,7 +300,6 @@ contains
 
   !> Energy dissipated so far in each mode and by permanent shear, of this rank's elements, as exact sums.
   pure function dissipated(self) result(energies)
-    !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> In the order of the modes, then permanent shear
     type(exact_sum_t) :: energies(energy_modes + 1)
@@ -326,7 +309,6 @@ contains
 
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)
-    !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
@@ -338,7 +320,6 @@ contains
 
   !> Neighbouring plies of an element with the permanent strains of the trial.
   pure function strained(self, first, last, element) result(plies)
-    !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> First and last ply, and element of this rank
     integer, intent(in) :: first, last, element
@@ -354,7 +335,6 @@ contains
 
   !> Resultants of stress-free strains in the trial.
   pure function free_resultants_of(self, element) result(resultants)
-    !> The plies
     class(crack_band_sections_t), intent(in) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -374,9 +354,7 @@ contains
 
   !> Saves or loads the accepted state.
   subroutine visit(self, archive, model)
-    !> The plies
     class(crack_band_sections_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: element

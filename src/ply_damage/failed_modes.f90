@@ -18,14 +18,10 @@ module failed_modes
     !> True for failed modes, (modes, plies, elements); unallocated: not modelled
     logical, allocatable, private :: occurred(:, :, :)
   contains
-    !> Finds the modes whose criteria are met for the first time.
     procedure :: find
-    !> Reduced elastic constants of a ply of an element, and of all its plies.
     procedure :: elasticity
     procedure :: elasticities
-    !> Failed modes of a ply of an element.
     procedure :: failed
-    !> Saves or loads.
     procedure :: visit
   end type failed_modes_t
 
@@ -34,7 +30,6 @@ contains
   !> No failure.
   pure function new_failed_modes(model) result(self)
     type(model_t), intent(in) :: model
-    !> The modes
     type(failed_modes_t) :: self
 
     if (.not. model%setup%has_ply_damage) return
@@ -43,7 +38,6 @@ contains
 
   !> Finds the modes whose criteria are met for the first time.
   subroutine find(self, model, stiffness, displacement, found)
-    !> The modes
     class(failed_modes_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -72,7 +66,6 @@ contains
 
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
-    !> The modes
     class(failed_modes_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Ply of the laminate
@@ -89,7 +82,6 @@ contains
 
   !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element) result(elasticity)
-    !> The modes
     class(failed_modes_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Element of this rank
@@ -108,7 +100,6 @@ contains
 
   !> Failed modes of a ply of an element.
   pure function failed(self, ply, element)
-    !> The modes
     class(failed_modes_t), intent(in) :: self
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
@@ -120,9 +111,7 @@ contains
 
   !> Saves or loads the modes.
   subroutine visit(self, archive, model)
-    !> The modes
     class(failed_modes_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: table(:, :)

@@ -15,7 +15,6 @@ contains
   !> Area in which each ply has failed in each mode, of the full plate. Collective.
   function failed_areas(model, failures) result(areas)
     type(model_t), intent(in) :: model
-    !> The failures
     type(ply_failure_t), intent(in) :: failures
     !> (modes, plies)
     real(wp) :: areas(failure_modes, size(model%plies))
@@ -43,7 +42,6 @@ contains
   !> Number of ply elements failed in each mode, of the full plate. Collective.
   function failed_counts(model, failures) result(counts)
     type(model_t), intent(in) :: model
-    !> The failures
     type(ply_failure_t), intent(in) :: failures
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)

@@ -40,12 +40,9 @@ module joined_elements
     !> Sends the strains of elements joined across ranks
     type(column_exchange_t), private :: across
   contains
-    !> True where an element shares its state with others.
     procedure :: shares
-    !> Stores an element's strains; sends them to the ranks that need them.
     procedure :: accumulate_strains
     procedure :: exchange
-    !> Means of an element with those joined with it, and the largest bound of their strains.
     procedure :: means_of
     procedure :: bound_of
   end type joined_elements_t
@@ -55,7 +52,6 @@ contains
   !> Finds the elements that share their state with others. Collective.
   function find_joined_elements(model) result(self)
     type(model_t), intent(in) :: model
-    !> The elements
     type(joined_elements_t) :: self
     integer, allocatable :: numbers(:), parts(:, :)
     logical, allocatable :: joined(:, :), mine(:)
@@ -105,7 +101,6 @@ contains
   !> The modelled elements joined with an element, including itself, ascending, then zeros, and the axes along which it
   !> is joined beyond its side. Elements with other layers are not joined.
   pure subroutine find_parts(mesh, element, is_struck, parts, joined)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Element of the mesh
     integer, intent(in) :: element
@@ -142,7 +137,6 @@ contains
   !> Position of the modelled cell that lies, itself or its image, beyond a cell's side on a line through the struck
   !> point.
   pure function place_beyond(mesh, place, direction) result(beyond)
-    !> The mesh
     type(layered_mesh_t), intent(in) :: mesh
     !> Column and row of the cell
     integer, intent(in) :: place(2), direction
@@ -183,7 +177,6 @@ contains
 
   !> Stores an element's strains.
   pure subroutine accumulate_strains(self, element, moments, bound, first, plies, bands, states)
-    !> The elements
     class(joined_elements_t), intent(inout) :: self
     !> Element of this rank that shares its state
     integer, intent(in) :: element
@@ -217,7 +210,6 @@ contains
 
   !> Sends the strains of elements joined across ranks. Collective.
   subroutine exchange(self)
-    !> The elements
     class(joined_elements_t), intent(inout) :: self
 
     call self%across%update(self%moments)
@@ -241,7 +233,6 @@ contains
   pure subroutine find_elastic_strains(number, ply, band, moments, means, state, strains)
     !> Number of the ply
     integer, intent(in) :: number
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> Its law
     type(crack_band_t), intent(in) :: band

@@ -26,13 +26,9 @@ module mean_sections
     !> True for elements whose change is not that of their undamaged sub-plies, (lanes, batches)
     logical, allocatable, private :: is_set(:, :)
   contains
-    !> Updates the undamaged elements of a batch.
     procedure :: update
-    !> Sets a damaged element.
     procedure :: set_element
-    !> Adds the stiffness of compressed sub-plies that are stiffer than in tension.
     procedure :: add_excess
-    !> Contribution of the mean strains to resultants of stress-free strains.
     procedure :: resultants
   end type mean_sections_t
 
@@ -41,7 +37,6 @@ contains
   !> Sections with all sub-plies in tension.
   function new_mean_sections(model) result(self)
     type(model_t), intent(in) :: model
-    !> The sections
     type(mean_sections_t) :: self
     integer :: last(0:size(model%plies)), ply, number, k, element
 
@@ -76,7 +71,6 @@ contains
 
   !> Factors of the mean strains of an element in the uniaxial strain of an undamaged ply at a height, and a constant.
   pure function uniaxial_factors(ply, z) result(factors)
-    !> The ply
     type(ply_t), intent(in) :: ply
     !> The height
     real(wp), intent(in) :: z
@@ -96,7 +90,6 @@ contains
 
   !> Finds the compressed sub-plies of the undamaged elements of a batch; sections change where a sign changes.
   pure subroutine update(self, b, means, undamaged)
-    !> The sections
     class(mean_sections_t), intent(inout) :: self
     !> Number of the batch
     integer, intent(in) :: b
@@ -127,7 +120,6 @@ contains
 
   !> Change of the section of an undamaged element.
   pure function sum_of_compressed(self, lane, b) result(change)
-    !> The sections
     type(mean_sections_t), intent(in) :: self
     !> Lane and batch of the element
     integer, intent(in) :: lane, b
@@ -143,7 +135,6 @@ contains
 
   !> Sets the change of the section of a damaged element.
   pure subroutine set_element(self, element, change)
-    !> The sections
     class(mean_sections_t), intent(inout) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -156,7 +147,6 @@ contains
 
   !> Adds the stiffness of undamaged sub-plies in compression where it exceeds that in tension: an upper bound.
   pure subroutine add_excess(self, stiffness)
-    !> The sections
     class(mean_sections_t), intent(in) :: self
     !> Section stiffness, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
@@ -175,7 +165,6 @@ contains
 
   !> Contribution of the mean strains to the resultants of stress-free strains of a batch.
   pure function resultants(self, b, means)
-    !> The sections
     class(mean_sections_t), intent(in) :: self
     !> Number of the batch
     integer, intent(in) :: b

@@ -49,29 +49,19 @@ module ply_failures
     !> True while softening plies keep their stiffness, during the transfer of a state to other layers
     logical :: keeps_stiffness = .false.
   contains
-    !> Internal forces of the plate, with the stiffness reduced by softening under this displacement.
     procedure :: find_forces
-    !> Forces of the elements on the layers, with softening plies.
     procedure :: add_layer_forces
-    !> Records the energy dissipated by softening in a step, and measures the lag of damage.
     procedure :: record
     procedure :: measure_lag
-    !> Computes the energy dissipated by softening plies so far.
     procedure :: total_dissipation
-    !> Neighbouring plies of an element with their permanent strains.
     procedure :: strained_plies
-    !> Stresses that closed cracks of a ply carry.
     procedure :: carried_by_cracks
-    !> Failed modes of a ply, of one element or of all, and its reduced constants.
     procedure :: failed
     procedure :: failed_in_elements
     procedure :: elasticity
     procedure :: elasticities
-    !> Finds new failures in an accepted state and reduces the stiffness.
     procedure :: grow
-    !> Computes the stiffness of elements split into layers.
     procedure :: restack
-    !> Saves or loads.
     procedure :: visit
   end type ply_failure_t
 
@@ -80,7 +70,6 @@ contains
   !> No failure. Collective.
   function new_ply_failure(model) result(self)
     type(model_t), intent(in) :: model
-    !> The failures
     type(ply_failure_t) :: self
 
     self%stiffness = model%elements%stiffness
@@ -130,7 +119,6 @@ contains
   !> Adds the forces of the elements on the layers, with softening plies; their history variables are accepted at once.
   !> Collective.
   subroutine add_layer_forces(self, model, motion, force, energies)
-    !> The failures
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Motion of the layers, ghosts up to date, (5, points)
@@ -172,7 +160,6 @@ contains
 
   !> Computes the energy dissipated by softening plies so far in each mode. Collective.
   subroutine total_dissipation(self, model)
-    !> The failures
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     real(wp) :: energies(energy_modes + 1)
@@ -185,7 +172,6 @@ contains
   !> Measures the lag of damage: the difference of the work on softening plies and the energy they store and dissipate,
   !> theory (T4). A step past an instability reaches a state without the work along the path.
   pure subroutine measure_lag(self, dissipated, stored, energy)
-    !> The failures
     class(ply_failure_t), intent(inout) :: self
     !> Energy dissipated by plies in the step
     real(wp), intent(in) :: dissipated
@@ -202,7 +188,6 @@ contains
 
   !> Failed modes of a ply of an element.
   pure function failed(self, ply, element)
-    !> The failures
     class(ply_failure_t), intent(in) :: self
     !> Ply of the laminate, and element of this rank that has it
     integer, intent(in) :: ply, element
@@ -218,7 +203,6 @@ contains
 
   !> Failed modes of a ply in all elements.
   pure function failed_in_elements(self, model, ply) result(failed)
-    !> The failures
     class(ply_failure_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Ply of the laminate
@@ -237,7 +221,6 @@ contains
 
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
-    !> The failures
     class(ply_failure_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Ply of the laminate, and element of this rank
@@ -254,7 +237,6 @@ contains
 
   !> Neighbouring plies of an element with their permanent strains.
   pure function strained_plies(self, model, first, last, element) result(plies)
-    !> The failures
     class(ply_failure_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> First and last ply, and element of this rank
@@ -268,7 +250,6 @@ contains
 
   !> Stresses along and across the fibres that closed cracks of a ply of an element carry, uniform over its volume.
   pure function carried_by_cracks(self, ply, element) result(stresses)
-    !> The failures
     class(ply_failure_t), intent(in) :: self
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
@@ -281,7 +262,6 @@ contains
 
   !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element)
-    !> The failures
     class(ply_failure_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Element of this rank
@@ -297,7 +277,6 @@ contains
 
   !> Finds new failures in an accepted state and reduces the stiffness. Collective.
   subroutine grow(self, model, displacement)
-    !> The failures
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
@@ -320,7 +299,6 @@ contains
 
   !> Computes the reduced stiffness of an element.
   subroutine soften(self, model, element)
-    !> The failures
     type(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Element of this rank
@@ -364,9 +342,7 @@ contains
 
   !> Saves or loads the failures.
   subroutine visit(self, archive, model)
-    !> The failures
     class(ply_failure_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: mode, element, ply

@@ -51,7 +51,6 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     !> Requested fields
     type(output_t), intent(in) :: output
-    !> The file
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error

@@ -11,7 +11,6 @@ contains
   !> Section stiffness for all strains, with the moduli that the mean strains of each element have: that of the
   !> operator.
   pure function uniform_stiffness(self) result(stiffness)
-    !> The failures
     type(ply_failure_t), intent(in) :: self
     !> (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)
@@ -22,7 +21,6 @@ contains
 
   !> Upper bound of the section stiffness for any sign of the stresses.
   pure function largest_stiffness(self) result(stiffness)
-    !> The failures
     type(ply_failure_t), intent(in) :: self
     !> (lanes, 21, batches)
     real(wp), allocatable :: stiffness(:, :, :)

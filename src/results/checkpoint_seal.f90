@@ -84,7 +84,6 @@ contains
   subroutine synchronise_folder(path, error)
     !> Path of the folder
     character(len=*), intent(in) :: path
-    !> Raised if that fails
     type(error_t), allocatable, intent(inout) :: error
     type(output_stream_t) :: entries
 

@@ -47,7 +47,6 @@ contains
 
   !> Starts a checkpoint; the previous one is kept until this one is closed.
   subroutine open_for_saving(self, communicator, path, provenance, error)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -67,7 +66,6 @@ contains
 
   !> Opens a checkpoint, after a check of its validity.
   subroutine open_for_loading(self, communicator, path, error)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -90,7 +88,6 @@ contains
 
   !> Ends saving or loading, and reports errors.
   subroutine close (self, error)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Set if an item could not be saved or loaded; the previous checkpoint is then kept
     type(error_t), allocatable, intent(inout) :: error
@@ -199,7 +196,6 @@ contains
 
   !> Visits one real.
   subroutine real_item(self, name, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -217,7 +213,6 @@ contains
 
   !> Visits one integer.
   subroutine integer_item(self, name, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -235,7 +230,6 @@ contains
 
   !> Visits one logical, stored as 0 or 1.
   subroutine logical_item(self, name, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -250,7 +244,6 @@ contains
 
   !> Visits a list of reals.
   subroutine reals_item(self, name, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -270,7 +263,6 @@ contains
 
   !> Visits a list of integers.
   subroutine integers_item(self, name, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -290,7 +282,6 @@ contains
 
   !> Visits a table of reals.
   subroutine table_item(self, name, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -312,7 +303,6 @@ contains
 
   !> Visits a field distributed over the ranks, stored in global order.
   subroutine field(self, name, columns, global_columns, value)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -332,7 +322,6 @@ contains
 
   !> Extents of a stored list or table; zeros, which do not fit, if it has another rank or does not exist.
   function extents_of(self, name, rank) result(extents)
-    !> The checkpoint
     class(checkpoint_archive_t), intent(in) :: self
     !> Name
     character(len=*), intent(in) :: name

@@ -23,7 +23,6 @@ contains
 
   !> Writes a scalar or vector field unchanged, any other by components.
   subroutine write_field(file, rows, path, columns, values, error)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Table of the fields; unallocated: they have no units
     character(len=*), allocatable, intent(in) :: rows(:)
@@ -53,7 +52,6 @@ contains
 
   !> Adds unit and meaning of the table to a dataset.
   subroutine explain_dataset(file, rows, path, error)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Table of the fields; unallocated: they have no units
     character(len=*), allocatable, intent(in) :: rows(:)

@@ -64,7 +64,6 @@ contains
 
   !> Sets the table of the fields: each then has its unit and meaning, and a field without a row is refused.
   pure subroutine describe(self, rows)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Rows as in result_tables
     character(len=result_row_length), intent(in) :: rows(:)
@@ -74,7 +73,6 @@ contains
 
   !> Starts the file, replacing one of that name.
   subroutine create(self, communicator, base, provenance, part, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -104,7 +102,6 @@ contains
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Set if it is that of another deck
     type(error_t), allocatable, intent(inout) :: error
@@ -126,7 +123,6 @@ contains
 
   !> Continues an existing file: times after the checkpoint are removed. Without a file a new one is started.
   subroutine resume(self, communicator, base, provenance, part, last_time, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -164,7 +160,6 @@ contains
 
   !> Writes the mesh of the following fields. Called at the start and after changes of the mesh.
   subroutine write_mesh(self, points, cells, coordinates, connectivity, names, values, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> The points that this rank owns, and its elements
     type(global_numbers_t), intent(in) :: points, cells
@@ -200,7 +195,6 @@ contains
 
   !> True if the last mesh has this number of points: layers are only added to a mesh.
   pure logical function is_on(self, points)
-    !> The fields
     class(fields_file_t), intent(in) :: self
     !> Number of points on all ranks
     integer, intent(in) :: points
@@ -210,7 +204,6 @@ contains
 
   !> True: the file has no time yet.
   pure logical function is_empty(self)
-    !> The fields
     class(fields_file_t), intent(in) :: self
 
     is_empty = size(self%grids) == 0
@@ -218,7 +211,6 @@ contains
 
   !> Starts a time.
   subroutine begin(self, time, step, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> The time
     real(wp), intent(in) :: time
@@ -239,7 +231,6 @@ contains
   !> Writes a field over the points: a scalar, a vector of three components, or any other number of components, which
   !> then become scalars NAME_1, NAME_2, ... because readers of XDMF do not agree on anything else.
   subroutine write_point_field(self, name, values, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Name of the field
     character(len=*), intent(in) :: name
@@ -255,7 +246,6 @@ contains
 
   !> Writes a field over the elements, with components as over points.
   subroutine write_cell_field(self, name, values, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Name of the field
     character(len=*), intent(in) :: name
@@ -271,7 +261,6 @@ contains
 
   !> Writes values known to every rank, in columns, such as one for each interface.
   subroutine write_figures(self, name, values, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Their name
     character(len=*), intent(in) :: name
@@ -287,7 +276,6 @@ contains
 
   !> Completes the time, so that the files contain it.
   subroutine finish(self, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Set if a field of this time could not be written
     type(error_t), allocatable, intent(inout) :: error
@@ -304,7 +292,6 @@ contains
 
   !> Stores the names of the files.
   subroutine name_files(self, communicator, base, part)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -324,7 +311,6 @@ contains
 
   !> Opens NAME.h5 to add to it.
   subroutine open_file(self, error)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Raised if it cannot be opened
     type(error_t), allocatable, intent(inout) :: error
@@ -336,7 +322,6 @@ contains
   !> Closes NAME.h5. If an added group cannot be written, as on a full disk, it is removed again, so that the previous
   !> content remains readable.
   subroutine close_file(self, error, added)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Set if there was an error since it was opened
     type(error_t), allocatable, intent(inout) :: error
@@ -350,9 +335,7 @@ contains
 
   !> Sets an error if there was a failure with NAME.h5.
   subroutine report(self, error)
-    !> The fields
     class(fields_file_t), intent(in) :: self
-    !> Raised if there was
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(self%file%failure)) call fail(error, exit_files, &
@@ -361,7 +344,6 @@ contains
 
   !> Removes the times after the last to keep and describes the others.
   subroutine drop_times_after(self, last_time)
-    !> The fields
     class(fields_file_t), intent(inout) :: self
     !> Time of the last fields to keep
     real(wp), intent(in) :: last_time

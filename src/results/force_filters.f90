@@ -29,9 +29,7 @@ module force_filters
     !> Output of each section, and its rate over omega, (2, sections)
     real(wp), private :: state(2, 2) = 0
   contains
-    !> Advances the filter by a step.
     procedure :: advance
-    !> Saves or loads.
     procedure :: visit
   end type force_filter_t
 
@@ -39,7 +37,6 @@ contains
 
   !> Advances the filter by a step.
   pure subroutine advance(self, step, force)
-    !> The filter
     class(force_filter_t), intent(inout) :: self
     !> Length of the step, and the force at its end
     real(wp), intent(in) :: step, force
@@ -68,9 +65,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive)
-    !> The filter
     class(force_filter_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     real(wp), allocatable :: numbers(:)
 

@@ -12,7 +12,6 @@ contains
 
   !> Gives a dataset the attributes `unit` and `meaning`.
   subroutine write_unit_and_meaning(file, name, unit, meaning)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path of the dataset inside the file
     character(len=*), intent(in) :: name

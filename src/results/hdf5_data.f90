@@ -16,7 +16,6 @@ contains
 
   !> Writes reals known to every rank.
   subroutine write_reals(file, name, values, extents)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -32,7 +31,6 @@ contains
 
   !> Reads reals to every rank.
   subroutine read_reals(file, name, values, extents)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -49,7 +47,6 @@ contains
 
   !> Writes integers known to every rank.
   subroutine write_integers(file, name, values, extents)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -65,7 +62,6 @@ contains
 
   !> Reads integers to every rank.
   subroutine read_integers(file, name, values, extents)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -82,7 +78,6 @@ contains
 
   !> Writes a text known to every rank.
   subroutine write_text(file, name, value)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -105,7 +100,6 @@ contains
 
   !> Reads a text to every rank; empty if it is not there.
   subroutine read_text(file, name, value)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -135,7 +129,6 @@ contains
 
   !> Writes a table of reals with columns distributed over the ranks.
   subroutine write_real_columns(file, name, columns, global_columns, values)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -156,7 +149,6 @@ contains
 
   !> Reads a table of reals with columns distributed over the ranks.
   subroutine read_real_columns(file, name, columns, global_columns, values)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -183,7 +175,6 @@ contains
 
   !> Writes a table of integers with columns distributed over the ranks.
   subroutine write_integer_columns(file, name, columns, global_columns, values)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -232,7 +223,6 @@ contains
 
   !> Columns that this rank writes of an array known to every rank: all on the first rank.
   pure function shares_of_root(file, extents) result(columns)
-    !> The file
     type(hdf5_file_t), intent(in) :: file
     !> Extents of the array
     integer, intent(in) :: extents(:)

@@ -59,7 +59,6 @@ contains
 
   !> Creates a file, replacing one of that name.
   subroutine create(self, communicator, path, head)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> The ranks that share it
     type(communicator_t), intent(in) :: communicator
@@ -85,7 +84,6 @@ contains
 
   !> Opens a file that is there.
   subroutine open (self, communicator, path, writable)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> The ranks that share it
     type(communicator_t), intent(in) :: communicator
@@ -108,7 +106,6 @@ contains
 
   !> Resets the error and the file.
   subroutine start_over(self, communicator)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> The ranks that share the file
     type(communicator_t), intent(in) :: communicator
@@ -120,7 +117,6 @@ contains
 
   !> Writes the reserve file; without space for it the error is set before HDF5 opens the file.
   subroutine write_reserve(self, path)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -139,7 +135,6 @@ contains
 
   !> Removes the reserve.
   subroutine remove_reserve(self)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: unit, status
 
@@ -153,7 +148,6 @@ contains
 
   !> Starts the library if necessary, silences its own messages and creates the property lists.
   subroutine prepare(self, access_list)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Property list for opening the file
     integer(hid_t), intent(out) :: access_list
@@ -202,7 +196,6 @@ contains
   !> Closes the file, also after a failure to open it. On several ranks HDF5 waits forever if one of them cannot write
   !> the metadata: if not even half of the reserve can be written, the file is not closed.
   subroutine close (self)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     integer :: status, closed
     character(len=:), allocatable :: obstacle
@@ -244,7 +237,6 @@ contains
 
   !> Agrees on whether the last step failed on any rank.
   subroutine check_status(self, status, failure)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Status the library returned on this rank; negative means failed
     integer, intent(in) :: status
@@ -260,7 +252,6 @@ contains
 
   !> Why the system refuses further writes, such as on a full disk; empty if it does not. Collective.
   function obstacle_of(self, bytes) result(obstacle)
-    !> The file
     type(hdf5_file_t), intent(in) :: self
     !> Number of bytes to be written
     integer, intent(in) :: bytes
@@ -274,7 +265,6 @@ contains
 
   !> True if there was no error so far.
   pure logical function succeeded(self)
-    !> The file
     class(hdf5_file_t), intent(in) :: self
 
     succeeded = self%is_open .and. .not. allocated(self%failure)
@@ -282,7 +272,6 @@ contains
 
   !> True if there is a group or dataset of that path.
   logical function exists(self, path)
-    !> The file
     class(hdf5_file_t), intent(in) :: self
     !> Path inside the file
     character(len=*), intent(in) :: path
@@ -296,7 +285,6 @@ contains
 
   !> Creates a group, and the missing groups above it.
   subroutine make_group(self, path)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path inside the file
     character(len=*), intent(in) :: path
@@ -311,7 +299,6 @@ contains
 
   !> Removes a group with its content, or a dataset.
   subroutine remove(self, path)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path inside the file
     character(len=*), intent(in) :: path
@@ -324,7 +311,6 @@ contains
 
   !> Removes a group after an error, so that the file can be closed.
   subroutine discard(self, path)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path inside the file
     character(len=*), intent(in) :: path
@@ -336,7 +322,6 @@ contains
 
   !> Names of the members of a group, in alphabetical order; none if there is no such group.
   subroutine members(self, path, names)
-    !> The file
     class(hdf5_file_t), intent(inout) :: self
     !> Path of the group
     character(len=*), intent(in) :: path

@@ -14,7 +14,6 @@ contains
 
   !> Extents of a stored array; none for a scalar or if it is not there.
   function stored_shape(file, name) result(extents)
-    !> The file
     type(hdf5_file_t), intent(in) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -39,7 +38,6 @@ contains
 
   !> Creates a dataset and writes this rank's columns of it.
   subroutine put(file, name, stored_type, native_type, address, extents, columns)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
@@ -73,7 +71,6 @@ contains
 
   !> Reads this rank's columns of a dataset.
   subroutine get(file, name, native_type, address, extents, columns)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name

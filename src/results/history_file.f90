@@ -50,7 +50,6 @@ contains
 
   !> Starts a history, replacing one of that name.
   subroutine create(self, communicator, path, columns, whole, error)
-    !> The history
     class(history_file_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -80,7 +79,6 @@ contains
   !> the history continues after these; `rows` is their number. If the row at the checkpoint differs from that of the
   !> run, the history is not changed.
   subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
-    !> The history
     class(history_file_t), intent(inout) :: self
     !> The ranks
     type(communicator_t), intent(in) :: communicator
@@ -125,7 +123,6 @@ contains
 
   !> Writes one row.
   subroutine write_row(self, values, error)
-    !> The history
     class(history_file_t), intent(inout) :: self
     !> One number per column, of the first rank
     real(wp), intent(in) :: values(:)
@@ -152,7 +149,6 @@ contains
 
   !> Flushes all rows, as required before a checkpoint.
   subroutine flush(self, error)
-    !> The history
     class(history_file_t), intent(inout) :: self
     !> Raised if they cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -165,7 +161,6 @@ contains
 
   !> Ends the history.
   subroutine close (self, error)
-    !> The history
     class(history_file_t), intent(inout) :: self
     !> Raised if the last rows cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -178,9 +173,7 @@ contains
   !> Raises an error on all ranks if the file has been removed; rows written to a removed file would be lost without an
   !> error.
   subroutine check_presence(self, error)
-    !> The history
     class(history_file_t), intent(in) :: self
-    !> Set if so
     type(error_t), allocatable, intent(inout) :: error
 
     if (self%communicator%is_root() .and. .not. self%file%failed) then
@@ -192,9 +185,7 @@ contains
 
   !> Raises an error on all ranks if the first one could not write.
   subroutine check(self, error)
-    !> The history
     class(history_file_t), intent(in) :: self
-    !> Set if so
     type(error_t), allocatable, intent(inout) :: error
 
     if (self%file%failed) call fail(error, exit_files, "Cannot write the history "//self%path//': '// &
@@ -216,7 +207,6 @@ contains
     character(len=*), intent(in) :: last
     !> Rows kept: fewer if there are not that many
     integer, intent(out) :: kept
-    !> Raised on a failure
     type(error_t), allocatable, intent(inout) :: error
     character(len=len(expected) + 1) :: found
     type(output_stream_t) :: copy

@@ -18,11 +18,8 @@ module output_clocks
     !> Events so far
     integer :: strikes = 0
   contains
-    !> Time of the next event.
     procedure :: next
-    !> True, once, when the next event of this clock has been reached.
     procedure :: strikes_at
-    !> Saves or loads the clock.
     procedure :: visit
     procedure, private :: margin
   end type clock_t
@@ -31,7 +28,6 @@ contains
 
   !> Time of the next event: the earliest of some clocks, or the end if it coincides with it.
   pure real(wp) function next_event(clocks, end, closest) result(event)
-    !> The clocks
     type(clock_t), intent(in) :: clocks(:)
     !> End of the run
     real(wp), intent(in) :: end
@@ -57,7 +53,6 @@ contains
 
   !> Time of the next event; huge without one.
   pure real(wp) function next(self)
-    !> The clock
     class(clock_t), intent(in) :: self
 
     next = huge(next)
@@ -67,7 +62,6 @@ contains
   !> Distance up to which the next event of the clock coincides with another one; at most half an interval, so that no
   !> event is lost.
   pure real(wp) function margin(self, closest)
-    !> The clock
     class(clock_t), intent(in) :: self
     !> Distance up to which events coincide, >= 0
     real(wp), intent(in) :: closest
@@ -78,7 +72,6 @@ contains
 
   !> True if the next event of the clock coincides with the event reached; the clock then advances.
   logical function strikes_at(self, event, closest)
-    !> The clock
     class(clock_t), intent(inout) :: self
     !> Time of the event, from `next_event`
     real(wp), intent(in) :: event
@@ -91,9 +84,7 @@ contains
 
   !> Saves or loads the clock.
   subroutine visit(self, archive, name)
-    !> The clock
     class(clock_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     !> Name of the clock
     character(len=*), intent(in) :: name

@@ -69,7 +69,6 @@ contains
 
   !> Reports intervals far below the step, which would shorten every step.
   subroutine check_intervals(settings, step, end, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> First step and end of the run
     real(wp), intent(in) :: step, end
@@ -94,15 +93,12 @@ contains
 
   !> Remarks on requested fields of physics that is not modelled.
   subroutine remark_idle_fields(settings, output, has_interfaces, has_ply_damage, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The output
     type(output_t), intent(in) :: output
     !> True: there are interfaces that may delaminate
     logical, intent(in) :: has_interfaces
     !> True: plies may fail
     logical, intent(in) :: has_ply_damage
-    !> Remarks are added
     type(problems_t), intent(inout) :: problems
     character(len=*), parameter :: of_interfaces(*) = [character(len=16) :: field_gap, field_contact_pressure, &
                                                        field_delamination, field_energy_release]

@@ -31,7 +31,6 @@ module output_parameters
     !> Names of the requested fields, in lower case, separated by commas without blanks
     character(len=:), allocatable :: fields
   contains
-    !> True if a field is requested.
     procedure :: requests
   end type output_t
 
@@ -39,7 +38,6 @@ contains
 
   !> True if a field is requested.
   pure logical function requests(self, field)
-    !> The output
     class(output_t), intent(in) :: self
     !> Name of the field
     character(len=*), intent(in) :: field

@@ -17,7 +17,6 @@ contains
   subroutine refuse_pipes(base, error)
     !> Folder and name that all results share
     character(len=*), intent(in) :: base
-    !> Raised if one is
     type(error_t), allocatable, intent(inout) :: error
     integer :: i
 

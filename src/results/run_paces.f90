@@ -16,11 +16,8 @@ module run_paces
     !> Clock in seconds and completed steps or time, at the older and at the newer mark
     real(wp) :: older(2) = 0, newer(2) = 0
   contains
-    !> Starts, also after a restart.
     procedure :: start
-    !> Stores the progress of the run.
     procedure :: note
-    !> Remaining seconds.
     procedure :: left
   end type run_pace_t
 
@@ -28,7 +25,6 @@ contains
 
   !> Starts, also after a restart.
   pure subroutine start(self, clock, done)
-    !> The pace
     class(run_pace_t), intent(inout) :: self
     !> Clock, s, and completed part
     real(wp), intent(in) :: clock, done
@@ -39,7 +35,6 @@ contains
 
   !> Stores the progress of the run.
   pure subroutine note(self, clock, done)
-    !> The pace
     class(run_pace_t), intent(inout) :: self
     !> Clock, s, and completed part
     real(wp), intent(in) :: clock, done
@@ -51,7 +46,6 @@ contains
 
   !> Remaining seconds at the present speed; negative: not known yet.
   pure real(wp) function left(self, clock, done, rest)
-    !> The pace
     class(run_pace_t), intent(in) :: self
     !> Clock, s, completed and remaining part
     real(wp), intent(in) :: clock, done, rest

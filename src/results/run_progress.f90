@@ -39,7 +39,6 @@ contains
 
   !> Starts the clock.
   subroutine start(self, fraction, done)
-    !> The progress
     class(progress_t), intent(inout) :: self
     !> Completed fraction of the run: 0, or more after a restart
     real(wp), intent(in) :: fraction
@@ -55,9 +54,7 @@ contains
 
   !> True: progress is due for output.
   logical function is_due(self, log, fraction)
-    !> The progress
     class(progress_t), intent(in) :: self
-    !> The log
     type(log_t), intent(in) :: log
     !> Completed fraction of the run
     real(wp), intent(in) :: fraction
@@ -75,9 +72,7 @@ contains
 
   !> Prints the progress.
   subroutine update(self, log, fraction, done, left, text)
-    !> The progress
     class(progress_t), intent(inout) :: self
-    !> The log
     type(log_t), intent(inout) :: log
     !> Completed fraction of the run
     real(wp), intent(in) :: fraction
@@ -105,9 +100,7 @@ contains
 
   !> Reports the end of the run and the time of this process.
   subroutine finish(self, log, text)
-    !> The progress
     class(progress_t), intent(in) :: self
-    !> The log
     type(log_t), intent(inout) :: log
     !> How the run ended
     character(len=*), intent(in) :: text

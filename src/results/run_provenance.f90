@@ -53,7 +53,6 @@ contains
   function this_run(build, deck, ranks) result(run)
     !> Versions of this program
     type(build_t), intent(in) :: build
-    !> Text of the deck
     character(len=*), intent(in) :: deck
     !> Number of ranks
     integer, intent(in) :: ranks
@@ -76,9 +75,7 @@ contains
 
   !> Writes the provenance to the log; the deck is written to the log file only.
   subroutine report(self, log)
-    !> The provenance
     class(provenance_t), intent(in) :: self
-    !> The log
     type(log_t), intent(inout) :: log
 
     call log%note('Implam '//self%version//' (commit '//self%commit//'), '//self%compiler//', PETSc ' &

@@ -11,7 +11,6 @@ contains
 
   !> Writes a provenance.
   subroutine write_provenance(file, group, run)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path of the group
     character(len=*), intent(in) :: group
@@ -37,7 +36,6 @@ contains
 
   !> Reads a provenance.
   subroutine read_provenance(file, group, run)
-    !> The file
     type(hdf5_file_t), intent(inout) :: file
     !> Path of the group
     character(len=*), intent(in) :: group

@@ -20,9 +20,7 @@ module wall_limits
     !> Duration of the longest step so far in seconds, including output
     real(wp), private :: longest = 0
   contains
-    !> Stores the duration of a step.
     procedure :: note_step
-    !> True if another step might exceed the limit.
     procedure :: is_up
   end type wall_limit_t
 
@@ -30,7 +28,6 @@ contains
 
   !> Stores the duration of a step.
   pure subroutine note_step(self, seconds)
-    !> The limit
     class(wall_limit_t), intent(inout) :: self
     !> Duration of a step in seconds, including output
     real(wp), intent(in) :: seconds
@@ -40,9 +37,7 @@ contains
 
   !> True if another step might exceed the limit.
   pure logical function is_up(self, now)
-    !> The limit
     class(wall_limit_t), intent(in) :: self
-    !> Present clock
     real(wp), intent(in) :: now
 
     is_up = self%granted > 0 .and. now - self%begun + reserve*self%longest + outside > &

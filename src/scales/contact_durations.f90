@@ -32,7 +32,6 @@ contains
   !> and a spring that stiffens by A (w/h)**2 has the frequency of a linear one that is stiffer by 3/4 of that at the
   !> largest deflection (harmonic balance). That deflection follows from the energy.
   pure real(wp) function stiffened_duration(setup, scales, duration, deflection) result(stiffened)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Its scales
     type(setup_scales_t), intent(in) :: scales
@@ -56,7 +55,6 @@ contains
   !> Compliance of a plate clamped at all edges over that of the shorter, simply supported plate of the elastic impact;
   !> 1 for other edges. Both are those of thin plates; shear adds the same to both.
   pure real(wp) function clamped_share(setup, scales) result(share)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Its scales
     type(setup_scales_t), intent(in) :: scales

@@ -52,9 +52,7 @@ contains
   pure function run_elastic_impact(plate, impactor, law, step, max_steps, to_the_end) result(elastic)
     !> Modes of the plate
     type(modal_plate_t), intent(in) :: plate
-    !> The impactor
     type(impactor_parameters_t), intent(in) :: impactor
-    !> Indentation law
     type(indentation_law_t), intent(in) :: law
     !> Step
     real(wp), intent(in) :: step
@@ -62,7 +60,6 @@ contains
     integer, intent(in) :: max_steps
     !> True: all steps are taken; false: the calculation ends once the contact is over
     logical, intent(in) :: to_the_end
-    !> The impact
     type(elastic_impact_t) :: elastic
     type(indentation_t) :: contact
     type(patch_response_t) :: patch
@@ -108,7 +105,6 @@ contains
 
   !> The root of F = F(alpha_free - compliance F), by Newton's method within an interval.
   pure subroutine find_force(law, contact, free, compliance, force)
-    !> The law
     type(indentation_law_t), intent(in) :: law
     !> The contact so far
     type(indentation_t), intent(in) :: contact
@@ -147,7 +143,6 @@ contains
   !> Results in the order of the summary: largest force, its time, time in contact, largest deflection, velocity of the
   !> impactor at the end.
   pure function figures_of(elastic) result(figures)
-    !> The elastic impact
     type(elastic_impact_t), intent(in) :: elastic
     !> The figures
     real(wp) :: figures(5)

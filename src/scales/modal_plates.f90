@@ -150,7 +150,6 @@ contains
 
   !> The plate with its modes up to a lower frequency; the other modes contribute their static compliance.
   pure function reduced(plate, cutoff) result(fewer)
-    !> The plate
     type(modal_plate_t), intent(in) :: plate
     !> Circular frequency, > 0
     real(wp), intent(in) :: cutoff

@@ -57,7 +57,6 @@ contains
     integer, intent(in) :: steps
     !> True: all of them will be taken
     logical, intent(in) :: to_the_end
-    !> The response
     type(patch_response_t) :: self
     integer :: known
 
@@ -75,7 +74,6 @@ contains
   !> Computes the response for a number of steps. By the average acceleration the phase of a mode increases by theta in
   !> a step, tan(theta/2) = omega step/2, and its response to a unit force is a sine.
   pure subroutine find_unit_response(self, steps)
-    !> The response
     type(patch_response_t), intent(inout) :: self
     !> Steps, a power of two
     integer, intent(in) :: steps
@@ -107,7 +105,6 @@ contains
 
   !> Adds the convolution with the forces of the last block to the same number of following steps.
   pure subroutine predict_deflections(self, now, force)
-    !> The response
     type(patch_response_t), intent(inout) :: self
     !> Steps taken, a multiple of `block_steps`
     integer, intent(in) :: now
@@ -132,7 +129,6 @@ contains
 
   !> The same by transforms twice as long as the block.
   pure subroutine convolve_by_transform(self, force, now, last)
-    !> The response
     type(patch_response_t), intent(inout) :: self
     !> Forces of the block, a power of two of them
     real(wp), intent(in) :: force(:)

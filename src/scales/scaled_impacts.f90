@@ -73,7 +73,6 @@ contains
 
   !> Change of the force history by scaled rotary inertia.
   pure real(wp) function change_of_history(elastic, scaling, step, end, exact) result(change)
-    !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: elastic
     !> Factor of rotary inertia
     real(wp), intent(in) :: scaling

@@ -85,7 +85,6 @@ contains
     type(setup_t), intent(in) :: setup
     !> Its scales
     type(setup_scales_t), intent(in) :: scales
-    !> The elastic impact
     type(setup_elastic_impact_t) :: elastic
 
     elastic%setup = setup
@@ -95,7 +94,6 @@ contains
 
   !> A preliminary elastic impact with a given step; `complete` is false if it would take too many steps.
   pure function run_of(self, step, end, cell) result(run)
-    !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
@@ -119,7 +117,6 @@ contains
   !> The contact from first contact to its end by a first, coarse elastic impact, no longer than the run. Its steps are
   !> longer where a heavy impactor remains on the plate for a long time.
   pure function contact_end(self, end) result(run)
-    !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
     !> End of the run; 0: not known
     real(wp), intent(in) :: end
@@ -183,7 +180,6 @@ contains
   !> mean square error of the forces around it and, where the force of first contact is the largest, the error of its
   !> waves in the elements around the patch.
   pure function errors_of_figures(scales, edge, coarse, fine, meshed) result(errors)
-    !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
     !> Side of the elements near the struck point
     real(wp), intent(in) :: edge
@@ -204,9 +200,7 @@ contains
 
   !> Side of the elements around the patch for a given relative error of the force of first contact.
   pure real(wp) function edge_for(scales, error) result(edge)
-    !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
-    !> The relative error
     real(wp), intent(in) :: error
 
     edge = scales%wave_length/wave_elements*(200*error)**wave_power
@@ -214,7 +208,6 @@ contains
 
   !> Relative error of the force of first contact with such elements: the inverse of `edge_for`.
   pure real(wp) function error_with(scales, edge) result(error)
-    !> Scales of the setup
     type(setup_scales_t), intent(in) :: scales
     !> Side of the elements
     real(wp), intent(in) :: edge
@@ -224,7 +217,6 @@ contains
 
   !> The largest step with errors within bounds.
   pure subroutine largest_step(self, end, bounds, step, error)
-    !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
     !> End of the time considered
     real(wp), intent(in) :: end
@@ -232,7 +224,6 @@ contains
     real(wp), intent(in) :: bounds(2)
     !> The step
     real(wp), intent(out) :: step
-    !> Its errors
     real(wp), intent(out) :: error(2)
     type(elastic_impact_t) :: finest, coarse
     real(wp) :: longer
@@ -270,7 +261,6 @@ contains
 
   !> The largest elements with errors within bounds.
   pure function largest_cell(self, step, end, bounds, follows) result(cell)
-    !> The elastic impact
     type(setup_elastic_impact_t), intent(in) :: self
     !> Step
     real(wp), intent(in) :: step
@@ -304,7 +294,6 @@ contains
   !> Sets the frequencies of the modes to those on elements of a given side. Modes too short for the elements become so
   !> stiff that they do not contribute.
   pure subroutine disperse(plate, cell)
-    !> The plate
     type(modal_plate_t), intent(inout) :: plate
     !> Side of the elements
     real(wp), intent(in) :: cell

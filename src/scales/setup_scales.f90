@@ -84,7 +84,6 @@ contains
 
   !> Bending section of the laminate whose membrane strains are free: D - B inverse(A) B (Reissner and Stavsky).
   pure function bending_section(setup) result(section)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Stiffness and mass
     type(section_t) :: section
@@ -100,7 +99,6 @@ contains
 
   !> Modes of the setup's plate up to a frequency.
   pure function plate_modes(setup, cutoff, scaling) result(plate)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Circular frequency
     real(wp), intent(in) :: cutoff
@@ -120,7 +118,6 @@ contains
   !> the square with the same first frequency, both simply supported: 4.977/(radius)**2 for nu = .3 (A. W. Leissa,
   !> Vibration of Plates, NASA SP-160, 1969, table 2.4) and 2 pi**2/side**2.
   pure function free_span(setup) result(length)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Along x and y
     real(wp) :: length(2)
@@ -138,7 +135,6 @@ contains
 
   !> Supports of its edges: a frame is a simple support.
   pure function free_edges(setup) result(edges)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> In the order of the deck
     integer :: edges(4)
@@ -150,7 +146,6 @@ contains
 
   !> Side of the loaded square; without a patch in the deck, as small as plate theory can resolve.
   pure real(wp) function loaded_side(setup) result(side)
-    !> The setup
     type(setup_t), intent(in) :: setup
 
     side = setup%mesh%patch
@@ -161,7 +156,6 @@ contains
   !> widened at 45 degrees from the struck face to the mid-plane. Deformation below the scale of the thickness is part
   !> of the indentation law.
   pure real(wp) function contact_side(setup, indentation) result(side)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Largest indentation
     real(wp), intent(in) :: indentation
@@ -176,7 +170,6 @@ contains
 
   !> Delamination threshold force of the interfaces with the smallest toughness.
   pure real(wp) function growth_threshold(setup, bending) result(force)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Effective bending stiffness
     real(wp), intent(in) :: bending
@@ -195,7 +188,6 @@ contains
   !> Force at which interlaminar stresses reach the strength next to the loaded patch. The shear force is distributed
   !> uniformly over the four sides of the patch, and decreases outside as around a circle of this circumference.
   pure real(wp) function onset_force(setup) result(force)
-    !> The setup
     type(setup_t), intent(in) :: setup
     type(ply_t), allocatable :: plies(:)
     type(unit_stresses_t) :: unit

@@ -38,11 +38,8 @@ module energy_ledgers
     !> Largest energy so far, the reference of errors: the present energy may return to zero, as in free vibration
     real(wp) :: largest = 0
   contains
-    !> Energy error.
     procedure :: error
-    !> Updates the largest energy so far.
     procedure :: note_largest
-    !> Saves or loads the ledger.
     procedure :: visit
   end type ledger_t
 
@@ -50,7 +47,6 @@ contains
 
   !> Energy error: sum of the entries minus initial energy and external work.
   pure real(wp) function error(self)
-    !> The ledger
     class(ledger_t), intent(in) :: self
 
     error = self%impactor + self%kinetic + self%strain + self%indentation + self%delamination &
@@ -61,7 +57,6 @@ contains
   !> Updates the largest energy so far: of the impactor, of the plate, or the work of the loads, which may be negative.
   !> The energy of residual stresses is excluded, as it may be far larger than that of the loads.
   pure subroutine note_largest(self)
-    !> The ledger, complete
     class(ledger_t), intent(inout) :: self
 
     self%largest = max(self%largest, self%initial - self%residual, self%kinetic + self%strain - self%residual, &
@@ -70,9 +65,7 @@ contains
 
   !> Saves or loads every entry.
   subroutine visit(self, archive)
-    !> The ledger
     class(ledger_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('ledger/impactor', self%impactor)

@@ -14,9 +14,7 @@ contains
 
   !> Saves or loads the inherited state, by its names in a checkpoint.
   subroutine visit_inheritance(state, archive, model)
-    !> The state
     type(state_t), intent(inout) :: state
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: points

@@ -19,7 +19,6 @@ module load_paths
     !> Change of the unknowns in the last step, (5, points); unallocated: load control throughout
     real(wp), allocatable :: change(:, :)
   contains
-    !> Saves or loads.
     procedure :: visit
   end type load_path_t
 
@@ -27,9 +26,7 @@ contains
 
   !> Saves or loads.
   subroutine visit(self, archive, model)
-    !> The path
     class(load_path_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 

@@ -67,24 +67,15 @@ module states
     !> Failures of the plies and the reduced stiffness
     type(ply_failure_t) :: plies
   contains
-    !> Copies the state from which a step starts, except for quantities that the step computes.
     procedure :: start_from
-    !> Internal forces and strain energy.
     procedure :: find_internal
-    !> Deflection of the plate under the impactor, and contact area on the full plate.
     procedure :: contact_deflection
     procedure :: pressed_area
-    !> Depth of the struck point below the impactor.
     procedure :: depth_below_impactor
-    !> True once plies have failed or delaminations have grown.
     procedure :: has_failures
-    !> Holds the damage, or lets it grow.
     procedure :: hold_damage
-    !> Counts a step and its iterations.
     procedure :: count_step
-    !> Stores the changes of a load step.
     procedure :: record_path
-    !> Saves or loads the state.
     procedure :: visit
   end type state_t
 
@@ -93,7 +84,6 @@ contains
   !> The plate at rest, the impactor at first contact.
   function new_state(model) result(self)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t) :: self
     real(wp) :: energy
     integer :: points
@@ -118,9 +108,7 @@ contains
   !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
   !> of an impactor placed on a plate at rest begins with zero, and its first steps are compared with this energy.
   pure real(wp) function energy_of_weight(impactor, law) result(energy)
-    !> The impactor
     type(impactor_parameters_t), intent(in) :: impactor
-    !> The indentation law
     type(indentation_law_t), intent(in) :: law
     real(wp) :: weight
 
@@ -132,7 +120,6 @@ contains
   !> Copies the state from which a step starts; of the motion only the displacement, as velocity, acceleration and
   !> forces are computed by the step.
   pure subroutine start_from(self, model, old)
-    !> The state
     class(state_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state copied
@@ -169,7 +156,6 @@ contains
 
   !> Deflection of the plate under the impactor, the same on every rank.
   real(wp) function contact_deflection(self, model)
-    !> The state
     class(state_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
@@ -178,7 +164,6 @@ contains
 
   !> Contact area on the full plate, the same on every rank.
   pure real(wp) function pressed_area(self, model) result(area)
-    !> The state
     class(state_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
@@ -188,7 +173,6 @@ contains
 
   !> Depth of the struck point below the impactor, both from their position at first contact.
   pure real(wp) function depth_below_impactor(self, model) result(depth)
-    !> The state
     class(state_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
@@ -202,7 +186,6 @@ contains
 
   !> True once plies have failed or delaminations have grown.
   pure logical function has_failures(self)
-    !> The state
     class(state_t), intent(in) :: self
 
     has_failures = self%ledger%ply_damage > 0 .or. self%ledger%delamination > 0
@@ -210,7 +193,6 @@ contains
 
   !> Holds the damage of plies and interfaces, or lets it grow.
   pure subroutine hold_damage(self, holds)
-    !> The state
     class(state_t), intent(inout) :: self
     !> True: damage does not grow
     logical, intent(in) :: holds
@@ -253,9 +235,7 @@ contains
 
   !> Saves or loads the state.
   subroutine visit(self, archive, model)
-    !> The state
     class(state_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
@@ -289,9 +269,7 @@ contains
 
   !> Saves or loads the distribution of the impactor's force.
   subroutine visit_patch(self, archive, model)
-    !> The state
     type(state_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     real(wp), allocatable :: weights(:, :)
@@ -309,9 +287,7 @@ contains
 
   !> Saves or loads the motion of the plate.
   subroutine visit_motion(motion, archive, model)
-    !> The motion
     type(motion_t), intent(inout) :: motion
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer :: points

@@ -42,7 +42,6 @@ contains
     real(wp), intent(in) :: target_dissipation
     !> Largest change of the load factor
     real(wp), intent(in) :: max_load_change
-    !> The problem
     type(dissipation_step_t) :: self
 
     self%static_step_t = new_static_step(model, time, 0.0_wp)
@@ -53,7 +52,6 @@ contains
 
   !> Predictor: the last step, scaled by the ratio of the energies.
   subroutine begin(self, at)
-    !> The problem
     class(dissipation_step_t), intent(inout) :: self
     !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
@@ -70,7 +68,6 @@ contains
 
   !> Load less internal forces, and the energy dissipated.
   subroutine find_residual(self, at)
-    !> The problem
     class(dissipation_step_t), intent(in) :: self
     !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
@@ -83,7 +80,6 @@ contains
 
   !> Residual relative to internal forces and load, or the error of the dissipated energy, scaled to the same tolerance.
   real(wp) function residual_norm(self, at)
-    !> The problem
     class(dissipation_step_t), intent(in) :: self
     !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
@@ -106,7 +102,6 @@ contains
 
   !> Adds the change of the load by which the step dissipates the prescribed energy.
   subroutine complete_correction(self, at, error)
-    !> The problem
     class(dissipation_step_t), intent(inout) :: self
     !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at

@@ -23,7 +23,6 @@ contains
 
   !> Fills in the load steps.
   subroutine fill_static(settings, static)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(load_stepping_t), intent(inout) :: static

@@ -29,7 +29,6 @@ module static_steps
     procedure :: find_correction
     !> Completes a correction at the load before: impactor, or change of the load.
     procedure :: complete_correction
-    !> Factor of a correction.
     procedure :: correction_factor
     procedure :: complete
     procedure :: finish
@@ -44,7 +43,6 @@ contains
     real(wp), intent(in) :: time
     !> Load relative to the full load
     real(wp), intent(in) :: load_factor
-    !> The problem
     type(static_step_t) :: self
 
     self%may_be_shortened = model%setup%kinematics /= kinematics_linear .or. model%setup%is_bimodular()
@@ -54,7 +52,6 @@ contains
 
   !> Predictor: the previous state.
   subroutine begin(self, at)
-    !> The problem
     class(static_step_t), intent(inout) :: self
     !> The iteration, before its first residual
     type(newton_iteration_t), intent(inout) :: at
@@ -67,7 +64,6 @@ contains
 
   !> Load less internal forces.
   subroutine find_residual(self, at)
-    !> The problem
     class(static_step_t), intent(in) :: self
     !> The iteration; receives residual and energy
     type(newton_iteration_t), intent(inout) :: at
@@ -82,7 +78,6 @@ contains
 
   !> Residual relative to internal forces and load.
   real(wp) function residual_norm(self, at)
-    !> The problem
     class(static_step_t), intent(in) :: self
     !> The iteration; its state stores its largest forces
     type(newton_iteration_t), intent(inout) :: at
@@ -104,7 +99,6 @@ contains
 
   !> A change of multipliers may be below the tolerance of the residual; it needs a correction nevertheless.
   pure logical function may_stop(self, at)
-    !> The problem
     class(static_step_t), intent(in) :: self
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
@@ -114,7 +108,6 @@ contains
 
   !> Solves for a correction, with a new factorization if the tangent may have changed.
   subroutine find_correction(self, at, tolerance, error)
-    !> The problem
     class(static_step_t), intent(inout) :: self
     !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at
@@ -136,7 +129,6 @@ contains
 
   !> Adds the response to the change of the impactor's force, and scales the correction.
   subroutine complete_correction(self, at, error)
-    !> The problem
     class(static_step_t), intent(inout) :: self
     !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at
@@ -170,7 +162,6 @@ contains
   !> Factor of a correction. Newton iterations may alternate between two sets of points whose damage grows. Once there
   !> have been more corrections than convergence usually takes, every other one is halved, which ends the alternation.
   elemental real(wp) function correction_factor(self, iterations) result(part)
-    !> The problem
     class(static_step_t), intent(in) :: self
     !> Iterations of the step so far
     integer, intent(in) :: iterations
@@ -181,7 +172,6 @@ contains
 
   !> Load steps have no velocity to be completed.
   subroutine complete(self, at)
-    !> The problem
     class(static_step_t), intent(in) :: self
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
@@ -189,7 +179,6 @@ contains
 
   !> Completes an accepted load step.
   subroutine finish(self, at)
-    !> The problem
     class(static_step_t), intent(in) :: self
     !> The iteration; its state is completed
     type(newton_iteration_t), intent(inout) :: at
@@ -261,7 +250,6 @@ contains
   !> Loads of an accepted state without the impactor's force. Before the first step only prescribed lines act.
   subroutine loads_carried(model, state, loads)
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: state
     !> Forces on the unknowns, (5, points)
     real(wp), intent(inout) :: loads(:, :)

@@ -29,7 +29,6 @@ contains
     type(model_t), intent(in) :: model
     !> Time that must not be exceeded
     real(wp), intent(in) :: event
-    !> The state
     type(state_t), intent(inout) :: now
     real(wp) :: kept
 
@@ -55,7 +54,6 @@ contains
     !> Central differences
     type(central_difference_t), intent(inout) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(inout) :: now
 
     call now%hold_damage(.false.)
@@ -68,7 +66,6 @@ contains
     !> Central differences
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(in) :: now
 
     is_damped = .false.
@@ -85,7 +82,6 @@ contains
     !> Central differences
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
-    !> The state
     type(state_t), intent(inout) :: now
     !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error

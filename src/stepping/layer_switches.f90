@@ -34,9 +34,7 @@ contains
   subroutine advance_with_layers(model, stepper, linear_solver, event, switched, error)
     !> The model; receives larger zones
     type(model_t), intent(inout) :: model
-    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
@@ -79,9 +77,7 @@ contains
   subroutine advance_explicit(model, stepper, linear_solver, event, switched, error)
     !> The model; receives larger zones
     type(model_t), intent(inout) :: model
-    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Time that must not be exceeded
     real(wp), intent(in) :: event
@@ -114,7 +110,6 @@ contains
 
   !> Extents of the zones.
   pure function present_extents(setup) result(extents)
-    !> The setup
     type(setup_t), intent(in) :: setup
     !> Full extents along x and y, (2, zones)
     real(wp) :: extents(2, size(setup%delaminations))
@@ -127,11 +122,8 @@ contains
 
   !> Builds the model with larger zones and transfers the state to it.
   subroutine switch(model, stepper, linear_solver, extents, error)
-    !> The model
     type(model_t), intent(inout) :: model
-    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Full extents of the zones along x and y, (2, zones)
     real(wp), intent(in) :: extents(:, :)
@@ -182,7 +174,6 @@ contains
     type(model_t), intent(in) :: model
     !> Map of points and elements from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
-    !> The loaded state
     type(state_t), intent(inout) :: now
     type(state_t), allocatable :: before
     real(wp) :: energies(2)
@@ -257,7 +248,6 @@ contains
     type(model_t), intent(in) :: model
     !> Map of points from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
-    !> The state
     type(state_t), intent(inout) :: now
     real(wp) :: interlaminar(5)
     integer :: i

@@ -31,7 +31,6 @@ contains
   !> Load factor, then force and displacement of every line. Collective.
   function line_values(model, now) result(values)
     type(model_t), intent(in) :: model
-    !> The state reached
     type(state_t), intent(in) :: now
     !> One value per column, the same on every rank; none without lines
     real(wp), allocatable :: values(:)
@@ -56,7 +55,6 @@ contains
 
   !> True: lines displace ends of the plate in its plane.
   pure logical function has_ends(plate, lines)
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> Lines of the deck
     type(line_load_t), intent(in) :: lines(:)
@@ -66,7 +64,6 @@ contains
 
   !> Lines on the two ends of the displaced axis, also on a fixed end.
   pure function on_ends(plate, lines) result(on)
-    !> The plate
     type(plate_t), intent(in) :: plate
     !> Lines of the deck
     type(line_load_t), intent(in) :: lines(:)

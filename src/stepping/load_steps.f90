@@ -28,12 +28,10 @@ contains
 
   !> The first step has the length given in the deck.
   subroutine start(self, stepper, model, error)
-    !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper, its state in equilibrium
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Not set
     type(error_t), allocatable, intent(inout) :: error
 
     stepper%controller%target = 1.0_wp/model%setup%static%steps
@@ -42,9 +40,7 @@ contains
 
   !> Tries one load step.
   subroutine try(self, stepper, model, event, step, converged, error)
-    !> The kind
     class(load_steps_t), intent(in) :: self
-    !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Load factor that must not be exceeded
@@ -72,7 +68,6 @@ contains
 
   !> Tries a step that dissipates a given energy.
   subroutine try_dissipation(stepper, model, step, converged, error)
-    !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Step tried
@@ -96,9 +91,7 @@ contains
 
   !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
   subroutine complete_trial(self, stepper, model)
-    !> The kind
     class(load_steps_t), intent(in) :: self
-    !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 
@@ -109,7 +102,6 @@ contains
 
   !> Each step is first tried with the length given in the deck.
   subroutine choose_next(self, stepper, model, step, change, extended)
-    !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
     class(stepper_t), intent(inout) :: stepper
@@ -126,7 +118,6 @@ contains
 
   !> Restores equilibrium at constant load after failures of plies, until no more plies fail.
   subroutine equilibrate(self, stepper, model, error)
-    !> The kind
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
     class(stepper_t), intent(inout) :: stepper

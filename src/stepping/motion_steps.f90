@@ -29,7 +29,6 @@ contains
 
   !> Integrator, first step, and the acceleration under the initial loads.
   subroutine start(self, stepper, model, error)
-    !> The kind
     class(motion_steps_t), intent(in) :: self
     !> The stepper, its state in equilibrium
     class(stepper_t), intent(inout) :: stepper
@@ -49,9 +48,7 @@ contains
 
   !> Tries one time step.
   subroutine try(self, stepper, model, event, step, converged, error)
-    !> The kind
     class(motion_steps_t), intent(in) :: self
-    !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Time that must not be exceeded
@@ -85,7 +82,6 @@ contains
   !> Factorizes the operator if there is no factor. A factorization that is due again is left to the step, whose first
   !> correction requires the tangent at the predictor.
   subroutine prepare_operator(stepper, model, mass_factor, factor_is_due, error)
-    !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Factor of the mass in the step
@@ -111,9 +107,7 @@ contains
 
   !> Records that surfaces are glued once the impactor moves back (unloading = 'glued').
   subroutine complete_trial(self, stepper, model)
-    !> The kind
     class(motion_steps_t), intent(in) :: self
-    !> The stepper
     class(stepper_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 
@@ -125,7 +119,6 @@ contains
 
   !> Length of the next step by iterations, error, damage and growth.
   subroutine choose_next(self, stepper, model, step, change, extended)
-    !> The kind
     class(motion_steps_t), intent(in) :: self
     !> The stepper, the step accepted
     class(stepper_t), intent(inout) :: stepper

@@ -16,7 +16,6 @@ contains
 
   !> Its cost.
   pure function operator_values(operator) result(values)
-    !> The operator
     type(tangent_operator_t), intent(in) :: operator
     !> One value per column
     real(wp) :: values(size(operator_rows))

@@ -23,9 +23,7 @@ contains
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> The state
     type(state_t), intent(inout) :: now
     !> Set on all ranks if there is no equilibrium
     type(error_t), allocatable, intent(out) :: error
@@ -51,9 +49,7 @@ contains
   subroutine equilibrate_whole(operator, model, linear_solver, transfer, error)
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
-    !> The distributed model
     type(model_t), intent(in) :: model
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Receives the state
     type(layer_transfer_t), intent(inout) :: transfer
@@ -76,9 +72,7 @@ contains
     !> The factored operator; released afterwards
     type(tangent_operator_t), intent(inout) :: operator
     type(model_t), intent(in) :: model
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> The state
     type(state_t), intent(inout) :: now
     !> Set if there is no equilibrium
     type(error_t), allocatable, intent(out) :: error

@@ -17,7 +17,6 @@ contains
 
   !> Makes the trial state the accepted state.
   subroutine accept_step(self, model, step)
-    !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step taken
@@ -46,7 +45,6 @@ contains
 
   !> Updates failures of plies and flaws of interfaces in the trial state.
   subroutine update_damage(self, model)
-    !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
@@ -63,7 +61,6 @@ contains
 
   !> Estimates the error of the trial step and whether it has to be repeated with a shorter length.
   subroutine assess_error(self, model, step, shortest, accurate)
-    !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step tried
@@ -84,7 +81,6 @@ contains
 
   !> Prepares a shorter step after a step that has not converged.
   subroutine reject_step(self, model, step, error)
-    !> The time stepper
     class(stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step tried

@@ -78,7 +78,6 @@ contains
 
   !> Motion of impactor and plate.
   pure function motion_values(now) result(values)
-    !> The state reached
     type(state_t), intent(in) :: now
     !> One value per column
     real(wp) :: values(size(motion_rows))
@@ -89,7 +88,6 @@ contains
 
   !> The energy ledger.
   pure function ledger_values(ledger) result(values)
-    !> The ledger
     type(ledger_t), intent(in) :: ledger
     !> One value per column
     real(wp) :: values(size(ledger_rows))
@@ -100,7 +98,6 @@ contains
 
   !> Further entries of the ledger.
   pure function heat_values(ledger) result(values)
-    !> The ledger
     type(ledger_t), intent(in) :: ledger
     !> One value per column
     real(wp) :: values(size(heat_rows))
@@ -110,7 +107,6 @@ contains
 
   !> Other quantities of the state, and the length of the step.
   pure function step_values(now, length) result(values)
-    !> The state reached
     type(state_t), intent(in) :: now
     !> Length of the last step
     real(wp), intent(in) :: length
@@ -122,7 +118,6 @@ contains
 
   !> Iterations.
   pure function iteration_values(now, rejected) result(values)
-    !> The state reached
     type(state_t), intent(in) :: now
     !> Rejected steps
     integer, intent(in) :: rejected

@@ -32,29 +32,19 @@ module step_controllers
     !> First error-controlled step; after a failure no step is shortened below it
     real(wp) :: first = 0
   contains
-    !> First error-controlled step.
     procedure :: begin
-    !> Shortest step under error control.
     procedure :: shortest
-    !> Updates the step length by the error of an accepted step.
     procedure :: adapt_to_error
     !> Shortens the step after one with too large an error.
     procedure :: shorten
     !> Length of the next step, so that steps meet the next output time.
     procedure :: propose
-    !> Updates the step length after an accepted step.
     procedure :: accept
-    !> Shortens the step where fronts are about to grow or have grown.
     procedure :: limit_by_fronts
-    !> Lengthens the step after it was shortened because plies fail.
     procedure :: limit_by_ply_damage
-    !> Halves the step after a rejected one.
     procedure :: reject
-    !> True if the operator should be factorized again before a step.
     procedure :: renewal_due
-    !> Resets the count of iterations after a factorization.
     procedure :: renewed
-    !> Saves or loads the controller.
     procedure :: visit
   end type step_controller_t
 
@@ -62,7 +52,6 @@ contains
 
   !> Length of the next step, such that an integer number of steps reaches the next event.
   pure real(wp) function propose(self, remaining, limit, growth) result(step)
-    !> The controller
     class(step_controller_t), intent(in) :: self
     !> Time to the next event
     real(wp), intent(in) :: remaining
@@ -94,7 +83,6 @@ contains
 
   !> Updates the step length after an accepted step.
   pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -128,7 +116,6 @@ contains
   !> First error-controlled step: that of the deck, or that chosen from the tolerance and the rise time of first
   !> contact. All later steps are this one times a power of two, and an integer number of them reaches the first event.
   pure subroutine begin(self, stepping, remaining)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -154,7 +141,6 @@ contains
   !> sudden failure emits waves as short as the mesh resolves; only steps that resolve all of these would meet the
   !> tolerance.
   pure real(wp) function shortest(self, stepping, damaged)
-    !> The controller
     class(step_controller_t), intent(in) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -167,7 +153,6 @@ contains
 
   !> Halves the step by the error of an accepted one, or doubles it if this saves more than the new factorization costs.
   pure subroutine adapt_to_error(self, stepping, step, error, remaining, is_over, gear, damaged)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -211,7 +196,6 @@ contains
 
   !> Resets the record of errors.
   pure subroutine reset_errors(self)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
 
     self%steady_steps = 0
@@ -221,7 +205,6 @@ contains
 
   !> Halves the step until the predicted error is within the tolerance.
   pure subroutine shorten(self, controls, step, error, shortest)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
     !> Constants of the control of steps
     type(step_controls_t), intent(in) :: controls
@@ -240,7 +223,6 @@ contains
   !> 0.95 and so on, down to twice the smallest factor; after growth the smallest factor is taken. It then doubles in
   !> each step within the limit of growth.
   pure subroutine limit_by_fronts(self, stepping, ratio, extended)
-    !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -264,7 +246,6 @@ contains
 
   !> Doubles a step that was shortened because plies fail, once the lag of damage is small.
   pure subroutine limit_by_ply_damage(self, stepping, damage_lag)
-    !> The controller, after `accept`
     class(step_controller_t), intent(inout) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -279,7 +260,6 @@ contains
   !> Halves the step after a rejected one. Pending doublings are cancelled: with them the next trial would have the
   !> length that was rejected.
   pure subroutine reject(self, step)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
     !> Rejected step
     real(wp), intent(in) :: step
@@ -291,7 +271,6 @@ contains
   !> True if the operator should be factorized again before a step: by the paper's rule, or once the additional
   !> iterations have cost about as much as a factorization.
   pure logical function renewal_due(self, stepping, nonlinear, mass_ratio, deflection_change, thickness) result(due)
-    !> The controller
     class(step_controller_t), intent(in) :: self
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
@@ -316,7 +295,6 @@ contains
 
   !> Resets the count of iterations after a factorization.
   pure subroutine renewed(self)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
 
     self%fewest = huge(1)
@@ -325,9 +303,7 @@ contains
 
   !> Saves or loads the controller.
   subroutine visit(self, archive)
-    !> The controller
     class(step_controller_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
 
     call archive%item('controller/wanted', self%target)

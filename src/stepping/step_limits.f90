@@ -18,7 +18,6 @@ contains
   !> require no factorization.
   pure real(wp) function impactor_limit(model, now, target) result(limit)
     type(model_t), intent(in) :: model
-    !> The state reached
     type(state_t), intent(in) :: now
     !> Target step
     real(wp), intent(in) :: target
@@ -35,7 +34,6 @@ contains
     type(model_t), intent(in) :: model
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
-    !> The step controller
     type(step_controller_t), intent(in) :: controller
 
     ratio = largest_growth_ratio

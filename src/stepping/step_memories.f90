@@ -18,7 +18,6 @@ module step_memories
     !> The estimate of the error
     type(step_error_t) :: step_error
   contains
-    !> Restores the state before an accepted step.
     procedure :: restore_state
   end type step_memory_t
 
@@ -26,9 +25,7 @@ contains
 
   !> Saves the stepper before a step.
   pure function save_state(stepper) result(self)
-    !> The stepper
     type(time_stepper_t), intent(in) :: stepper
-    !> The saved state
     type(step_memory_t) :: self
 
     self%now = stepper%now
@@ -40,7 +37,6 @@ contains
   subroutine restore_state(self, stepper)
     !> The state saved before the step
     class(step_memory_t), intent(in) :: self
-    !> The stepper
     type(time_stepper_t), intent(inout) :: stepper
 
     stepper%now = self%now

@@ -65,9 +65,7 @@ module steppers
     !> Central differences; unallocated: steps are implicit
     type(central_difference_t), allocatable :: explicit
   contains
-    !> Energy to be dissipated per time.
     procedure :: energy_rate
-    !> Pseudo-time of a step under control of dissipation over that under load control.
     procedure :: step_scale
   end type stepper_t
 
@@ -75,7 +73,6 @@ module steppers
     !> Prepares the first step from the initial equilibrium. Collective.
     subroutine start_steps(self, stepper, model, error)
       import :: step_kind_t, stepper_t, model_t, error_t
-      !> The kind
       class(step_kind_t), intent(in) :: self
       !> The stepper, its state in equilibrium
       class(stepper_t), intent(inout) :: stepper
@@ -87,7 +84,6 @@ module steppers
     !> Tries a step, at most to an event. Collective.
     subroutine try_one_step(self, stepper, model, event, step, converged, error)
       import :: step_kind_t, stepper_t, model_t, error_t, wp
-      !> The kind
       class(step_kind_t), intent(in) :: self
       !> The stepper; its trial state is that at the end of the step
       class(stepper_t), intent(inout) :: stepper
@@ -105,7 +101,6 @@ module steppers
     !> Completes the state tried before it is accepted. Collective.
     subroutine complete_trial_state(self, stepper, model)
       import :: step_kind_t, stepper_t, model_t
-      !> The kind
       class(step_kind_t), intent(in) :: self
       !> The stepper, with the failures of the trial step
       class(stepper_t), intent(inout) :: stepper
@@ -115,7 +110,6 @@ module steppers
     !> Chooses the length of the next step.
     subroutine choose_length(self, stepper, model, step, change, extended)
       import :: step_kind_t, stepper_t, model_t, wp
-      !> The kind
       class(step_kind_t), intent(in) :: self
       !> The stepper, the step accepted
       class(stepper_t), intent(inout) :: stepper
@@ -133,7 +127,6 @@ contains
 
   !> Steps are accepted in equilibrium.
   subroutine equilibrate(self, stepper, model, error)
-    !> The kind
     class(step_kind_t), intent(in) :: self
     !> The stepper, the step accepted
     class(stepper_t), intent(inout) :: stepper
@@ -144,7 +137,6 @@ contains
 
   !> Energy to be dissipated per unit of pseudo-time in the remaining steps, so that the total is that of the deck.
   pure real(wp) function energy_rate(self, model)
-    !> The stepper
     class(stepper_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
@@ -153,7 +145,6 @@ contains
 
   !> Pseudo-time of a step under control of dissipation over that of a step under load control; 1 for the latter.
   pure real(wp) function step_scale(self, model)
-    !> The stepper
     class(stepper_t), intent(in) :: self
     type(model_t), intent(in) :: model
 

@@ -21,13 +21,9 @@ module time_stepping
   !> A stepper through time or load.
   type, extends(stepper_t) :: time_stepper_t
   contains
-    !> The plate at rest.
     procedure :: start
-    !> One accepted step.
     procedure :: advance
-    !> Computes energies, reactions and stress of a step by central differences when output or a check is due.
     procedure :: complete_state
-    !> Saves or loads the evolving state.
     procedure :: visit
   end type time_stepper_t
 
@@ -35,12 +31,10 @@ contains
 
   !> Initial state: the plate at rest and the impactor at first contact.
   subroutine start(self, model, stepping, linear_solver, resumed, error)
-    !> The time stepper
     class(time_stepper_t), intent(out) :: self
     type(model_t), intent(in) :: model
     !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> True: a state will be loaded, so that no initial state is computed
     logical, intent(in) :: resumed
@@ -74,7 +68,6 @@ contains
   !> Takes one step, at most to the next event; the step is tried again with half its length until
   !> equilibrium is reached or the smallest step of the deck has failed.
   subroutine advance(self, model, event, error)
-    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Time, or load factor, that must not be exceeded
@@ -101,7 +94,6 @@ contains
 
   !> Tries steps, each shorter than the one before, until one has converged with an error within the tolerance.
   subroutine find_step(self, model, event, step, shortest, error)
-    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Time, or load factor, that must not be exceeded
@@ -131,7 +123,6 @@ contains
 
   !> Computes energies, reactions and stress of a step by central differences when output or a check is due. Collective.
   subroutine complete_state(self, model, error)
-    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Set if the motion has become unstable
@@ -142,9 +133,7 @@ contains
 
   !> Saves or loads the evolving state.
   subroutine visit(self, archive, model, error)
-    !> The time stepper
     class(time_stepper_t), intent(inout) :: self
-    !> Archive of the checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     !> Set if the operator cannot be factorized again

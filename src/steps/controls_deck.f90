@@ -77,7 +77,6 @@ contains
 
   !> Constants, if the deck has the group.
   subroutine fill_controls(settings, stepping)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(stepping_t), intent(inout) :: stepping

@@ -33,9 +33,7 @@ module line_searches
     !> Trials so far
     integer, private :: trials = 0
   contains
-    !> Starts a search.
     procedure :: begin
-    !> Accepts the fraction, or chooses another one.
     procedure :: assess
   end type line_search_t
 
@@ -43,7 +41,6 @@ contains
 
   !> Starts a search along a correction. Collective.
   subroutine begin(self, model, start, direction, residual, smooth, contact_stiffness, negative_curvature)
-    !> The search
     class(line_search_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Displacement before the correction, and the correction, (5, points)
@@ -77,7 +74,6 @@ contains
 
   !> Accepts the fraction if the directional derivative is small enough, otherwise chooses another one. Collective.
   subroutine assess(self, model, smooth, ends)
-    !> The search
     class(line_search_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Residual at this fraction, without contacts and ties, (5, points)

@@ -49,7 +49,6 @@ contains
     type(state_t), target, intent(in) :: old
     !> State at the end
     type(state_t), target, intent(in) :: new
-    !> The iteration
     type(newton_iteration_t) :: self
 
     self%model => model

@@ -37,7 +37,6 @@ contains
 
   !> Convergence of equilibrium.
   subroutine fill_equilibrium(settings, equilibrium)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(equilibrium_t), intent(inout) :: equilibrium
@@ -48,7 +47,6 @@ contains
 
   !> The linear solver.
   subroutine fill_linear_solver(settings, solver)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
     !> Receives them
     type(linear_solver_parameters_t), intent(inout) :: solver
@@ -61,11 +59,8 @@ contains
   !> Checks options for PETSc: options of the solver are allowed, but not those that write files, as a deck may come
   !> from an unknown source.
   subroutine check_petsc_options(settings, solver, problems)
-    !> Keys in effect
     type(settings_t), intent(in) :: settings
-    !> The linear solver
     type(linear_solver_parameters_t), intent(in) :: solver
-    !> Faults found are added
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: words(:)
     integer :: i

@@ -51,7 +51,6 @@ module step_problems
     !> Predictor of the state at the end of the step.
     subroutine begin_step(self, at)
       import :: step_problem_t, newton_iteration_t
-      !> The problem
       class(step_problem_t), intent(inout) :: self
       !> The iteration; receives the state at the end
       type(newton_iteration_t), intent(inout) :: at
@@ -60,7 +59,6 @@ module step_problems
     !> Residual of equilibrium without ties and contact.
     subroutine find_residual(self, at)
       import :: step_problem_t, newton_iteration_t
-      !> The problem
       class(step_problem_t), intent(in) :: self
       !> The iteration; receives residual and energy, and its state the forces
       type(newton_iteration_t), intent(inout) :: at
@@ -69,7 +67,6 @@ module step_problems
     !> Residual relative to the reference force; infinite if a number is not finite.
     real(wp) function residual_norm(self, at)
       import :: step_problem_t, newton_iteration_t, wp
-      !> The problem
       class(step_problem_t), intent(in) :: self
       !> The iteration; its state stores its largest forces
       type(newton_iteration_t), intent(inout) :: at
@@ -78,7 +75,6 @@ module step_problems
     !> True if the iteration may end with a residual within the tolerance.
     pure logical function may_stop(self, at)
       import :: step_problem_t, newton_iteration_t
-      !> The problem
       class(step_problem_t), intent(in) :: self
       !> The iteration
       type(newton_iteration_t), intent(in) :: at
@@ -87,7 +83,6 @@ module step_problems
     !> Finds a correction by the tangent, renewing the operator where that is due.
     subroutine find_correction(self, at, tolerance, error)
       import :: step_problem_t, newton_iteration_t, error_t, wp
-      !> The problem
       class(step_problem_t), intent(inout) :: self
       !> The iteration; receives the correction and whether it is one of negative curvature
       type(newton_iteration_t), intent(inout) :: at
@@ -100,7 +95,6 @@ module step_problems
     !> Completes the motion after a correction.
     subroutine complete(self, at)
       import :: step_problem_t, newton_iteration_t
-      !> The problem
       class(step_problem_t), intent(in) :: self
       !> The iteration; its state receives the motion
       type(newton_iteration_t), intent(inout) :: at
@@ -109,7 +103,6 @@ module step_problems
     !> Completes the state of a step that has converged, and its ledger.
     subroutine finish(self, at)
       import :: step_problem_t, newton_iteration_t
-      !> The problem
       class(step_problem_t), intent(in) :: self
       !> The iteration; completes its state
       type(newton_iteration_t), intent(inout) :: at
@@ -120,7 +113,6 @@ contains
 
   !> There is no impactor.
   subroutine find_force(self, at)
-    !> The problem
     class(step_problem_t), intent(inout) :: self
     !> The iteration, the displacement of its state known
     type(newton_iteration_t), intent(inout) :: at
@@ -209,7 +201,6 @@ contains
     class(step_problem_t), intent(inout) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
-    !> The search
     type(line_search_t), intent(inout) :: search
     !> True: the fraction is accepted
     logical, intent(out) :: ends
@@ -243,7 +234,6 @@ contains
     class(step_problem_t), intent(inout) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
-    !> The search
     type(line_search_t), intent(inout) :: search
     !> True: a correction was found
     logical, intent(out) :: corrected

@@ -27,7 +27,6 @@ contains
 
   !> Correction of the displacement for a residual, ghosts included. Collective.
   subroutine find_krylov_correction(tangent, residual, tolerance, correction, error, has_negative_curvature, converged)
-    !> The tangent
     type(tangent_product_t), intent(inout) :: tangent
     !> Residual at the owned points, (5, points)
     real(wp), intent(in) :: residual(:, :)
@@ -61,7 +60,6 @@ contains
 
   !> Solves with the tangent, by conjugate gradients where it may be indefinite.
   subroutine solve_tangent(tangent, rows, tolerance, solution, converged, indefinite, error)
-    !> The tangent
     type(tangent_product_t), intent(inout) :: tangent
     !> Right-hand side
     real(wp), intent(in) :: rows(:)

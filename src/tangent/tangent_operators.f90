@@ -52,25 +52,15 @@ module tangent_operators
     !> Time spent in the parts of a step
     type(timer_set_t) :: timers
   contains
-    !> Numbers the equations and creates the solver.
     procedure :: create
-    !> Assembles and factorizes the operator at a state.
     procedure :: renew
-    !> Correction of the displacement for a residual.
     procedure :: correct
-    !> Unit-load solution of the impactor's force.
     procedure :: find_response
-    !> Solution on this rank's rows.
     procedure :: solve_rows
-    !> This rank's rows of a field.
     procedure :: rows_of
-    !> True if ties and contacts have changed too much.
     procedure :: has_outdated_constraints
-    !> Factorizes the assembled matrix.
     procedure :: factorize
-    !> Saves or loads the data that the factorization was computed from.
     procedure :: visit
-    !> Deallocates the factors.
     procedure :: release
   end type tangent_operator_t
 
@@ -78,7 +68,6 @@ contains
 
   !> Numbers the equations of a model and creates the solver.
   subroutine create(self, model, factorization, error)
-    !> The operator
     class(tangent_operator_t), intent(out) :: self
     type(model_t), intent(in) :: model
     !> One of the factorization_* choices
@@ -101,7 +90,6 @@ contains
 
   !> Numbers the equations and creates the matrix.
   subroutine set_pattern(self, model, is_separate, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> True: in-plane displacements are not coupled with bending
@@ -121,7 +109,6 @@ contains
 
   !> Assembles and factorizes the operator at a state, and computes the unit-load solution.
   subroutine renew(self, model, state, stiffness_factor, mass_factor, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state, ghosts of its displacement up to date
@@ -147,7 +134,6 @@ contains
 
   !> Factorizes the assembled matrix with the stiffness added to the jumps, and computes the unit-load solution.
   subroutine factorize(self, model, contact, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Patch under the impactor
@@ -170,7 +156,6 @@ contains
 
   !> Computes the unit-load solution of the impactor's force.
   subroutine find_response(self, model, contact, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Patch under the impactor
@@ -190,7 +175,6 @@ contains
 
   !> Solution on this rank's rows with the present factorization.
   subroutine solve_rows(self, forces, motion, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     !> Forces on the rows
     real(wp), intent(in) :: forces(:)
@@ -206,7 +190,6 @@ contains
 
   !> This rank's rows of a displacement field, or of a field of forces at the points that define the unknowns.
   pure function rows_of(self, field) result(rows)
-    !> The operator
     class(tangent_operator_t), intent(in) :: self
     !> (5, points)
     real(wp), intent(in) :: field(:, :)
@@ -223,7 +206,6 @@ contains
   !> True if ties and contacts have changed at more equations than the number of solves that cost one factorization:
   !> each change adds a dimension to the Krylov space. Collective.
   logical function has_outdated_constraints(self, model, current, max_changes)
-    !> The operator
     class(tangent_operator_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Present stiffness added to the jumps, (3, points)
@@ -242,7 +224,6 @@ contains
 
   !> Correction of the displacement for a residual, ghosts included.
   subroutine correct(self, model, residual, correction, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Residual at the owned points, (5, points)
@@ -263,9 +244,7 @@ contains
   !> Saves the data that the factorization was computed from, or loads them and factorizes: the factorization affects
   !> the iterations.
   subroutine visit(self, archive, model, contact, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
-    !> The checkpoint
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     !> Patch under the impactor
@@ -293,7 +272,6 @@ contains
 
   !> Assembles the elements at the displacement at which the tangent is taken.
   subroutine assemble(self, model, error)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Set if a matrix with another pattern cannot be created
@@ -311,7 +289,6 @@ contains
 
   !> Deallocates the factors.
   subroutine release(self)
-    !> The operator
     class(tangent_operator_t), intent(inout) :: self
 
     if (allocated(self%solver)) call self%solver%release()

@@ -41,17 +41,11 @@ module tangent_products
     !> Right-hand side of a unit force
     real(wp), allocatable :: pattern(:)
   contains
-    !> The tangent times a vector.
     procedure :: multiply
-    !> Solution by the factored operator.
     procedure :: precondition
-    !> True if it equals the factored operator.
     procedure :: is_factored
-    !> Mean deflection of the patch.
     procedure :: mean
-    !> Sets the stiffness of the jumps.
     procedure :: set_jump_stiffness
-    !> Sets the skew-symmetric parts of the tangents of cohesive laws.
     procedure :: set_skew_part
     procedure, private :: add_elements
     procedure, private :: add_jumps
@@ -61,7 +55,6 @@ contains
 
   !> True if the tangent equals the factored operator, except for the slope of the impactor's force.
   pure logical function is_factored(self)
-    !> The tangent
     class(tangent_product_t), intent(in) :: self
 
     is_factored = .not. (self%elements .or. allocated(self%jumps) .or. abs(self%mass_change) > 0)
@@ -69,13 +62,11 @@ contains
 
   !> The tangent times a vector. Collective.
   subroutine multiply(self, vector, product, error)
-    !> The tangent
     class(tangent_product_t), intent(inout) :: self
     !> Motion of this rank's rows
     real(wp), intent(in) :: vector(:)
     !> Their forces
     real(wp), intent(out) :: product(:)
-    !> Set if PETSc fails
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: field(:, :), force(:, :), inertia(:, :), rows(:)
     real(wp) :: factor
@@ -104,7 +95,6 @@ contains
 
   !> Solution by the factored operator, with the rank-one term of the impactor's force (Sherman, Morrison). Collective.
   subroutine precondition(self, vector, product, error)
-    !> The tangent
     class(tangent_product_t), intent(inout) :: self
     !> Forces on this rank's rows
     real(wp), intent(in) :: vector(:)
@@ -123,7 +113,6 @@ contains
 
   !> Mean deflection of the patch in a motion. Collective.
   real(wp) function mean(self, motion)
-    !> The tangent
     class(tangent_product_t), intent(in) :: self
     !> Motion of this rank's rows
     real(wp), intent(in) :: motion(:)
@@ -169,7 +158,6 @@ contains
 
   !> Sets the skew-symmetric parts of the tangents of cohesive laws. Collective.
   subroutine set_skew_part(self, tangents)
-    !> The tangent
     class(tangent_product_t), intent(inout) :: self
     !> Force per jump, (3, 3, points)
     real(wp), intent(in) :: tangents(:, :, :)
@@ -184,7 +172,6 @@ contains
 
   !> Deallocates the stiffness of jumps if it is zero. Collective.
   subroutine drop_if_zero(self)
-    !> The tangent
     type(tangent_product_t), intent(inout) :: self
     real(wp) :: largest
 
@@ -204,7 +191,6 @@ contains
 
   !> Adds the forces of elements and line supports.
   subroutine add_elements(self, motion, force)
-    !> The tangent
     class(tangent_product_t), intent(in) :: self
     !> The motion, ghosts up to date, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -236,7 +222,6 @@ contains
 
   !> Adds the forces on jumps.
   pure subroutine add_jumps(self, motion, force)
-    !> The tangent
     class(tangent_product_t), intent(in) :: self
     !> The motion, (5, points)
     real(wp), intent(in) :: motion(:, :)
