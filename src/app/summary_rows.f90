@@ -35,7 +35,7 @@ module summary_rows
     'largest_deflection | real | length | largest deflection | Deflection of the struck point, largest in magnitude.', &
     'largest_deflection_at | real | time | time of deflection | Its time.', &
     'kinetic_share | real | - | slow motion | In slow motion: largest kinetic energy over the work of the load since &
-      &the end of settle, after a quarter of the loading; in a compression up to the strength.', &
+      &the end of `settle`, after a quarter of the loading; in a compression up to the strength.', &
     'scaled_kinetic_share | real | - | scaled inertia | With mass_scaling: largest kinetic energy of motions with &
       &scaled inertia, as a fraction of the largest energy.', &
     'energy_impact | real | energy | impact energy | Energy of the impactor at first contact.', &

@@ -163,7 +163,7 @@ contains
 
     cure = 'the force on the patch presses its middle ahead of the nose; use &impactor contact_area=''sphere'', or '// &
            'a smaller patch.'
-    if (deck%impactor%spreads) cure = 'the plate bends away from the nose, on broken fibres or on cells too large '// &
+    if (deck%impactor%spreads) cure = 'the plate bends away from the nose, on failed fibres or on cells too large '// &
                                       'to follow it; use shorter cells. The largest deflection includes this.'
   end function hollow_remedy
 end module warning_texts

@@ -52,7 +52,7 @@ module indentation_deck
   type :: struck_face_t
     !> Compliance of the struck ply for `sun_stiffness`
     real(wp) :: compliance = 0
-    !> Modulus through the thickness, and pressure at which it yields, with held strains in the plane
+    !> Modulus through the thickness, and pressure at which it yields, with held in-plane strains
     real(wp) :: modulus = 0, strength = 0
   end type struck_face_t
 

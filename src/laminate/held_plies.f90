@@ -1,5 +1,5 @@
 !> Stiffness and strength of a laminate through its thickness under a local pressure, theory (F9) to (F11): fibres in
-!> several directions, and the face around the pressure, hold the strains in the plane at zero.
+!> several directions, and the face around the pressure, hold the in-plane strains at zero.
 module held_plies
   use kinds, only: wp
   use laminate_parameters, only: laminate_t
@@ -15,7 +15,7 @@ module held_plies
 
 contains
 
-  !> Modulus through the thickness of a laminate whose strains in the plane are held: layers in series.
+  !> Modulus through the thickness of a laminate whose in-plane strains are held: layers in series.
   pure real(wp) function held_modulus(laminate, materials) result(modulus)
     type(laminate_t), intent(in) :: laminate
     !> Materials that it refers to
@@ -36,8 +36,8 @@ contains
     modulus = material%e2*(1 - product)/((1 + material%nu23)*(1 - material%nu23 - 2*product))
   end function modulus_of
 
-  !> Ratio of the pressure in the plane across the fibres to that through the thickness, C23/C33, if the strains in the
-  !> plane are zero.
+  !> Ratio of the in-plane pressure across the fibres to that through the thickness, C23/C33, if the in-plane strains
+  !> are zero.
   pure real(wp) function held_ratio(material) result(ratio)
     type(material_t), intent(in) :: material
     real(wp) :: product
@@ -46,7 +46,7 @@ contains
     ratio = (material%nu23 + product)/(1 - product)
   end function held_ratio
 
-  !> Pressure through the thickness at which the matrix of a ply is crushed if its strains in the plane are zero, by
+  !> Pressure through the thickness at which the matrix of a ply is crushed if its in-plane strains are zero, by
   !> Hashin's criterion (Z. Hashin, Journal of Applied Mechanics 47 (1980) 329-334) with all three normal stresses.
   !> Without Sm23 the shear strength across the fibres follows from YC and the angle of the fracture plane.
   pure real(wp) function held_strength(material) result(strength)

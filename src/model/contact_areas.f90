@@ -3,7 +3,7 @@
 module contact_areas
   use communicators, only: communicator_t
   use kinds, only: wp
-  use nose_contacts, only: nose_contact_t, nose_t, new_nose
+  use nose_contacts, only: nose_t, new_nose
   implicit none
   private
   !> Weight relative to the largest from which a point counts as in contact: at the end of contact the weights decrease
@@ -19,7 +19,6 @@ module contact_areas
     integer, allocatable :: local(:)
   contains
     procedure :: deflections
-    procedure :: find_contact
     procedure :: first_contact
     procedure :: to_local
     procedure :: area_of
@@ -60,20 +59,6 @@ contains
     end do
     call communicator%sum(deflections)
   end function deflections
-
-  !> Contact of the nose, from the deflections on this rank. Collective.
-  function find_contact(self, communicator, w, position) result(contact)
-    class(contact_area_t), intent(in) :: self
-    !> The ranks
-    type(communicator_t), intent(in) :: communicator
-    !> Deflection of the struck face, (local points)
-    real(wp), intent(in) :: w(:)
-    !> Displacement of the nose's tip
-    real(wp), intent(in) :: position
-    type(nose_contact_t) :: contact
-
-    call self%nose%press(self%deflections(communicator, w), position, contact)
-  end function find_contact
 
   !> Position of the nose's tip at first contact. Collective.
   real(wp) function first_contact(self, communicator, w)

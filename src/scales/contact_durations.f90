@@ -14,7 +14,7 @@ module contact_durations
   public :: stiffened_duration
 
   !> Membrane stiffness A of circular plates under a central force, P = k w (1 + A (w/h)**2): clamped and simply
-  !> supported edges (columns), fixed and free in the plane (rows). S. Timoshenko, S. Woinowsky-Krieger, Theory of
+  !> supported edges (columns), fixed and free in-plane (rows). S. Timoshenko, S. Woinowsky-Krieger, Theory of
   !> Plates and Shells, 1959, art. 100, table 82.
   real(wp), parameter :: membrane(2, 2) = reshape([0.443_wp, 0.200_wp, 1.430_wp, 0.272_wp], [2, 2])
   !> Central compliance of a clamped isotropic square, 0.00560 a**2/D (ibid., art. 44), over that by one term of Ritz's

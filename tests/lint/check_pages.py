@@ -9,7 +9,7 @@ check_pages.py [ROOT] [--write] [--sentences]
 - doc/index.md lists every page of doc/, every key, column and field of the manual and every term of the glossary.
 - Pages describe the present state: words of a diary ("as it was then") are refused outside CHANGELOG.md and doc/news/.
 - No sentence of the pages under doc/ and of README.md has more than 40 words.
-- doc/testing.md has five questions for each page under doc/ but the news, numbered 1 to 5.
+- tests/pages/reading_test.md has five questions for each page under doc/ but the news, numbered 1 to 5.
 - The page of a group of the deck lists its warnings and limits.
 - Displayed equations of a page of doc/theory/ are numbered without a gap, by one letter and a number; equations
   referred to exist.
@@ -341,16 +341,16 @@ def check_equations(pages_of_theory):
 
 def check_questions(root):
     """Pages without five questions in the reading test."""
-    testing = root / "doc/testing.md"
+    testing = root / "tests/pages/reading_test.md"
     if not testing.exists():
         return
     asked = {}
     for link, numbers in QUESTIONS.findall(testing.read_text(encoding="utf-8")):
-        asked[link] = re.findall(r"^(\d+)\.", numbers, re.MULTILINE)
+        asked[link.removeprefix("../../doc/")] = re.findall(r"^(\d+)\.", numbers, re.MULTILINE)
     for page in pages_of(root / "doc"):
         name = page.relative_to(root / "doc").as_posix()
         if asked.get(name) != list("12345"):
-            yield f"doc/testing.md:1: {name} has no five questions in the reading test"
+            yield f"tests/pages/reading_test.md:1: {name} has no five questions"
 
 
 def check_groups(root):

@@ -50,7 +50,9 @@ class PagesTest(unittest.TestCase):
             with contextlib.redirect_stdout(io.StringIO()):
                 self.assertEqual(check_pages.main([folder, "--write"]), 0)
             for name, text in changed.items():
-                Path(folder, "doc", f"{name}.md").write_text(text, encoding="utf-8")
+                path = Path(folder, "doc", f"{name}.md").resolve()
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
             self.index = Path(folder, "doc", "index.md").read_text(encoding="utf-8")
             output = io.StringIO()
             with contextlib.redirect_stdout(output):
@@ -130,14 +132,17 @@ class PagesTest(unittest.TestCase):
     def test_questions(self):
         """Each page under doc/ has five questions, numbered from 1."""
         five = "".join(f"{number}. Why?\n" for number in range(1, 6))
-        names = [name.removeprefix("doc/") for name in FILES if name.startswith("doc/")] + ["testing.md"]
-        asked = "# Testing\n" + "".join(f"\n**[Title]({name})**\n\n{five}" for name in names)
-        # The index without testing.md is another breach, in each case.
-        self.assertNotIn("five questions", self.said(testing=asked)[1])
+        names = [name.removeprefix("doc/") for name in FILES if name.startswith("doc/")]
+        asked = "# Reading test\n" + "".join(f"\n**[Title](../../doc/{name})**\n\n{five}" for name in names)
+        self.assertNotIn("five questions", self.questions(asked))
         for name in names:
-            lacking = asked.replace(f"\n**[Title]({name})**\n\n{five}", "")
-            self.assertIn(f"{name} has no five questions", self.said(testing=lacking)[1])
-        self.assertIn("has no five questions", self.said(testing=asked.replace("3. Why?\n", "", 1))[1])
+            lacking = asked.replace(f"\n**[Title](../../doc/{name})**\n\n{five}", "")
+            self.assertIn(f"{name} has no five questions", self.questions(lacking))
+        self.assertIn("has no five questions", self.questions(asked.replace("3. Why?\n", "", 1)))
+
+    def questions(self, text):
+        """Return what the checker says with this reading test."""
+        return self.said(**{"../tests/pages/reading_test": text})[1]
 
     def test_groups(self):
         """The page of a group lists warnings and limits."""

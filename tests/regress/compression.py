@@ -197,9 +197,9 @@ def check_mapped(implam, folder, launcher):
     for name, before, after in pairs:
         require(abs(after - before) <= MAPPED * before, f"{name}: {before} before, {after} after.")
     # Mapped damage and displacements do not fit to each other: damage is held until the plate is at rest.
-    settled = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
+    rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
     for name in ("energy_delamination", "energy_ply_damage"):
-        require(abs(rows[name][settled] / impact[name] - 1) < MAPPED, f"{name} changes until the plate is at rest.")
+        require(abs(rows[name][rest] / impact[name] - 1) < MAPPED, f"{name} changes until the plate is at rest.")
         require(rows[name][-1] > 1.01 * impact[name], f"{name} does not grow under the load.")
     risen = kept["energy_strain_after"] / kept["energy_strain_before"] - 1
     log = (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8")

@@ -93,15 +93,15 @@ def check_free_vibration(implam, folder):
         require(abs(rows["deflection"][back]) < 0.02 * max(rows["deflection"]), f"{name} is not back at rest.")
 
 
-def check_settled_compression(implam, folder):
+def check_compression_at_rest(implam, folder):
     """With and without `settle` the kinetic energy of a slow compression is a small fraction of the work."""
     folder.mkdir(parents=True, exist_ok=True)
-    for settle in ("0", "1e-3"):
-        deck = PRESSED.replace("settle=0 end=3e-3", f"settle={settle} end={3e-3 + float(settle):.6g}")
+    for rest_time in ("0", "1e-3"):
+        deck = PRESSED.replace("settle=0 end=3e-3", f"settle={rest_time} end={3e-3 + float(rest_time):.6g}")
         (folder / "pressed.nml").write_text(deck, encoding="utf-8")
         printed = run([implam, folder / "pressed.nml", "--output", folder])
         share = json.loads((folder / "pressed_summary.json").read_text(encoding="utf-8"))["kinetic_share"]
-        require("too fast" not in printed and SHARE[0] < share < SHARE[1], f"settle={settle}: {share} of the work.")
+        require("too fast" not in printed and SHARE[0] < share < SHARE[1], f"settle={rest_time}: {share} of the work.")
     # Twenty times as fast it is too fast, with `settle`, too.
     deck = PRESSED.replace("settle=0 end=3e-3", "settle=1e-3 end=1.15e-3").replace("rise=1.5e-3", "rise=0.075e-3")
     (folder / "pressed.nml").write_text(deck, encoding="utf-8")
@@ -148,7 +148,7 @@ def main(implam, folder):
     printed = run([implam, turned / "turned.nml", "--output", turned])
     require("the motion is too fast for a quasi-static test" in printed, "There is no warning of a fast line.")
     check_free_vibration(implam, folder / "free")
-    check_settled_compression(implam, folder / "settled")
+    check_compression_at_rest(implam, folder / "rest")
 
 
 if __name__ == "__main__":

@@ -132,8 +132,8 @@ class Scatter:
         The first group of a name has the same samples as a single one, so that variants without the second are paired.
         """
         column = found.column.replace("[1].", ".")
-        for follower, leader in (("G13", "G12"), ("E1c", "E1")):
-            column = column.replace(f"{follower} factor", f"{leader} factor")
+        for tied, leader in (("G13", "G12"), ("E1c", "E1")):
+            column = column.replace(f"{tied} factor", f"{leader} factor")
         return _drawn(column, found.kind == PLACE, found.variation, self.number, self.seed, self.method)
 
 

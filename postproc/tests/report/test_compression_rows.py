@@ -50,7 +50,8 @@ class CompressionRowsTest(unittest.TestCase):
         remark = remark_of(_SUMMARY, style, 4e8)
         self.assertEqual(remark, "200 MPa, 50 % of the undamaged plate, LDM, bending -4 %")
         axes = compression_figure({"": _HISTORY}, style, {"": remark}, 4e8).axes[0]
-        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], [remark, "strength", "undamaged plate"])
+        entries = [text.get_text() for text in axes.get_legend().get_texts()]
+        self.assertEqual(entries, [remark, "strength", "undamaged plate"])
         self.assertEqual(remark_of(_SUMMARY | {"has_failed": False}, style), "200 MPa, not failed, bending -4 %")
         self.assertEqual(remark_of({}, style), "")
 
