@@ -128,8 +128,9 @@ contains
               ' in opening), that is '//in_cells(shear, zone%cell)//' ('// &
               in_cells(opening, zone%cell)//') cells; '
     if (zone%by_energy) then
-      warning = warning//'below 2.5 cells growth_control = ''energy'' finds the load at growth to 5 % (strips of '// &
-                '0.13 to 2 mm on cells of 2 to 4 mm); first damage away from delaminations depends on the cells. '// &
+      warning = warning//'below 2.5 cells growth_control = ''energy'' finds the load at growth of strips, at '// &
+                'the same area up to 6 % too small (cells of 2 to 4 mm); fronts in two dimensions begin to '// &
+                'soften earlier, and first damage away from delaminations depends on the cells. '// &
                 'Cells of '//text_at_most(resolving_cell(zone)/size_of_unit)//unit//' resolve the zone.'
       return
     end if
