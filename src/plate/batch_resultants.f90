@@ -55,19 +55,21 @@ contains
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> The means, (lane, component)
     real(wp) :: means(lanes, 6)
-    real(wp) :: area(lanes)
-    integer :: i, g
+    real(wp) :: share(lanes)
+    integer :: i, lane
 
-    area = tiny(area)
-    do g = 1, 9
-      area = area + weight(:, g)
+    do lane = 1, lanes
+      associate (w => weight(lane, :))
+        share(lane) = 1/(tiny(share) + w(1) + w(2) + w(3) + w(4) + w(5) + w(6) + w(7) + w(8) + w(9))
+      end associate
     end do
-    means = 0
     do i = 1, 6
-      do g = 1, 9
-        means(:, i) = means(:, i) + weight(:, g)*strains(:, g, i)
+      do lane = 1, lanes
+        associate (w => weight(lane, :), s => strains(lane, :, i))
+          means(lane, i) = share(lane)*(w(1)*s(1) + w(2)*s(2) + w(3)*s(3) + w(4)*s(4) + w(5)*s(5) + w(6)*s(6) &
+                                        + w(7)*s(7) + w(8)*s(8) + w(9)*s(9))
+        end associate
       end do
-      means(:, i) = means(:, i)/area
     end do
   end function element_means
 

@@ -19,8 +19,8 @@ module mean_sections
     real(wp), allocatable, private :: factors(:, :)
     !> Change by each undamaged sub-ply in compression, (change_values, sub-plies)
     real(wp), allocatable, private :: contributions(:, :)
-    !> True for compressed sub-plies, (lanes, sub-plies, batches)
-    logical, allocatable, private :: compressed(:, :, :)
+    !> Signs of the stresses of sub-plies: -1 in compression, otherwise 1, (lanes, sub-plies, batches)
+    real(wp), allocatable, private :: signs(:, :, :)
     !> First and last sub-ply of each element, (lanes, 2, batches); 1, 0 in unused lanes
     integer, allocatable, private :: range(:, :, :)
     !> True for elements whose change is not that of their undamaged sub-plies, (lanes, batches)
@@ -56,7 +56,7 @@ contains
     end do
     associate (batches => model%elements%batches)
       allocate (self%change(lanes, change_values, batches), source=0.0_wp)
-      allocate (self%compressed(lanes, size(self%factors, 2), batches), source=.false.)
+      allocate (self%signs(lanes, size(self%factors, 2), batches), source=1.0_wp)
       allocate (self%range(lanes, 2, batches), self%is_set(lanes, batches))
       self%is_set = .false.
       self%range(:, 1, :) = 1
@@ -97,20 +97,22 @@ contains
     real(wp), intent(in) :: means(lanes, 6)
     !> False for elements that are set otherwise
     logical, intent(in) :: undamaged(lanes)
-    real(wp) :: strain(lanes)
+    real(wp) :: sign, change(lanes)
     logical :: changed(lanes)
     integer :: k, lane
 
-    changed = .false.
+    change = 0
     do k = minval(self%range(:, 1, b), self%range(:, 2, b) > 0), maxval(self%range(:, 2, b))
-      associate (f => self%factors(:, k))
-        strain = f(1)*means(:, 1) + f(2)*means(:, 2) + f(3)*means(:, 3) &
-               + f(4)*means(:, 4) + f(5)*means(:, 5) + f(6)*means(:, 6) + f(7)
-      end associate
-      changed = changed .or. (strain < 0 .neqv. self%compressed(:, k, b))
-      self%compressed(:, k, b) = strain < 0
+      do lane = 1, lanes
+        associate (f => self%factors(:, k), e => means(lane, :))
+          sign = merge(-1.0_wp, 1.0_wp, f(1)*e(1) + f(2)*e(2) + f(3)*e(3) + f(4)*e(4) + f(5)*e(5) + f(6)*e(6) &
+                                        + f(7) < 0)
+        end associate
+        change(lane) = change(lane) + abs(sign - self%signs(lane, k, b))
+        self%signs(lane, k, b) = sign
+      end do
     end do
-    changed = (changed .or. self%is_set(:, b)) .and. undamaged
+    changed = (change > 0 .or. self%is_set(:, b)) .and. undamaged
     if (.not. any(changed)) return
     do lane = 1, lanes
       if (changed(lane)) self%change(lane, :, b) = sum_of_compressed(self, lane, b)
@@ -129,7 +131,7 @@ contains
 
     change = 0
     do k = self%range(lane, 1, b), self%range(lane, 2, b)
-      if (self%compressed(lane, k, b)) change = change + self%contributions(:, k)
+      if (self%signs(lane, k, b) < 0) change = change + self%contributions(:, k)
     end do
   end function sum_of_compressed
 
