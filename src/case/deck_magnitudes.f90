@@ -9,7 +9,8 @@ module deck_magnitudes
   use interface_places, only: delamination_group
   use kinds, only: wp
   use laminate_deck, only: key_ply_thickness, key_thicknesses, laminate_group
-  use material_deck, only: key_along, key_density, key_isotropic, material_group, strength_keys, toughness_keys
+  use material_deck, only: key_along, key_density, key_isotropic, key_other_moduli, material_group, strength_keys, &
+                           toughness_keys
   use plate_deck, only: key_length, plate_group
   use text, only: line_t, words_of
   use unit_systems, only: of_density, of_fibre_toughness, of_length, of_mass, of_pressure, of_radius, of_strength, &
@@ -29,9 +30,6 @@ module deck_magnitudes
     !> Index among the groups of this name
     integer :: place = 1
   end type magnitude_t
-
-  !> Moduli besides the largest one, which a material with an error is asked for.
-  character(len=*), parameter :: other_moduli = 'E2 G12 G13 G23'
 
 contains
 
@@ -80,7 +78,7 @@ contains
                             deck%settings%real_of(material_group, key_along, i)), i=1, size(deck%materials))], 1)
     do i = 1, size(deck%materials)
       if (problems%concern(material_group, place=i)) then
-        call add_keys(deck, of_pressure, key_isotropic//' '//key_along//' '//other_moduli, i, list)
+        call add_keys(deck, of_pressure, key_isotropic//' '//key_along//' '//key_other_moduli, i, list)
       else if (i == stiffest) then
         call add_keys(deck, of_pressure, key_isotropic//' '//key_along, i, list)
       end if

@@ -9,12 +9,18 @@ module deck_units
   use deck_magnitudes, only: magnitude_t, magnitudes_of
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
+  use delamination_deck, only: key_starter, key_zone
+  use gauge_deck, only: gauge_group, key_gauge_at
   use hertz_contact, only: sun_stiffness
-  use impactor_deck, only: impactor_group, key_energy, key_mass
+  use impactor_deck, only: impactor_group, key_at, key_energy, key_mass
   use indentation_deck, only: indentation_group, key_k
+  use interface_places, only: delamination_group
   use kinds, only: wp
+  use line_deck, only: line_group, key_line_at => key_at
   use mathematical_constants, only: pi
+  use mesh_deck, only: key_cell, key_core, key_lines, key_patch, mesh_group
   use short_numbers, only: short_text
+  use support_deck, only: key_window, support_group
   use time_deck, only: time_group, key_end
   use unit_systems, only: base_units, is_unusual, system_named, unit_that_fits, unit_name, systems, quantities, &
                           of_length, of_mass, of_pressure, of_radius, of_thickness, of_time
@@ -37,10 +43,10 @@ module deck_units
   !> it: ASTM D7136 has 6.7 J/mm, perforation takes up to 60 J/mm.
   real(wp), parameter :: slowest_drop = 0.3_wp, highest_energy = 1.0e6_wp
   !> Keys of lengths in the plane of the plate.
-  character(len=*), parameter :: groups_of_lengths(*) = [character(len=12) :: 'mesh', 'mesh', 'mesh', 'mesh', 'mesh', &
-    'delamination', 'delamination', 'support', 'impactor', 'line', 'gauge'], &
-    keys_of_lengths(*) = [character(len=7) :: 'patch', 'core', 'cell', 'lines_x', 'lines_y', 'zone', 'starter', &
-    'window', 'at', 'at', 'at']
+  character(len=*), parameter :: groups_of_lengths(*) = [character(len=12) :: mesh_group, mesh_group, mesh_group, &
+    mesh_group, mesh_group, delamination_group, delamination_group, support_group, impactor_group, line_group, &
+    gauge_group], keys_of_lengths(*) = [character(len=7) :: key_patch, key_core, key_cell, key_lines, key_zone, &
+    key_starter, key_window, key_at, key_line_at, key_gauge_at]
   !> N/m^1.5 in one N/mm^1.5: 1000**1.5.
   real(wp), parameter :: per_millimetre = 31622.8_wp
 

@@ -16,6 +16,7 @@ module material_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: material_group = 'material', key_isotropic = 'E ', key_along = 'E1', &
+                                         key_other_moduli = 'E2 G12 G13 G23', &
                                          key_density = 'density', &
                                          key_shear_strain = 'shear_failure_strain', &
                                          key_fibre_shear = 'Sf', key_shear_23 = 'Sm23', &

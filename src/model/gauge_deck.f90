@@ -12,8 +12,9 @@ module gauge_deck
   private
   public :: fill_gauges, check_gauges
 
-  !> Name of the group.
-  character(len=*), parameter :: group = 'gauge'
+  !> Names that checks across groups use.
+  character(len=*), parameter, public :: gauge_group = 'gauge', key_gauge_at = 'at'
+  character(len=*), parameter :: group = gauge_group
   !> Row of the group.
   character(len=group_row_length), parameter, public :: gauge_group_row = &
     'gauge | several | A strain gauge on a surface of the plate, written as a column of the history.'

@@ -330,7 +330,8 @@ class Checker:
             self.report(scope.line, f"{scope.name} has more than {longest} lines")
         if scope.kind == "procedure" and core and scope.branches > MAX_BRANCHES:
             self.report(scope.line, f"{scope.name} has {scope.branches} branches, more than {MAX_BRANCHES}")
-        if scope.kind == "type" and scope.components > MAX_COMPONENTS and "because" not in doc_above(self.lines, scope.line):
+        doc = doc_above(self.lines, scope.line)
+        if scope.kind == "type" and scope.components > MAX_COMPONENTS and "because" not in doc:
             self.report(
                 scope.line,
                 f"type {scope.name} has more than {MAX_COMPONENTS} components and does not say because of what",

@@ -18,7 +18,8 @@ DECK = """&case name='{name}' units='SI' {case}/
 PLAIN = {"case": "", "edges": "'clamped' symmetry='quarter'", "support": "", "elements": "12, 12",
          "mesh": "patch=5e-3 ", "plies": "stacking='[0/90]2s' ply_thickness=0.25e-3", "time": ""}
 THIN = "stacking='[0/90]s' ply_thickness=0.2e-3"
-LINES = "".join(f"&line at={at}50e-3 component='u' displacement={to}0.1e-3 rise=1e-3 /\n" for at, to in (("", "-"), ("-", "")))
+LINES = "".join(f"&line at={at}50e-3 component='u' displacement={to}0.1e-3 rise=1e-3 /\n"
+                for at, to in (("", "-"), ("-", "")))
 
 
 def ball(mass, velocity, more=""):
