@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import implam_post as implam
-from implam_post.io.units import dimension_of
+from implam_post.io.results import dimension_of
 from implam_post.plot.curves import AXES
 from tests.program import ROOT, SMALL
 from tests.program import implam as program

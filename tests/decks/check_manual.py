@@ -7,7 +7,8 @@ The table of a page must be what `implam explain --markdown GROUP` prints, and e
 be a deck that `implam check` accepts, completed by the groups that it lacks from tests/decks/good/impact.nml.
 The same holds for the tables of `history` and `fields`, and the page of the energy ledger must define each of its
 entries. The page of the summary must name each of its members and show the printed lines, the page of the command
-line each exit code. No table is on two pages. With --write the tables are replaced.
+line each exit code. No table is on two pages. The list of results in the Python package is the program's, too. With
+--write the tables and the list are replaced.
 """
 import json
 import os
@@ -24,6 +25,7 @@ OTHER_FILES = ("verifications.f90",)
 MANUAL = os.path.join(HERE, "..", "..", "doc", "manual")
 TABLE = re.compile(r"^\| (?:key|name) \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
 RESULTS = ("history", "fields", "summary")
+LIST = os.path.join(HERE, "..", "..", "postproc", "implam_post", "io", "results.csv")
 # Columns of the history in the ledger.
 ENTRY = re.compile(r"^\| `(energy_\w+|work_external)`", re.MULTILINE)
 EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
@@ -116,6 +118,23 @@ def check_ledger(program, wrong):
         wrong.append(f"{path}: it defines {sorted(defined)}, and the history has {sorted(entries)}")
 
 
+def check_list(program, wrong):
+    """Add a message to `wrong` if the list of results in the Python package is not the program's."""
+    lines = ["table,name,type,unit,label"]
+    for topic in ("history", "summary"):
+        heading, _, *rows = [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in
+                             ask(program, "explain", "--markdown", topic)[1].strip().splitlines()]
+        for row in (dict(zip(heading, cells, strict=True)) for cells in rows):
+            lines.append(",".join([topic, row["name"].strip("`"), row["type"], row["unit"], row.get("label", "")]))
+    text = "\n".join([*lines, ""])
+    if "--write" in sys.argv:
+        with open(LIST, "w", encoding="utf-8") as file:
+            file.write(text)
+    with open(LIST, encoding="utf-8") as file:
+        if file.read() != text:
+            wrong.append(f"{LIST}: the list is not the program's; run check_manual.py IMPLAM --write")
+
+
 def members_of(value):
     """Names of the members of a summary at any level."""
     if isinstance(value, dict):
@@ -188,6 +207,7 @@ def main():
         if text is not None and topic not in RESULTS:
             check_examples(program, topic, text, wrong)
     check_ledger(program, wrong)
+    check_list(program, wrong)
     check_summary(program, wrong)
     check_exit_codes(program, wrong)
     check_once((*groups, *RESULTS), wrong)

@@ -10,7 +10,8 @@ import numpy as np
 
 from implam_post.io.errors import FileError
 from implam_post.io.files import read_text
-from implam_post.io.units import dimension_of, unit_of
+from implam_post.io.results import TABLES, dimension_of
+from implam_post.io.units import unit_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,13 +19,10 @@ if TYPE_CHECKING:
 KEPT_ENERGIES = ("energy_impactor", "energy_kinetic", "energy_strain", "energy_indentation")
 # Columns of every history.
 ENERGIES = (*KEPT_ENERGIES, "energy_delamination", "energy_ply_damage", "energy_contact", "energy_algorithmic")
-# Names in legends and pages, as in the summary; histories of earlier versions do not have the last three.
-ENERGY_NAMES = {"energy_impactor": "impactor", "energy_kinetic": "kinetic", "energy_strain": "strain",
-                "energy_indentation": "indentation", "energy_delamination": "delamination",
-                "energy_ply_damage": "ply damage", "energy_contact": "contact",
-                "energy_algorithmic": "algorithmic dissipation", "energy_friction": "friction",
-                "energy_layers": "layers", "energy_damping": "damping"}
-ENERGY_ERROR = "energy error"
+# Energies in legends and pages by their labels in the log, in the order of earlier versions, then those added since.
+_LATER = ("energy_friction", "energy_layers", "energy_damping")
+ENERGY_NAMES = {name: TABLES["summary"][name].label for name in (*ENERGIES, *_LATER)}
+ENERGY_ERROR = TABLES["summary"]["energy_error"].label
 _ENDING = "_history.csv"
 
 

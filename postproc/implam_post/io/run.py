@@ -14,6 +14,7 @@ from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import Fields, NoTimeError, opened, read_fields
 from implam_post.io.files import read_text
 from implam_post.io.history import History, read_history
+from implam_post.io.results import DIMENSIONS
 from implam_post.io.summary_shape import misshapen_member, take_earlier_names
 from implam_post.io.units import unit_of
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
     from implam_post.io.run_figures import Measured
 
 SUMMARY, HISTORY, FIELDS = "_summary.json", "_history.csv", ".h5"
-# Units as written in the results, and names of their dimensions in this package.
-_DIMENSIONS = {"pressure": "stress", "length/time": "velocity"}
 
 
 @dataclass(frozen=True)
@@ -156,7 +155,7 @@ class Run:
             if where == "cells":  # the last of the nine points of a cell is its centre
                 places, first_ply = places[mesh["connectivity"][:, 8]], mesh["cells/first_ply"][()].astype(int)
             unit, meaning = (bytes(values.attrs.get(key, b"")).decode() for key in ("unit", "meaning"))
-            unit = unit_of(_DIMENSIONS.get(unit, unit), self.system) or unit.replace("-", "")
+            unit = unit_of(DIMENSIONS.get(unit, unit), self.system) or unit.replace("-", "")
             return Field(name, float(group["time"][()]), values[()], places, unit, meaning, first_ply)
 
     @cached_property

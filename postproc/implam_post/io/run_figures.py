@@ -9,8 +9,9 @@ import numpy as np
 from implam_post.io import damage_resistance
 from implam_post.io.errors import ImplamError
 from implam_post.io.quantities import l2_force_difference
+from implam_post.io.results import dimension_of
 from implam_post.io.run import Run
-from implam_post.io.units import SYSTEMS, dimension_of, unit_of
+from implam_post.io.units import SYSTEMS, unit_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,6 +21,9 @@ _NO_FIGURES = ("costs", "profile", "provenance", "estimated_errors", "exit", "wa
                "plate_size", "collapse", "failure_code")
 _OF_ENDED_CONTACT = ("contact_duration", "contact_until")
 _EVENTS = ("onset", "first_growth")
+# Dimensions of members of the summary's lists, by the names of their figures without the interface.
+_OF_LISTS = {"filtered_peak_force": "force", "onset_force": "force", "first_growth_force": "force",
+             "x_extent": "length", "y_extent": "length"}
 
 
 class Measured(NamedTuple):
@@ -65,10 +69,16 @@ def resistance(run: Run) -> dict[str, Measured]:
 
 def figures(run: Run) -> dict[str, Measured]:
     """Return all figures of a run by name: those of the summary, of its interfaces, and those of ASTM D7136."""
-    dimensions = {"time": ""} if "load_factor_reached" in run.summary else {}
-    found = {name: Measured(value, dimensions.get(dimension := dimension_of(name), dimension))
-             for name, value in numbers_of(run.summary)}
+    found = {name: Measured(value, _dimension_of(name)) for name, value in numbers_of(run.summary)}
+    if "load_factor_reached" in run.summary:
+        found = {name: figure._replace(dimension="") if figure.dimension == "time" else figure
+                 for name, figure in found.items()}
     return found | resistance(run)
+
+
+def _dimension_of(name: str) -> str:
+    """Return the dimension of a figure."""
+    return _OF_LISTS.get(name.partition("_below_")[0]) or dimension_of(name)
 
 
 def compare(first: Run, second: Run) -> "pd.DataFrame":

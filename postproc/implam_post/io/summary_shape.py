@@ -7,6 +7,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from implam_post.io.results import TABLES
+
 
 class OrNull:
     """A member that may be null, such as a figure that a run does not have."""
@@ -25,24 +27,18 @@ _REQUIRED = {
     "plies": [{"ply": int, "angle": float, "thickness": float}], "warnings": [{"text": str}], "costs": {},
     "provenance": dict.fromkeys(("version", "commit", "compiler", "petsc_version", "deck"), str)
     | {"ranks": object, "started": object}}
-_FIGURES = (
-    "time_reached", "load_factor_reached", "peak_force", "peak_force_at", "contacts", "contact_duration",
-    "contact_until", "dent_depth", "dent_indentation", "rebound_velocity", "impactor_velocity", "largest_deflection",
-    "largest_deflection_at", "energy_impact", "energy_absorbed", "work_external", "energy_impactor", "energy_kinetic",
-    "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage", "energy_contact",
-    "energy_friction", "energy_layers", "energy_damping", "energy_algorithmic", "energy_error", "delaminated_area",
-    "projected_area", "projected_area_failed", "projected_area_softened", "threshold_force_at_starter",
-    "fibre_failures", "matrix_cracks", "matrix_crushings",
-    "effective_modulus", "buckling_strain", "kinetic_share")
-_ENERGIES = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
-             "energy_contact", "energy_friction")
+# Members that functions of this package compute with, so that they are never null.
+_NEVER_NULL = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
+               "energy_contact", "energy_friction", "residual_strength", "residual_strength_at",
+               "shortening_at_strength", "percent_bending")
+_KINDS = {"real": OrNull(float), "integer": OrNull(int), "logical": bool}
 ACROSS = "failed_across_width"
 _ACROSS_BEFORE = "went_across"  # the name in summaries of version 0.1.0
 _COLLAPSE = {"interfaces": [{"ply_above": int, ACROSS: bool}], "fibres": [{"ply": int, ACROSS: bool}]}
-_COMPRESSION = dict.fromkeys(("residual_strength", "residual_strength_at", "shortening_at_strength", "percent_bending"),
-                             float) | {"has_failed": bool, "failure_code": OrNull(str), "collapse": _COLLAPSE}
-_POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | dict.fromkeys(_ENERGIES, float) | _COMPRESSION | {
-    "in_contact": bool, "interfaces": [_INTERFACE], "force_filter": {"frequency": float, "peak_force": float}}
+_POSSIBLE = {name: _KINDS[result.type] for name, result in TABLES["summary"].items()} | dict.fromkeys(
+    _NEVER_NULL, float) | {
+    "failure_code": OrNull(str), "collapse": _COLLAPSE, "interfaces": [_INTERFACE],
+    "force_filter": {"frequency": float, "peak_force": float}}
 _POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float)
 
 
@@ -66,7 +62,7 @@ def take_earlier_names(summary: Mapping[str, Any]) -> None:
 
 def misshapen_member(summary: Mapping[str, Any]) -> str:
     """Return a member of the wrong kind; empty if there is none."""
-    for name, kind in (_REQUIRED | _POSSIBLE).items():
+    for name, kind in (_POSSIBLE | _REQUIRED).items():
         if name in summary and (wrong := misshapen(summary[name], kind, name)):
             return wrong
     if not summary.get("plies", [1]):

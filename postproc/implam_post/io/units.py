@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 
 # Length, mass and time of the deck's units in SI.
 SYSTEMS = {"SI": (1.0, 1.0, 1.0), "mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1e-3, 1.0, 1e-3),
@@ -11,20 +10,6 @@ SYSTEMS = {"SI": (1.0, 1.0, 1.0), "mm-t-s": (1e-3, 1e3, 1.0), "mm-kg-ms": (1e-3,
 # Powers of length, mass and time in each dimension.
 _POWERS = {"length": (1, 0, 0), "area": (2, 0, 0), "mass": (0, 1, 0), "time": (0, 0, 1), "velocity": (1, 0, -1),
            "force": (1, 1, -2), "energy": (2, 1, -2), "stress": (-1, 1, -2), "toughness": (0, 1, -2)}
-# Dimensions of columns of the history and figures of the summary by name; the first matching pattern applies.
-_NAMES = (
-    ("iterations", ""), ("release_ratio", ""), ("nominal_strain", ""), ("buckling_strain", ""), ("time", "time"),
-    ("time_reached", "time"), ("step_length", "time"), ("impactor_velocity", "velocity"),
-    ("work_external", "energy"), ("stress", "stress"),
-    ("energy_*", "energy"), ("*_at", "time"), ("contact_duration", "time"), ("contact_until", "time"),
-    ("residual_strength", "stress"), ("effective_modulus", "stress"), ("gauge_strain_*", ""), ("stage_below_*", ""),
-    ("*_iterations", ""),
-    ("line_force_*", "force"), ("line_displacement_*", "length"), ("reaction_*", "force"), ("*stress*", "stress"),
-    ("*force*", "force"), ("*velocity*", "velocity"), ("*_area*", "area"), ("area_below_*", "area"),
-    ("layered_below_*", "area"), ("*energy*", "energy"), ("*deflection*", "length"), ("*displacement*", "length"),
-    ("*indentation*", "length"), ("dent_*", "length"), ("damage_*", "length"), ("penetration", "length"),
-    ("shortening*", "length"), ("*extent_*", "length"),
-)
 # Names of units in each system.
 _SYMBOLS = {
     "SI": {"length": "m", "area": "m2", "mass": "kg", "time": "s", "velocity": "m/s", "force": "N", "energy": "J",
@@ -78,11 +63,6 @@ def axis_of(label: str, dimension: str, values: Iterable[float], system: str) ->
 def _to_si(dimension: str, system: str) -> float:
     """Return the factor from a system to SI."""
     return math.prod(unit**power for unit, power in zip(SYSTEMS[system], _POWERS[dimension], strict=True))
-
-
-def dimension_of(name: str) -> str:
-    """Return the dimension of a column of the history or a figure of the summary by its name; empty if it has none."""
-    return next((dimension for pattern, dimension in _NAMES if fnmatchcase(name, pattern)), "")
 
 
 def unit_of(dimension: str, system: str) -> str:

@@ -13,6 +13,7 @@ from implam_post.io.damage_resistance import DIRECTIONS, Extent, extent, kinds_o
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.files import refuse_equal_names, write_text
 from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES
+from implam_post.io.results import dimension_of
 from implam_post.io.run import FIELDS, SUMMARY, Run, material_of, open_run
 from implam_post.io.run_figures import Measured, corner_of, resistance
 from implam_post.io.summary_shape import missing_member
@@ -25,25 +26,25 @@ from implam_post.report.pictures import history_pictures, layup_figure, map_pict
 from implam_post.report.scatter_report import write_page
 from implam_post.sweep.scatter_results import STATISTICS
 
-# Rows of the table at the top: label, member, its dimension, member with its time.
+# Rows of the table at the top: label, member, member with its time.
 _FIGURES = (
-    ("peak force", "peak_force", "force", "peak_force_at"),
-    ("contacts", "contacts", "", None),
-    ("contact duration", "contact_duration", "time", "contact_until"),
-    ("rebound velocity", "rebound_velocity", "velocity", None),
-    ("velocity of the impactor at the end", "impactor_velocity", "velocity", None),
-    ("largest deflection", "largest_deflection", "length", "largest_deflection_at"),
-    ("impact energy", "energy_impact", "energy", None),
-    ("absorbed energy", "energy_absorbed", "energy", None),
-    ("work of the load", "work_external", "energy", None),
-    ("delaminated area, all interfaces", "delaminated_area", "area", None),
-    ("delaminated area, projected (C-scan): by dissipated fractions of the toughness", "projected_area", "area", None),
-    ("delaminated area, projected: failed points (d at least 0.99)", "projected_area_failed", "area", None),
-    ("delaminated area, projected: with process zones (d at least 0.5)", "projected_area_softened", "area", None),
-    ("delamination threshold force, closed form at the starter", "threshold_force_at_starter", "force", None),
-    ("fibre failures (number of plies of elements)", "fibre_failures", "", None),
-    ("matrix cracks (number of plies of elements)", "matrix_cracks", "", None),
-    ("matrix crushing (number of plies of elements)", "matrix_crushings", "", None),
+    ("peak force", "peak_force", "peak_force_at"),
+    ("contacts", "contacts", None),
+    ("contact duration", "contact_duration", "contact_until"),
+    ("rebound velocity", "rebound_velocity", None),
+    ("velocity of the impactor at the end", "impactor_velocity", None),
+    ("largest deflection", "largest_deflection", "largest_deflection_at"),
+    ("impact energy", "energy_impact", None),
+    ("absorbed energy", "energy_absorbed", None),
+    ("work of the load", "work_external", None),
+    ("delaminated area, all interfaces", "delaminated_area", None),
+    ("delaminated area, projected (C-scan): by dissipated fractions of the toughness", "projected_area", None),
+    ("delaminated area, projected: failed points (d at least 0.99)", "projected_area_failed", None),
+    ("delaminated area, projected: with process zones (d at least 0.5)", "projected_area_softened", None),
+    ("delamination threshold force, closed form at the starter", "threshold_force_at_starter", None),
+    ("fibre failures (number of plies of elements)", "fibre_failures", None),
+    ("matrix cracks (number of plies of elements)", "matrix_cracks", None),
+    ("matrix crushing (number of plies of elements)", "matrix_crushings", None),
 )
 # Rows of the dent: label, member, remark.
 _DENT = (("dent depth", "dent_depth", "at the end of the run; meaningful for a plate at rest (&time settle)"),
@@ -181,9 +182,9 @@ def _reached(summary: Mapping[str, Any], style: PictureStyle) -> str:
 def _figures(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[str, ...]]:
     """Return the rows of the table at the top."""
     rows, by_load_steps = [], _is_by_load_steps(summary)
-    for name, key, dimension, at in _FIGURES:
+    for name, key, at in _FIGURES:
         if key in summary and not (key == "work_external" and not summary[key]):
-            value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(style, dimension, summary[key])
+            value = _UNKNOWN.get(key, "-") if summary[key] is None else shown(style, dimension_of(key), summary[key])
             when = f"{_WHEN.get(key, 'at')} {_instant(style, summary[at], by_load_steps)}" if at in summary else (
                 _REMARKS.get(key, ""))
             rows.append((name, value, when))

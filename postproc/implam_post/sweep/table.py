@@ -15,6 +15,7 @@ from implam_post.io.deck_text import deck_value
 from implam_post.io.errors import DeckError, ImplamError
 from implam_post.io.files import replaced, write_table
 from implam_post.io.program import version_in
+from implam_post.io.results import dimension_of
 from implam_post.io.run import open_run
 from implam_post.io.run_figures import numbers_of
 from implam_post.sweep.case_run import Record, read_record
@@ -23,35 +24,39 @@ from implam_post.sweep.runs import OUTDATED, Sweep
 
 @dataclass(frozen=True)
 class Figure:
-    """A column with a figure of the runs: member of the summary, its dimension, and its label on an axis.
+    """A column with a figure of the runs: member of the summary, and its label on an axis.
 
     `is_of_second` says whether it belongs to the second run of a case with `then`.
     """
 
     member: str
-    dimension: str
     label: str
     is_of_second: bool = False
 
+    @property
+    def dimension(self) -> str:
+        """Dimension of the member."""
+        return dimension_of(self.member)
+
 
 FIGURES = {
-    "impact_energy": Figure("energy_impact", "energy", "impact energy"),
-    "peak_force": Figure("peak_force", "force", "peak force"),
-    "peak_force_time": Figure("peak_force_at", "time", "time of peak force"),
-    "contact_duration": Figure("contact_duration", "time", "contact duration"),
-    "max_deflection": Figure("largest_deflection", "length", "largest deflection"),
-    "rebound_velocity": Figure("rebound_velocity", "velocity", "rebound velocity"),
-    "absorbed_energy": Figure("energy_absorbed", "energy", "absorbed energy"),
-    "delaminated_area": Figure("delaminated_area", "area", "delaminated area"),
-    "first_growth_force": Figure("first_growth_force", "force", "force at first growth"),
-    "first_growth_time": Figure("first_growth_at", "time", "time of first growth"),
-    "dent_depth": Figure("dent_depth", "length", "dent depth"),
-    "projected_area": Figure("projected_area", "area", "projected delaminated area"),
-    "residual_strength": Figure("residual_strength", "stress", "residual strength", True),
-    "shortening_at_strength": Figure("shortening_at_strength", "length", "shortening at the strength", True),
-    "effective_modulus": Figure("effective_modulus", "stress", "effective modulus", True),
-    "has_failed": Figure("has_failed", "", "whether the plate has failed", True),
-    "failure_code": Figure("failure_code", "", "failure code", True),
+    "impact_energy": Figure("energy_impact", "impact energy"),
+    "peak_force": Figure("peak_force", "peak force"),
+    "peak_force_time": Figure("peak_force_at", "time of peak force"),
+    "contact_duration": Figure("contact_duration", "contact duration"),
+    "max_deflection": Figure("largest_deflection", "largest deflection"),
+    "rebound_velocity": Figure("rebound_velocity", "rebound velocity"),
+    "absorbed_energy": Figure("energy_absorbed", "absorbed energy"),
+    "delaminated_area": Figure("delaminated_area", "delaminated area"),
+    "first_growth_force": Figure("first_growth_force", "force at first growth"),
+    "first_growth_time": Figure("first_growth_at", "time of first growth"),
+    "dent_depth": Figure("dent_depth", "dent depth"),
+    "projected_area": Figure("projected_area", "projected delaminated area"),
+    "residual_strength": Figure("residual_strength", "residual strength", True),
+    "shortening_at_strength": Figure("shortening_at_strength", "shortening at the strength", True),
+    "effective_modulus": Figure("effective_modulus", "effective modulus", True),
+    "has_failed": Figure("has_failed", "whether the plate has failed", True),
+    "failure_code": Figure("failure_code", "failure code", True),
 }
 RUN_COLUMNS = ("exit_code", "cpu_time", "version", "folder")
 

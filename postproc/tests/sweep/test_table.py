@@ -9,7 +9,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from implam_post.io.units import Axis, axis_of, dimension_of, system_of
+from implam_post.io.results import dimension_of
+from implam_post.io.units import Axis, axis_of, system_of
 from implam_post.sweep.plan import COLUMNS
 from implam_post.sweep.plots import dimension_of_swept, plot_table, series
 from implam_post.sweep.table import FIGURES, Table, write_csv, write_hdf5
