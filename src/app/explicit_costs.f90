@@ -42,7 +42,7 @@ contains
     step = end/steps
     bound = ''
     if (model_size%at_most) bound = 'at most '
-    ! Damage lengthens the contact by an unknown time.
+    ! Damage lengthens the contact by a time that is known roughly.
     lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
@@ -51,7 +51,7 @@ contains
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
                time_bound//duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor'
     if (lengthened) &
-      sentence = sentence//', more where damage lengthens the contact beyond that of an undamaged plate'
+      sentence = sentence//', up to a third fewer or more where damage lengthens the contact'
     sentence = sentence//'.'
   end function explicit_sentence
 

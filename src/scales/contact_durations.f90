@@ -1,5 +1,6 @@
 !> Duration of a contact with a heavy impactor, corrected for what the preliminary elastic impact neglects: the
-!> stiffness of clamped edges and of membrane forces. It affects the number of steps that is foreseen only.
+!> stiffness of clamped edges and of membrane forces, and delaminations. It affects the number of steps that is
+!> foreseen only.
 module contact_durations
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -25,32 +26,100 @@ module contact_durations
   real(wp), parameter :: quasi_static = 0.8_wp
   !> Modes along each direction of the plate of the elastic impact.
   integer, parameter :: modes = 80
+  !> Points of the quadrature over a quarter period: to 1e-3 with the bend at the limit.
+  integer, parameter :: points = 128
+
+  !> Restoring force of a plate over its deflection, in units of thickness and initial stiffness.
+  type :: plate_spring_t
+    !> Membrane stiffness A
+    real(wp) :: membrane = 0
+    !> Deflection from which on the force by bending is constant
+    real(wp) :: limit = 1.0e6_wp
+  contains
+    procedure :: energy_at
+    procedure :: recovered
+    procedure :: deflection_of
+  end type plate_spring_t
 
 contains
 
-  !> Duration of contact: the half period of the impactor on the plate is proportional to the root of its compliance,
-  !> and a spring that stiffens by A (w/h)**2 has the frequency of a linear one that is stiffer by 3/4 of that at the
-  !> largest deflection (harmonic balance). That deflection follows from the energy.
+  !> Duration of contact of the impactor with a spring: the bending stiffness of the plate beside its membrane
+  !> stiffness, P = k w + k A w (w/h)**2. Where interfaces may delaminate, the force by bending remains at the
+  !> delamination threshold force, under which n equal delaminations grow at any radius, and unloading follows the
+  !> reduced stiffness then, towards the origin. Membrane forces are not reduced by delaminations.
   pure real(wp) function stiffened_duration(setup, scales, duration, deflection) result(stiffened)
     type(setup_t), intent(in) :: setup
     !> Its scales
     type(setup_scales_t), intent(in) :: scales
     !> Duration and largest deflection by the elastic impact
     real(wp), intent(in) :: duration, deflection
-    real(wp) :: share, square, a
+    type(plate_spring_t) :: spring
+    real(wp) :: share, linear, largest, energy, rebound, loading, unloading, u, angle
+    integer :: i
 
     stiffened = duration
     if (duration < quasi_static*pi*sqrt(setup%impactor%mass*scales%compliance)) return
     share = clamped_share(setup, scales)
-    a = 0
     if (setup%kinematics == kinematics_von_karman) &
-      a = membrane(merge(1, 2, setup%plate%in_plane_fixed .and. any(setup%plate%edges /= edge_free)), &
-                   merge(1, 2, all(free_edges(setup) == edge_clamped)))
-    ! w**2 (1 + A/2 (w/h)**2) is the square of the deflection without membrane forces.
-    square = share*(deflection/scales%thickness)**2
-    square = 2*square/(1 + sqrt(1 + 2*a*square))
-    stiffened = duration*sqrt(share/(1 + 0.75_wp*a*square))
+      spring%membrane = membrane(merge(1, 2, setup%plate%in_plane_fixed .and. any(setup%plate%edges /= edge_free)), &
+                                 merge(1, 2, all(free_edges(setup) == edge_clamped)))
+    if (scales%threshold > 0) spring%limit = scales%threshold*share*scales%compliance/scales%thickness
+    linear = sqrt(share)*deflection/scales%thickness
+    energy = linear**2/2
+    largest = spring%deflection_of(energy)
+    rebound = spring%recovered(largest, largest)
+    loading = 0
+    unloading = 0
+    do i = 1, points
+      angle = (i - 0.5_wp)*pi/(2*points)
+      u = largest*sin(angle)
+      loading = loading + cos(angle)/sqrt(1 - spring%energy_at(u)/energy)
+      unloading = unloading + cos(angle)/sqrt((rebound - spring%recovered(u, largest))/energy)
+    end do
+    stiffened = duration*scales%thickness/deflection*largest*(loading + unloading)/(2*points)
   end function stiffened_duration
+
+  !> Energy of the spring while it is loaded up to a deflection.
+  elemental real(wp) function energy_at(self, deflection) result(energy)
+    class(plate_spring_t), intent(in) :: self
+    !> Over the thickness
+    real(wp), intent(in) :: deflection
+
+    associate (bent => min(deflection, self%limit))
+      energy = bent*(deflection - bent/2) + self%membrane*deflection**4/4
+    end associate
+  end function energy_at
+
+  !> Energy that it returns from a deflection back to zero.
+  elemental real(wp) function recovered(self, deflection, largest) result(energy)
+    class(plate_spring_t), intent(in) :: self
+    !> The deflection and the largest one before
+    real(wp), intent(in) :: deflection, largest
+
+    energy = min(1.0_wp, self%limit/largest)*deflection**2/2 + self%membrane*deflection**4/4
+  end function recovered
+
+  !> Deflection at an energy, by bisection: the linear plate deflects by no less, the one at its limit by no more
+  !> without membrane forces.
+  elemental real(wp) function deflection_of(self, energy) result(deflection)
+    class(plate_spring_t), intent(in) :: self
+    !> The energy
+    real(wp), intent(in) :: energy
+    real(wp) :: low, high
+    integer :: i
+
+    low = 0
+    high = max(sqrt(2*energy), energy/self%limit + self%limit/2)
+    do i = 1, digits(1.0_wp)
+      deflection = (low + high)/2
+      if (self%energy_at(deflection) < energy) then
+        low = deflection
+      else
+        high = deflection
+      end if
+    end do
+    deflection = high
+  end function deflection_of
 
   !> Compliance of a plate clamped at all edges over that of the shorter, simply supported plate of the elastic impact;
   !> 1 for other edges. Both are those of thin plates; shear adds the same to both.
