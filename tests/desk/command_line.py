@@ -207,6 +207,23 @@ def read_until(terminal, words):
     return said
 
 
+def check_compression_of_rig(implam, folder):
+    """The deck of the compression has mesh, plies and interfaces of the impact, so that its state needs no mapping."""
+    require("Wrote d7137.nml" in output_of(implam, "new", "--rig", "d7137", cwd=folder), "No deck of the compression.")
+    impact, compression = ((folder / name).read_text() for name in ("d7136.nml", "d7137.nml"))
+    for value in (r"length=(\S+ \S+)", r"elements=(\S+ \S+)", r"core=(\S+ \S+)", r"cell=(\S+)", r"patch=(\S+)",
+                  r"library=(\S+)", r"stacking=(\S+)", r"ply_thickness=(\S+)", r"below_ply=(\S+)"):
+        given = [re.search(value, deck)[1].rstrip(",") for deck in (impact, compression)]
+        require(given[0] == given[1], f"{value}: {given}")
+    # Both list the lines of the other's rig.
+    for deck, other in ((impact, compression), (compression, impact)):
+        window = [float(side)/2 for side in re.search(r"window=(\S+), (\S+)", other).groups()]
+        lines = [float(re.search(rf"lines_{axis}=(\S+)", deck)[1]) for axis in "xy"]
+        require(max(abs(one - two) for one, two in zip(window, lines)) < 1e-9, f"{lines} are not {window}")
+    printed = output_of(implam, "check", "d7137.nml", cwd=folder)
+    require("no errors" in printed and "d7136_restart.h5 does not exist yet" in printed, printed)
+
+
 def check_new(implam, folder):
     """The starter deck passes the check without a warning, grows a delamination, and overwrites nothing."""
     output_of(implam, "new", cwd=folder)
@@ -224,7 +241,8 @@ def check_new(implam, folder):
     require("no errors" in printed and 4 <= thickness <= 6, printed)
     require(abs(energy - 6.7*thickness) < 0.01*energy, "The energy is not that of D7136.")
     require(printed.count("warning:") <= 2, "There are more warnings than one for plies and one for interfaces.")
-    require("d7136" in output_of(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "The rigs are not listed.")
+    check_compression_of_rig(implam, folder)
+    require("d7136 or d7137" in output_of(implam, "new", "--rig", "x", code=EXIT_USAGE), "The rigs are not listed.")
     require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig is accepted without new.")
     output_of(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
     run_coarse(implam, folder)
