@@ -164,8 +164,9 @@ contains
       loads = loads_on(model, now)
       row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
              step_values(now, stepper%last_step()), &
-             release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected_steps()), &
-             operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
+             release_values(model, now%interfaces, now%motion%displacement), &
+             iteration_values(now, stepper%rejected_steps()), operator_values(stepper%operator), &
+             ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
              real(size(record%warning_kinds), wp), now%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &

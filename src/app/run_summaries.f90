@@ -78,8 +78,8 @@ contains
       call log%note(lines(i)%text)
     end do
     if (model%communicator%is_root()) &
-      call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, given, ending_of(error), &
-                                               provenance, seconds), fault)
+      call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, given, &
+                                               ending_of(error), provenance, seconds), fault)
     call model%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault
   end subroutine summarise

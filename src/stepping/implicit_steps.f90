@@ -23,9 +23,7 @@ module implicit_steps
     procedure(complete_trial_state), deferred :: complete_trial
     !> Chooses the length of the next step.
     procedure(choose_length), deferred :: choose_next
-    !> The kind as the subject of a sentence, such as Load steps.
     procedure(name_of_kind), deferred :: name
-    !> What to change where steps have created or dissipated too much energy; the end of a sentence.
     procedure(remedy_of_kind), deferred :: energy_remedy
     procedure :: equilibrate
   end type step_kind_t
@@ -110,12 +108,14 @@ module implicit_steps
       logical, intent(in) :: extended
     end subroutine choose_length
 
+    !> The kind as the subject of a sentence, such as Load steps.
     pure function name_of_kind(self) result(words)
       import :: step_kind_t
       class(step_kind_t), intent(in) :: self
       character(len=:), allocatable :: words
     end function name_of_kind
 
+    !> What to change where steps have created or dissipated too much energy; the end of a sentence.
     pure function remedy_of_kind(self, created) result(words)
       import :: step_kind_t
       class(step_kind_t), intent(in) :: self

@@ -43,6 +43,7 @@ contains
   !> Tries one load step.
   subroutine try(self, stepper, model, event, step, converged, error)
     class(load_steps_t), intent(in) :: self
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Load factor that must not be exceeded
@@ -70,6 +71,7 @@ contains
 
   !> Tries a step that dissipates a given energy.
   subroutine try_dissipation(stepper, model, step, converged, error)
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Step tried
@@ -94,6 +96,7 @@ contains
   !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
   subroutine complete_trial(self, stepper, model)
     class(load_steps_t), intent(in) :: self
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 

@@ -51,6 +51,7 @@ contains
   !> Tries one time step.
   subroutine try(self, stepper, model, event, step, converged, error)
     class(motion_steps_t), intent(in) :: self
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Time that must not be exceeded
@@ -84,6 +85,7 @@ contains
   !> Factorizes the operator if there is no factor. A factorization that is due again is left to the step, whose first
   !> correction requires the tangent at the predictor.
   subroutine prepare_operator(stepper, model, mass_factor, factor_is_due, error)
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Factor of the mass in the step
@@ -110,6 +112,7 @@ contains
   !> Records that surfaces are glued once the impactor moves back (unloading = 'glued').
   subroutine complete_trial(self, stepper, model)
     class(motion_steps_t), intent(in) :: self
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 

@@ -25,6 +25,7 @@ contains
 
   !> Saves the stepper before a step.
   pure function save_state(stepper) result(self)
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(in) :: stepper
     type(step_memory_t) :: self
 
@@ -37,6 +38,7 @@ contains
   subroutine restore_state(self, stepper)
     !> The state saved before the step
     class(step_memory_t), intent(in) :: self
+    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
 
     stepper%now = self%now

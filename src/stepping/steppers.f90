@@ -1,4 +1,4 @@
-!> A stepper through time or load: the state of a run and how it advances. Each kind carries its own data and answers
+!> A stepper through time or load: the state of a run and how it advances. Each kind carries its own data and says
 !> for itself what a run asks of its steps, so that nothing else asks which kind it is.
 module steppers
   use archives, only: archive_t
@@ -29,27 +29,16 @@ module steppers
     !> Shortest step
     real(wp) :: smallest_step = 0
   contains
-    !> Finds the initial state: the plate at rest and the impactor at first contact. Collective.
     procedure(start_stepper), deferred :: start
-    !> Takes one step, at most to an event. Collective.
     procedure(advance_stepper), deferred :: advance
-    !> Takes one step and inserts the layers that the damage requires. Collective.
     procedure(advance_stepper_with_layers), deferred :: advance_with_layers
-    !> Gives layers inserted in the model the motion of the single plate. Collective.
     procedure(take_layers_of_plate), deferred :: take_layers
-    !> Saves or loads the evolving state.
     procedure(visit_stepper), deferred :: visit
-    !> Length of the last step.
     procedure(length_of_steps), deferred :: last_step
-    !> The size of the model and its steps, one sentence each. Collective.
     procedure(sentences_on_model), deferred :: model_sentences
-    !> The method as the subject of a sentence, such as Central differences.
     procedure(words_of_method), deferred :: method_name
-    !> What to change where the method has created or dissipated too much energy; the end of a sentence.
     procedure(words_on_energy), deferred :: energy_remedy
-    !> What to change where the ledger does not close; the end of a sentence.
     procedure(words_of_method), deferred :: ledger_remedy
-    !> Cost of a run in one line.
     procedure(sentence_on_cost), deferred :: cost
     procedure :: begin_inherited
     procedure :: complete_state
@@ -65,6 +54,7 @@ module steppers
   end type stepper_t
 
   abstract interface
+    !> Finds the initial state: the plate at rest and the impactor at first contact. Collective.
     subroutine start_stepper(self, model, stepping, linear_solver, resumed, error)
       import :: stepper_t, model_t, stepping_t, linear_solver_parameters_t, error_t
       class(stepper_t), intent(out) :: self
@@ -78,6 +68,7 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine start_stepper
 
+    !> Takes one step, at most to an event. Collective.
     subroutine advance_stepper(self, model, event, error)
       import :: stepper_t, model_t, error_t, wp
       class(stepper_t), intent(inout) :: self
@@ -88,6 +79,7 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine advance_stepper
 
+    !> Takes one step and inserts the layers that the damage requires. Collective.
     subroutine advance_stepper_with_layers(self, model, linear_solver, event, switched, error)
       import :: stepper_t, model_t, linear_solver_parameters_t, error_t, wp
       class(stepper_t), intent(inout) :: self
@@ -102,6 +94,7 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine advance_stepper_with_layers
 
+    !> Gives layers inserted in the model the motion of the single plate. Collective.
     subroutine take_layers_of_plate(self, model, transfer, error)
       import :: stepper_t, model_t, layer_transfer_t, error_t
       !> The stepper with the loaded state
@@ -113,6 +106,7 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine take_layers_of_plate
 
+    !> Saves or loads the evolving state.
     subroutine visit_stepper(self, archive, model, error)
       import :: stepper_t, archive_t, model_t, error_t
       class(stepper_t), intent(inout) :: self
@@ -122,11 +116,13 @@ module steppers
       type(error_t), allocatable, intent(out) :: error
     end subroutine visit_stepper
 
+    !> Length of the last step.
     pure real(wp) function length_of_steps(self)
       import :: stepper_t, wp
       class(stepper_t), intent(in) :: self
     end function length_of_steps
 
+    !> The size of the model and its steps, one sentence each. Collective.
     function sentences_on_model(self, model) result(lines)
       import :: stepper_t, model_t, line_t
       class(stepper_t), intent(in) :: self
@@ -134,12 +130,15 @@ module steppers
       type(line_t), allocatable :: lines(:)
     end function sentences_on_model
 
+    !> The method as the subject of a sentence, such as Central differences; or what to change where the ledger does not
+    !> close, as its end.
     pure function words_of_method(self) result(words)
       import :: stepper_t
       class(stepper_t), intent(in) :: self
       character(len=:), allocatable :: words
     end function words_of_method
 
+    !> What to change where the method has created or dissipated too much energy; the end of a sentence.
     pure function words_on_energy(self, setup, created) result(words)
       import :: stepper_t, setup_t
       class(stepper_t), intent(in) :: self
@@ -149,6 +148,7 @@ module steppers
       character(len=:), allocatable :: words
     end function words_on_energy
 
+    !> Cost of a run in one line.
     function sentence_on_cost(self) result(line)
       import :: stepper_t
       class(stepper_t), intent(in) :: self
