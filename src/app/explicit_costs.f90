@@ -11,6 +11,7 @@ module explicit_costs
   use plate_options, only: kinematics_von_karman
   use setup_elastic_impacts, only: contact_end, start_elastic_impact
   use setup_scales, only: free_span
+  use step_timings, only: measured_element_time
   use stepping_parameters, only: end_of_run
   use text, only: counted, rounded_text, to_text
   use time_deck, only: key_step, time_group
@@ -18,11 +19,9 @@ module explicit_costs
   private
   public :: explicit_sentence, duration_text, untaken_step
 
-  !> Processor seconds for an element of one layer in a step, the additional time of cohesive interfaces, and that of
-  !> softening plies in the mean over an impact with much ply failure, on the machine of doc/performance.md: Sun
-  !> and Chen's plate .2 us, input/verify/cohesive_threshold.nml with 1e4 to 1e6 unknowns .30 to .46 us
-  !> (tests/bench/explicit_table.py costs), input/experiments/t700_m21_25J.nml 1.2 us (panels --run).
-  real(wp), parameter :: of_elements = 0.2e-6_wp, of_interfaces = 0.2e-6_wp, of_crack_bands = 0.75e-6_wp
+  !> Ratio of the times of a step, with rows of the history, in the mean over an impact and of an undamaged plate: without
+  !> and with softening plies (doc/performance.md).
+  real(wp), parameter :: of_impact = 1.1_wp, of_breaking = 1.7_wp
 
 contains
 
@@ -33,7 +32,7 @@ contains
     type(model_size_t), intent(in) :: model_size
     !> One sentence
     character(len=:), allocatable :: sentence
-    real(wp) :: steps, step, end
+    real(wp) :: steps, step, end, seconds
     character(len=:), allocatable :: bound, time_bound
     logical :: lengthened
 
@@ -46,10 +45,11 @@ contains
     lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
+    seconds = merge(of_breaking, of_impact, deck%has_crack_bands())*measured_element_time(deck)
     sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '//rounded_text(step)// &
                ' for '// &
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
-               time_bound//duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor'
+               time_bound//duration_text(seconds*steps*model_size%elements)//' of one processor'
     if (lengthened) &
       sentence = sentence//', up to a third fewer or more where damage lengthens the contact'
     sentence = sentence//'.'
@@ -105,15 +105,6 @@ contains
     steep = smallest_element_step(deck, slope)
     if (steep > 0) ratio = smallest_element_step(deck)/steep
   end function shortened
-
-  !> Seconds of one processor for an element of one layer in a step.
-  pure real(wp) function seconds_of_element(deck) result(seconds)
-    type(deck_t), intent(in) :: deck
-
-    seconds = of_elements
-    if (has_cohesive(deck)) seconds = seconds + of_interfaces
-    if (deck%has_crack_bands()) seconds = seconds + of_crack_bands
-  end function seconds_of_element
 
   !> A time in a suitable unit.
   pure function duration_text(seconds) result(words)

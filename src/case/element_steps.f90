@@ -19,7 +19,7 @@ module element_steps
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   implicit none
   private
-  public :: smallest_element_step
+  public :: smallest_element_step, small_setup
 
 contains
 
@@ -40,7 +40,7 @@ contains
     integer :: element, direction
 
     step = 0
-    call create_model(small_setup(deck), alone, model, error)
+    call create_model(small_setup(deck, 2), alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
     scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
@@ -76,9 +76,11 @@ contains
     end do
   end function sloped_motion
 
-  !> A free plate of two by two of the smallest elements, layered wherever an interface may delaminate.
-  pure function small_setup(deck) result(setup)
+  !> A free plate of the smallest elements, layered wherever an interface may delaminate.
+  pure function small_setup(deck, cells) result(setup)
     type(deck_t), intent(in) :: deck
+    !> Elements along each side
+    integer, intent(in) :: cells
     !> The plate
     type(setup_t) :: setup
     integer :: i
@@ -87,10 +89,10 @@ contains
     setup%materials = deck%materials
     setup%laminate = deck%laminate
     setup%delaminations = deck%delaminations
-    setup%plate%length = 2*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
+    setup%plate%length = cells*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
     setup%plate%edges = edge_free
     setup%plate%symmetry = symmetry_none
-    setup%mesh = mesh_t(elements=2, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
+    setup%mesh = mesh_t(elements=cells, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
     do i = 1, size(setup%delaminations)
       associate (d => setup%delaminations(i))
         d%zone = setup%plate%length

@@ -7,9 +7,11 @@ module cohesive_points
   use cohesive_laws, only: cohesive_law_t, stiffness_of
   use surface_friction, only: sliding_t
   use kinds, only: wp
+  use roundings, only: rounding
   implicit none
   private
-  public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, point_class, opened, &
+  public :: cohesive_point_t, separation_t, cohesive_traction, separation_of, grown_damage, may_grow, &
+            point_class, opened, &
             undamaged_energy, stored_energy, mode_mixture, dissipated_fraction, fraction_growth, damage_at_fraction
 
   !> Classes of points: undamaged, damaged without growth, with growing damage in this state, failed.
@@ -54,9 +56,13 @@ contains
     type(cohesive_point_t), intent(out) :: new
     type(separation_t) :: separation
 
-    separation = separation_of(law, jumps)
-    new%damage = grown_damage(law, separation, old)
-    new%dissipated = old%dissipated + separation%toughness*fraction_growth(law, old%damage, new%damage)
+    new%damage = old%damage
+    new%dissipated = old%dissipated
+    if (may_grow(law, jumps, old)) then
+      separation = separation_of(law, jumps)
+      new%damage = grown_damage(law, separation, old)
+      new%dissipated = old%dissipated + separation%toughness*fraction_growth(law, old%damage, new%damage)
+    end if
     traction = ((1 - new%damage)*stiffness_of(law))*opened(jumps)
   end subroutine cohesive_traction
 
@@ -97,6 +103,25 @@ contains
       separation%ratio = size*unit_ratio
     end if
   end function separation_of
+
+  !> False where trial jumps certainly do not increase the damage: N Y = x**2 G_c on the curve, and the toughness of a
+  !> mixture of modes is at least that of the weaker pure mode. It saves the power of the mixture.
+  pure logical function may_grow(law, jumps, old)
+    type(cohesive_law_t), intent(in) :: law
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(3)
+    !> The point in the last accepted state
+    type(cohesive_point_t), intent(in) :: old
+    real(wp) :: ratio
+
+    may_grow = old%damage < 1
+    if (.not. may_grow) return
+    associate (n => law%failure_ratio)
+      ratio = n/(n - old%damage*(n - 1))
+      may_grow = .not. n*undamaged_energy(law, jumps) &
+                 < (1 - rounding)*min(law%toughness_opening, law%toughness_shear)*ratio**2
+    end associate
+  end function may_grow
 
   !> Damage with trial jumps: d = N (x - 1)/(x (N - 1)) between onset and failure, not decreasing, theory (D2).
   pure real(wp) function grown_damage(law, separation, old) result(damage)
@@ -144,7 +169,7 @@ contains
     !> Two shears and opening
     real(wp), intent(in) :: jumps(3)
 
-    energy = sum(stiffness_of(law)*opened(jumps)**2)/2
+    energy = (law%stiffness_shear*(jumps(1)**2 + jumps(2)**2) + law%stiffness_opening*max(jumps(3), 0.0_wp)**2)/2
   end function undamaged_energy
 
   !> Recoverable energy per area, (1 - d) Y.

@@ -173,13 +173,13 @@ contains
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
       if (allocated(self%inertia%springs)) then
-        call self%rigs%add_spring_forces(self%inertia%springs, self%steps, u, v, self%force)
-        rates = v
+        call self%rigs%add_spring_forces(self%inertia, self%steps, u, v, self%force)
+        rates = v(:, self%inertia%sprung)
       end if
       call change_length(self, model, v, -1)
       call move_single(self, model, u, v)
       call move_stacks(self%nodal_steps_t, model, now%interfaces%cohesive, u, v)
-      if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia%springs, self%steps, rates, v)
+      if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia, self%steps, rates, v)
       call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)
@@ -245,7 +245,8 @@ contains
     real(wp) :: before(5)
     integer :: i, p
 
-    call move_points(self%unconstrained, self%inertia%inverse, self%steps%mean(), self%steps%now, self%force, u, v)
+    call move_points(size(u, 2), self%unconstrained, self%inertia%inverse, self%steps%mean(), self%steps%now, &
+                     self%force, u, v)
     do i = 1, size(self%constrained)
       p = self%constrained(i)
       if (self%lines%is_prescribed(p)) before = v(:, p)
@@ -268,17 +269,27 @@ contains
     type(state_t), intent(inout) :: now
 
     call model%profile%enter('element forces')
-    self%motion = now%motion%displacement
+    call multiply(size(self%motion), 1.0_wp, now%motion%displacement, self%motion)
     if (model%map%layered) call model%map%to_motion(self%motion)
     self%field = 0
     call now%plies%add_layer_forces(model, self%motion, self%field, self%strain)
     call model%borders%add(self%field)
-    self%force = -self%field(:, :size(self%force, 2))
+    call multiply(size(self%force), -1.0_wp, self%field, self%force)
     call model%profile%leave()
     call self%impact%patch%add_force(model%mesh%multiplicity, now%force, self%force)
     call add_clamp_forces(model, self%force)
     call self%inertia%fold(self%force)
   end subroutine find_forces
+
+  !> A field times a factor, in one loop over all of its values.
+  pure subroutine multiply(values, factor, field, product)
+    !> Number of values, the first of the field
+    integer, intent(in) :: values
+    real(wp), intent(in) :: factor, field(values)
+    real(wp), intent(out) :: product(values)
+
+    product = factor*field
+  end subroutine multiply
 
   !> Adds the forces of pressure and lines to those on the layers, and records their work in the step.
   subroutine add_loads(self, model, now, load_factors)

@@ -6,9 +6,8 @@
 !> the law stores and dissipates, theory (T10): a discrete gradient, as in O. Gonzalez, Journal of Nonlinear Science 6
 !> (1996) 449-467.
 module damaged_stacks
-  use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
-  use cohesive_points, only: grown_damage, opened, separation_of
+  use cohesive_points, only: grown_damage, may_grow, opened, separation_of
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use models, only: model_t
@@ -34,7 +33,6 @@ contains
     real(wp), intent(in) :: u(:, :)
     !> Jumps without tractions, (3, n)
     real(wp), intent(in) :: trial(:, :)
-    type(cohesive_surfaces_t) :: surfaces
     integer :: j
 
     associate (q => p + work%n)
@@ -46,16 +44,16 @@ contains
       work%points = cohesive%points(p + 1:q)
     end associate
     do j = 1, work%n
-      surfaces = cohesive%surfaces_of(model, p + j)
-      work%closing(j) = surfaces%closing
-      work%friction(j)%coefficient = surfaces%friction
+      work%surfaces(j) = cohesive%surfaces_of(model, p + j)
+      work%closing(j) = work%surfaces(j)%closing
+      work%friction(j)%coefficient = work%surfaces(j)%friction
       associate (sticking => stacks%history%sticking(:, p + j))
         work%friction(j)%past = past_jumps(work%start(1:2, j) - work%points(j)%sliding%slip, sticking(1:2), &
                                            sticking(3:4))
       end associate
       associate (change => stacks%history%change(:, p + j), earlier => stacks%history%earlier(:, p + j))
         work%given(:, j) = past_jumps(work%start(:, j), change, earlier)
-        if (surfaces%closing) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))
+        if (work%closing(j)) work%given(3, j) = past_openings(work%start(3, j), change(3), earlier(3))
       end associate
       work%secant(:, j) = (1 - work%points(j)%damage)*[1.0_wp, cohesive%opening(p + j)]*work%stiffness(:, j)
       work%given(:, j) = work%secant([1, 1, 2], j)*work%given(:, j)
@@ -64,17 +62,14 @@ contains
   end subroutine load_stack
 
   !> Forces of a damaged stack, with corrections where damage grows.
-  pure subroutine solve_damaged(stacks, work, model, steps, cohesive, p)
+  pure subroutine solve_damaged(stacks, work, steps, p)
     type(interface_stacks_t), intent(in) :: stacks
     !> The stack; receives the forces
     type(stack_t), intent(inout) :: work
-    type(model_t), intent(in) :: model
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    type(cohesive_interfaces_t), intent(in) :: cohesive
     !> First point of the stack
     integer, intent(in) :: p
-    type(cohesive_surfaces_t) :: surfaces
     real(wp) :: jumps(3, work%n), energy, damage
     logical :: grows
     integer :: j
@@ -84,18 +79,13 @@ contains
     jumps = jumps_of(work)
     grows = .false.
     do j = 1, work%n
-      if (.not. work%points(j)%damage < 1) cycle
-      surfaces = cohesive%surfaces_of(model, p + j)
-      associate (law => surfaces%law)
-        energy = (law%stiffness_shear*(jumps(1, j)**2 + jumps(2, j)**2) &
-                  + law%stiffness_opening*max(jumps(3, j), 0.0_wp)**2)/2
-        ! N Y = G_c at the onset; the toughness of a mixture of modes is at least that of the weaker pure mode.
-        if (energy*law%failure_ratio < min(law%toughness_opening, law%toughness_shear)) cycle
+      associate (law => work%surfaces(j)%law)
+        if (.not. may_grow(law, jumps(:, j), work%points(j))) cycle
+        damage = grown_damage(law, separation_of(law, jumps(:, j)), work%points(j))
       end associate
-      damage = grown_damage(surfaces%law, separation_of(surfaces%law, jumps(:, j)), work%points(j))
       if (.not. damage > work%points(j)%damage) cycle
       grows = .true.
-      energy = surfaces%work(work%start(:, j), jumps(:, j), work%points(j), damage)
+      energy = work%surfaces(j)%work(work%start(:, j), jumps(:, j), work%points(j), damage)
       call correct_force(work, j, jumps(:, j), stacks%history%last_change(p + j, steps%kept), &
                          (stacks%area(p + j)*energy + stacks%history%work(p + j))/2)
     end do

@@ -92,22 +92,17 @@ contains
     logical, intent(out) :: reaches_onset(lanes)
     real(wp), dimension(lanes, 5, batch%n + 1) :: displacement, rates, loads, velocity
     real(wp), dimension(lanes, 3, batch%n) :: tractions, before, change, last
-    real(wp), dimension(lanes, batch%n) :: lost, min_onset
-    integer :: lane, p, q
+    real(wp) :: lost(lanes, 2, batch%n), min_onset(lanes, batch%n)
 
-    associate (n => batch%n, history => stacks%history)
-      do lane = 1, lanes
-        p = batch%first(lane)
-        q = p + n
-        displacement(lane, :, :) = u(:, p:q)
-        rates(lane, :, :) = v(:, p:q)
-        loads(lane, :, :) = force(:, p:q)
-        last(lane, :, :) = history%change(:, p + 1:q)
-        change(lane, :, :) = history%earlier(:, p + 1:q)
-        before(lane, :, :) = history%forces(:, p + 1:q)
-        lost(lane, :) = history%lost(2, p + 1:q)
-        min_onset(lane, :) = stacks%min_onset(p + 1:q)
-      end do
+    associate (n => batch%n, history => stacks%history, points => size(stacks%height))
+      call take(5, points, u, batch%first, n + 1, displacement)
+      call take(5, points, v, batch%first, n + 1, rates)
+      call take(5, points, force, batch%first, n + 1, loads)
+      call take(3, points, history%change, batch%first + 1, n, last)
+      call take(3, points, history%earlier, batch%first + 1, n, change)
+      call take(3, points, history%forces, batch%first + 1, n, before)
+      call take(2, points, history%lost, batch%first + 1, n, lost)
+      call take(1, points, stacks%min_onset, batch%first + 1, n, min_onset)
       call find_velocities(n, batch%height, rates, velocity)
       call accelerate(n + 1, batch%inverse, steps%mean(), loads, velocity)
       call find_tractions(n, batch%height, batch%factors, steps%now, velocity, displacement, last, change, tractions)
@@ -117,18 +112,49 @@ contains
       call find_losses(n, batch%stiffness, steps, displacement, change, last, tractions, before, lost)
       displacement = displacement + steps%now*rates
       reaches_onset = may_start(n, batch%stiffness, min_onset, displacement)
-      do lane = 1, lanes
-        p = batch%first(lane)
-        q = p + n
-        u(:, p:q) = displacement(lane, :, :)
-        v(:, p:q) = rates(lane, :, :)
-        history%earlier(:, p + 1:q) = last(lane, :, :)
-        history%change(:, p + 1:q) = change(lane, :, :)
-        history%forces(:, p + 1:q) = tractions(lane, :, :)
-        history%lost(2, p + 1:q) = lost(lane, :)
-      end do
+      call put(5, points, displacement, batch%first, n + 1, u)
+      call put(5, points, rates, batch%first, n + 1, v)
+      call put(3, points, last, batch%first + 1, n, history%earlier)
+      call put(3, points, change, batch%first + 1, n, history%change)
+      call put(3, points, tractions, batch%first + 1, n, history%forces)
+      call put(2, points, lost, batch%first + 1, n, history%lost)
     end associate
   end subroutine move_intact
+
+  !> Values of consecutive points from the first of each lane on. Arrays of explicit shape, here and in `put`, let the
+  !> compiler unroll the loop over the values of a point.
+  pure subroutine take(values, points, field, first, rows, taken)
+    !> Number of values of a point, and of points
+    integer, intent(in) :: values, points
+    real(wp), intent(in) :: field(values, points)
+    !> The first point of each lane, and number of consecutive points
+    integer, intent(in) :: first(lanes), rows
+    real(wp), intent(out) :: taken(lanes, values, rows)
+    integer :: lane, l
+
+    do l = 1, rows
+      do lane = 1, lanes
+        taken(lane, :, l) = field(:, first(lane) + l - 1)
+      end do
+    end do
+  end subroutine take
+
+  !> Reverse of `take`.
+  pure subroutine put(values, points, taken, first, rows, field)
+    !> Number of values of a point, and of points
+    integer, intent(in) :: values, points
+    !> The first point of each lane, and number of consecutive points
+    integer, intent(in) :: first(lanes), rows
+    real(wp), intent(in) :: taken(lanes, values, rows)
+    real(wp), intent(inout) :: field(values, points)
+    integer :: lane, l
+
+    do l = 1, rows
+      do lane = 1, lanes
+        field(:, first(lane) + l - 1) = taken(lane, :, l)
+      end do
+    end do
+  end subroutine put
 
   !> Velocities of the layers from the rates of the unknowns.
   pure subroutine find_velocities(n, height, rates, velocity)
@@ -282,8 +308,8 @@ contains
     real(wp), intent(in) :: change(lanes, 3, n), last(lanes, 3, n)
     !> Forces on the jumps in this step and in the last
     real(wp), intent(in) :: forces(lanes, 3, n), before(lanes, 3, n)
-    !> The losses
-    real(wp), intent(inout) :: lost(lanes, n)
+    !> By contact, and algorithmic
+    real(wp), intent(inout) :: lost(lanes, 2, n)
     real(wp) :: work(lanes, 3), stored(lanes, 3), damped(lanes), shift(lanes)
     integer :: j, k
 
@@ -296,7 +322,8 @@ contains
         stored(:, k) = stiffness(:, merge(2, 1, k == 3), j)*change(:, k, j) &
                        *(displacement(:, k, j + 1) + (displacement(:, k, j + 1) + change(:, k, j)))
       end do
-      lost(:, j) = lost(:, j) + (work(:, 1) + work(:, 2) + work(:, 3)) - (stored(:, 1) + stored(:, 2) + stored(:, 3))/2
+      lost(:, 2, j) = lost(:, 2, j) + (work(:, 1) + work(:, 2) + work(:, 3)) &
+                      - (stored(:, 1) + stored(:, 2) + stored(:, 3))/2
     end do
   end subroutine find_losses
 

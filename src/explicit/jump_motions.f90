@@ -86,18 +86,16 @@ contains
   end subroutine start_damage
 
   !> Updates jumps, damage and friction of a damaged stack, and records the work of the tractions.
-  subroutine advance_points(nodes, i, model, forces, cohesive, u, v)
-    !> The nodes, with friction in the work array of the stack
+  subroutine advance_points(nodes, i, forces, cohesive, u, v)
+    !> The nodes, with laws and friction in the work array of the stack
     type(nodal_steps_t), intent(inout) :: nodes
     !> Index of the stack
     integer, intent(in) :: i
-    type(model_t), intent(in) :: model
     !> Forces on the jumps, (3, n)
     real(wp), intent(in) :: forces(:, :)
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), intent(inout) :: u(:, :), v(:, :)
-    type(cohesive_surfaces_t) :: surfaces
     type(cohesive_point_t) :: old
     real(wp) :: change(3), last(3), before(3), traction(3), work, in_contact, growth
     integer :: j, p
@@ -105,17 +103,17 @@ contains
     associate (stacks => nodes%stacks, history => nodes%stacks%history, steps => nodes%steps)
       do j = 1, size(forces, 2)
         p = stacks%first(i) + j
-        surfaces = cohesive%surfaces_of(model, p)
         change = steps%now*v(1:3, p)
         last = history%last_change(p, steps%kept)
         before = u(1:3, p)
         u(1:3, p) = before + change
         work = work_of(stacks, p, steps, forces(:, j), change)
         in_contact = 0
-        if (surfaces%closing) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
+        if (nodes%workspaces(size(forces, 2))%closing(j)) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
         old = cohesive%points(p)
         associate (new => cohesive%points(p), area => stacks%area(p), &
-                   friction => nodes%workspaces(size(forces, 2))%friction(j))
+                   friction => nodes%workspaces(size(forces, 2))%friction(j), &
+                   surfaces => nodes%workspaces(size(forces, 2))%surfaces(j))
           old%sliding%limit = friction%limit/area
           call surfaces%traction(u(1:3, p), old, traction, new)
           if (surfaces%friction > 0) then

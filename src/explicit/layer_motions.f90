@@ -69,17 +69,17 @@ contains
   end subroutine accelerate_layers
 
   !> Updates unconstrained points with one layer.
-  pure subroutine move_points(points, inverse, mean, step, force, u, v)
-    !> The points
-    integer, intent(in) :: points(:)
-    !> Inverse inertia, (7, points of this rank)
-    real(wp), contiguous, intent(in) :: inverse(:, :)
+  pure subroutine move_points(total, points, inverse, mean, step, force, u, v)
+    !> Number of points of this rank, and those to be updated
+    integer, intent(in) :: total, points(:)
+    !> Inverse inertia
+    real(wp), intent(in) :: inverse(7, total)
     !> Time between the velocities before and after, and length of the step
     real(wp), intent(in) :: mean, step
-    !> Forces on the layers, (5, points of this rank)
-    real(wp), contiguous, intent(in) :: force(:, :)
-    !> Unknowns and their rates, (5, points of this rank)
-    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
+    !> Forces on the layers
+    real(wp), intent(in) :: force(5, total)
+    !> Unknowns and their rates
+    real(wp), intent(inout) :: u(5, total), v(5, total)
     integer :: i, p
 
     do i = 1, size(points)

@@ -26,6 +26,8 @@ module nodal_inertia
     logical, allocatable :: constrained(:, :)
     !> Stiffness of springs on the unknowns of the first layer, treated implicitly, (5, points); unallocated: none
     real(wp), allocatable :: springs(:, :)
+    !> Points with springs
+    integer, allocatable :: sprung(:)
     !> Inverse of inertia and implicit springs, zero for constrained unknowns, (7, points)
     real(wp), allocatable :: inverse(:, :)
     !> Dependent points and their masters, (dependents)
@@ -118,6 +120,7 @@ contains
     end if
     if (model%rig%elastic) self%springs(1:3, :) = self%springs(1:3, :) + model%rig%springs
     call fold_mass(self, self%springs)
+    self%sprung = pack([(i, i=1, size(self%springs, 2))], any(self%springs > 0, 1))
   end subroutine find_springs
 
   !> Computes the inverse for a step length, with the stiffness of springs times its square.

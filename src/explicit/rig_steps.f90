@@ -8,6 +8,7 @@ module rig_steps
   use interface_stacks, only: last_layer
   use kinds, only: wp
   use models, only: model_t
+  use nodal_inertia, only: nodal_inertia_t
   use step_lengths, only: step_lengths_t
   implicit none
   private
@@ -87,41 +88,41 @@ contains
   end subroutine stop_at_frame
 
   !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
-  pure subroutine add_spring_forces(self, springs, steps, u, v, force)
+  pure subroutine add_spring_forces(self, inertia, steps, u, v, force)
     class(rig_steps_t), intent(in) :: self
-    !> Stiffness, (5, points)
-    real(wp), intent(in) :: springs(:, :)
+    !> The springs
+    type(nodal_inertia_t), intent(in) :: inertia
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Unknowns and their rates, (5, points)
     real(wp), intent(in) :: u(:, :), v(:, :)
     !> Forces on the layers, (5, points)
     real(wp), intent(inout) :: force(:, :)
-    integer :: p
+    integer :: i, p
 
-    do p = 1, size(springs, 2)
-      if (.not. any(springs(:, p) > 0)) cycle
-      force(:, p) = force(:, p) - springs(:, p)*(u(:, p) + steps%now*v(:, p))
+    do i = 1, size(inertia%sprung)
+      p = inertia%sprung(i)
+      force(:, p) = force(:, p) - inertia%springs(:, p)*(u(:, p) + steps%now*v(:, p))
     end do
   end subroutine add_spring_forces
 
   !> Records the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
   !> the sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
   !> (v_old**2 + v**2)/4), where the change of step length is recorded with the force -k (u_old + h v_old).
-  pure subroutine record_springs(self, springs, steps, before, after)
+  pure subroutine record_springs(self, inertia, steps, before, after)
     class(rig_steps_t), intent(inout) :: self
-    !> Stiffness, (5, points)
-    real(wp), intent(in) :: springs(:, :)
+    !> The springs
+    type(nodal_inertia_t), intent(in) :: inertia
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    !> Rates of the unknowns before the step and after it, (5, points)
+    !> Rates of the unknowns before the step, (5, points with springs), and after it, (5, points)
     real(wp), intent(in) :: before(:, :), after(:, :)
-    integer :: p
+    integer :: i, p
 
-    do p = 1, size(springs, 2)
-      if (.not. any(springs(:, p) > 0)) cycle
-      associate (old => before(:, p), new => after(:, p))
-        self%step_loss(p) = self%step_loss(p) + steps%now/2*sum(springs(:, p)*( &
+    do i = 1, size(inertia%sprung)
+      p = inertia%sprung(i)
+      associate (old => before(:, i), new => after(:, p))
+        self%step_loss(p) = self%step_loss(p) + steps%now/2*sum(inertia%springs(:, p)*( &
           steps%now*(old + new)*new - (steps%now - steps%last)/2*(old**2 + new**2)))
       end associate
     end do

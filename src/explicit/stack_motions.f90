@@ -31,8 +31,8 @@ contains
     do n = 1, size(work)
       work(n)%n = n
       allocate (work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), work(n)%trial(3, n), &
-                work(n)%start(3, n), work(n)%points(n), work(n)%closing(n), work(n)%friction(n), work(n)%secant(2, n), &
-                work(n)%given(3, n), work(n)%forces(3, n), work(n)%normal_stiffness(n))
+                work(n)%start(3, n), work(n)%points(n), work(n)%surfaces(n), work(n)%closing(n), work(n)%friction(n), &
+                work(n)%secant(2, n), work(n)%given(3, n), work(n)%forces(3, n), work(n)%normal_stiffness(n))
     end do
   end function new_workspaces
 
@@ -118,7 +118,7 @@ contains
       v(1:3, p + 1:q) = rates
       v(4:5, p + 1:q) = layer(4:5, 2:)
       if (stacks%damaged(i)) then
-        call advance_points(nodes, i, model, forces, cohesive, u, v)
+        call advance_points(nodes, i, forces, cohesive, u, v)
       else
         call advance_intact(nodes, i, model, forces, cohesive, u, v)
       end if
@@ -162,7 +162,7 @@ contains
                from => nodes%stacks%first(i) + 1, to => nodes%stacks%first(i) + size(trial, 2))
       if (stacks%damaged(i)) then
         call load_stack(stacks, work, model, cohesive, p, u, trial)
-        call solve_damaged(stacks, work, model, nodes%steps, cohesive, p)
+        call solve_damaged(stacks, work, nodes%steps, p)
         forces = work%forces
       else
         past = past_jumps(u(1:3, from:to), stacks%history%change(:, from:to), stacks%history%earlier(:, from:to))

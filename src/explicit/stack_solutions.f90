@@ -5,6 +5,7 @@
 !> are solved first; their pressure limits friction in the same step (return mapping of the trial shear traction).
 module stack_solutions
   use cohesive_points, only: cohesive_point_t
+  use cohesive_surfaces, only: cohesive_surfaces_t
   use kinds, only: wp
   use tridiagonal_systems, only: solve_tractions
   use weighted_jumps, only: newest
@@ -42,6 +43,8 @@ module stack_solutions
     real(wp), allocatable :: secant(:, :), given(:, :)
     !> Damage and sliding at the start
     type(cohesive_point_t), allocatable :: points(:)
+    !> Their laws at the start
+    type(cohesive_surfaces_t), allocatable :: surfaces(:)
     !> True: surfaces do not penetrate each other
     logical, allocatable :: closing(:)
     !> Friction

@@ -5,7 +5,7 @@ module ply_strains
   use plies, only: ply_t
   implicit none
   private
-  public :: strain_moments_t, strain_moments, strains_of_ply, values_of, moments_from
+  public :: strain_moments_t, strains_of_ply, moments_from, invariant_measure
 
   !> Number of values of the means.
   integer, parameter, public :: moment_values = 33
@@ -20,52 +20,28 @@ module ply_strains
 
 contains
 
-  !> Means over an element of its strains and of their products.
-  pure function strain_moments(weight, strains) result(moments)
-    !> Area of each point
-    real(wp), intent(in) :: weight(:)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy, (points, 6)
-    real(wp), intent(in) :: strains(:, :)
-    !> The means
-    type(strain_moments_t) :: moments
-    real(wp) :: product(6), share, area
-    integer :: g, i
+  !> Root mean square of strains in the measure of `onset_strain`, which is invariant under rotation.
+  pure real(wp) function invariant_measure(products) result(size)
+    !> Means of their products
+    real(wp), intent(in) :: products(3, 3)
 
-    area = sum(weight)
-    do g = 1, size(weight)
-      share = weight(g)/area
-      moments%mean = moments%mean + share*strains(g, :)
-      do i = 1, 3
-        product = share*strains(g, :)*strains(g, i)
-        moments%membrane(:, i) = moments%membrane(:, i) + product(1:3)
-        moments%mixed(:, i) = moments%mixed(:, i) + product(4:6)
-        moments%curvature(:, i) = moments%curvature(:, i) + share*strains(g, 4:6)*strains(g, 3 + i)
-      end do
-    end do
-  end function strain_moments
+    size = sqrt(products(1, 1) + products(2, 2) + products(3, 3)/2)
+  end function invariant_measure
 
-  !> The means in one array.
-  pure function values_of(moments) result(values)
-    !> The means
-    type(strain_moments_t), intent(in) :: moments
-    !> Strains, then products
-    real(wp) :: values(moment_values)
-
-    values = [moments%mean, reshape(moments%membrane, [9]), reshape(moments%mixed, [9]), &
-              reshape(moments%curvature, [9])]
-  end function values_of
-
-  !> The means from the result of `values_of`.
+  !> The means from one array.
   pure function moments_from(values) result(moments)
-    !> Strains, then products
+    !> Strains, then the three products
     real(wp), intent(in) :: values(moment_values)
     !> The means
     type(strain_moments_t) :: moments
+    integer :: i
 
     moments%mean = values(:6)
-    moments%membrane = reshape(values(7:15), [3, 3])
-    moments%mixed = reshape(values(16:24), [3, 3])
-    moments%curvature = reshape(values(25:33), [3, 3])
+    do i = 1, 3
+      moments%membrane(:, i) = values(3*i + 4:3*i + 6)
+      moments%mixed(:, i) = values(3*i + 13:3*i + 15)
+      moments%curvature(:, i) = values(3*i + 22:3*i + 24)
+    end do
   end function moments_from
 
   !> Strains of a ply in its material axes, minus stress-free strains.

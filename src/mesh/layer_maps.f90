@@ -51,8 +51,8 @@ contains
   !> Motion of every layer from the unknowns, in place. Points of a node follow each other downwards.
   pure subroutine to_motion(self, field)
     class(layer_map_t), intent(in) :: self
-    !> Unknowns on entry, motion on return, (5, points)
-    real(wp), intent(inout) :: field(:, :)
+    !> Unknowns on entry, motion on return
+    real(wp), intent(inout) :: field(5, size(self%above))
     integer :: i
 
     do i = 1, size(self%above)

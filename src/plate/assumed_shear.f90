@@ -128,7 +128,7 @@ contains
     integer, intent(in) :: offset, along, across
     !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
-    real(wp) :: total, half, minus, plus, x_minus, x_plus, y_minus, y_plus
+    real(wp) :: total, half, minus, plus, x_minus, x_plus, y_minus, y_plus, sums(lanes, 3, 3)
     integer :: line, n1, n2, n3, s1, s2, lane
 
     do line = 1, 3
@@ -137,6 +137,7 @@ contains
       n3 = n2 + along
       s1 = offset + 2*line - 1
       s2 = s1 + 1
+      ! The loop over lanes is vectorised if it stores nothing to f, as the compiler does not know that the nodes differ.
       do lane = 1, lanes
         total = 0.5_wp*(shear(lane, 1, line) + shear(lane, 2, line) + shear(lane, 3, line))
         half = half_stretch*(shear(lane, 3, line) - shear(lane, 1, line))
@@ -146,16 +147,19 @@ contains
         x_plus = tangents(lane, s2, 1)*plus
         y_minus = tangents(lane, s1, 2)*minus
         y_plus = tangents(lane, s2, 2)*plus
-        f(lane, n1, 3) = f(lane, n1, 3) + gauss2*(plus - minus) - 0.5_wp*(plus + minus)
-        f(lane, n2, 3) = f(lane, n2, 3) - 2.0_wp*gauss2*(plus - minus)
-        f(lane, n3, 3) = f(lane, n3, 3) + gauss2*(plus - minus) + 0.5_wp*(plus + minus)
-        f(lane, n1, 4) = f(lane, n1, 4) + sixth*(x_plus + x_minus) - 0.5_wp*gauss2*(x_plus - x_minus)
-        f(lane, n2, 4) = f(lane, n2, 4) + two_thirds*(x_plus + x_minus)
-        f(lane, n3, 4) = f(lane, n3, 4) + sixth*(x_plus + x_minus) + 0.5_wp*gauss2*(x_plus - x_minus)
-        f(lane, n1, 5) = f(lane, n1, 5) + sixth*(y_plus + y_minus) - 0.5_wp*gauss2*(y_plus - y_minus)
-        f(lane, n2, 5) = f(lane, n2, 5) + two_thirds*(y_plus + y_minus)
-        f(lane, n3, 5) = f(lane, n3, 5) + sixth*(y_plus + y_minus) + 0.5_wp*gauss2*(y_plus - y_minus)
+        sums(lane, 1, 1) = f(lane, n1, 3) + gauss2*(plus - minus) - 0.5_wp*(plus + minus)
+        sums(lane, 1, 2) = f(lane, n2, 3) - 2.0_wp*gauss2*(plus - minus)
+        sums(lane, 1, 3) = f(lane, n3, 3) + gauss2*(plus - minus) + 0.5_wp*(plus + minus)
+        sums(lane, 2, 1) = f(lane, n1, 4) + sixth*(x_plus + x_minus) - 0.5_wp*gauss2*(x_plus - x_minus)
+        sums(lane, 2, 2) = f(lane, n2, 4) + two_thirds*(x_plus + x_minus)
+        sums(lane, 2, 3) = f(lane, n3, 4) + sixth*(x_plus + x_minus) + 0.5_wp*gauss2*(x_plus - x_minus)
+        sums(lane, 3, 1) = f(lane, n1, 5) + sixth*(y_plus + y_minus) - 0.5_wp*gauss2*(y_plus - y_minus)
+        sums(lane, 3, 2) = f(lane, n2, 5) + two_thirds*(y_plus + y_minus)
+        sums(lane, 3, 3) = f(lane, n3, 5) + sixth*(y_plus + y_minus) + 0.5_wp*gauss2*(y_plus - y_minus)
       end do
+      f(:, n1, 3:5) = sums(:, :, 1)
+      f(:, n2, 3:5) = sums(:, :, 2)
+      f(:, n3, 3:5) = sums(:, :, 3)
     end do
   end subroutine add_line_forces
 end module assumed_shear

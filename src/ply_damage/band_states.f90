@@ -92,7 +92,7 @@ contains
     logical :: failed(failure_modes)
 
     associate (state => self%trial(self%offset(element) + ply))
-      failed = state%damage([1, 2, 2]) >= 1
+      failed = [state%damage(1) >= 1, state%damage(2) >= 1, state%damage(2) >= 1]
       if (.not. failed(matrix_cracking)) return
       failed(matrix_crushing) = state%dissipated(matrix_compression) > state%dissipated(matrix_tension)
       failed(matrix_cracking) = .not. failed(matrix_crushing)

@@ -21,10 +21,10 @@ module crack_band_sections
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
-  use ply_strains, only: strain_moments_t, strain_moments
+  use ply_strains, only: invariant_measure, moment_values, moments_from, strain_moments_t
   use section_laws, only: section_law_t
   use stacking, only: in_plane_section
-  use strain_bounds, only: largest_strains
+  use strain_bounds, only: largest_strains, strain_moments
   implicit none
   private
   public :: crack_band_sections_t, new_crack_band_sections
@@ -53,8 +53,8 @@ module crack_band_sections
     real(wp), allocatable :: area(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
-    !> Strain below which damage starts in no ply of the laminate
-    real(wp), private :: onset = 0
+    !> Strain below which damage does not start in each ply, and distance of its outer face from the middle surface
+    real(wp), allocatable, private :: onset(:), height(:)
     !> True for elements with damage in the trial, (elements)
     logical, allocatable, private :: touched(:)
   contains
@@ -98,8 +98,8 @@ contains
       self%signs = new_mean_sections(model)
       self%tensile = self%free
     end if
-    self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
-                 - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
+    self%onset = [(onset_strain(self%bands(i)) - norm2(self%plies(i)%free_strain), i=1, size(self%bands))]
+    self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
     self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
@@ -131,17 +131,18 @@ contains
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
-    real(wp) :: bounds(lanes)
+    real(wp) :: bounds(lanes), moments(lanes, moment_values)
     integer :: lane, element
 
     bounds = largest_strains(self%plies, weight, strains)
+    moments = strain_moments(weight, strains)
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
       if (.not. self%joined%shares(element)) cycle
-      associate (first => self%states%range(1, element), last => self%states%range(2, element))
-        call self%joined%accumulate_strains(element, strain_moments(weight(lane, :), strains(lane, :, :)), &
-                                            bounds(lane), first, self%plies(first:last), self%bands(first:last), &
-                                            self%states%of_element(element))
+      associate (first => self%states%range(1, element), last => self%states%range(2, element), &
+                 offset => self%states%offset(element))
+        call self%joined%accumulate_strains(element, moments(lane, :), bounds(lane), first, self%plies(first:last), &
+                                            self%bands(first:last), self%states%accepted(offset + first:offset + last))
       end associate
     end do
   end subroutine accumulate_strains
@@ -167,16 +168,23 @@ contains
     real(wp), intent(inout) :: stiffness(lanes, 21)
     !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
-    real(wp) :: bounds(lanes)
+    real(wp) :: bounds(lanes), moments(lanes, moment_values), onset
+    logical :: has_moments
     integer :: lane, element
 
     bounds = largest_strains(self%plies, weight, strains)
+    onset = minval(self%onset)
+    has_moments = .false.
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
       if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
-      if (.not. self%touched(element) .and. bounds(lane) < self%onset) cycle
+      if (.not. self%touched(element) .and. bounds(lane) < onset) cycle
+      if (.not. (self%keeps_damage .or. has_moments)) then
+        moments = strain_moments(weight, strains)
+        has_moments = .true.
+      end if
       if (.not. self%keeps_damage) &
-        call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
+        call soften_element(self, element, moments_from(moments(lane, :)), stiffness(lane, :))
       if (allocated(self%signs)) then
         self%tensile(lane, :, b) = self%free_resultants_of(element)
       else if (present(free)) then
@@ -230,22 +238,34 @@ contains
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(21)
     type(band_strains_t) :: strains
+    type(strain_moments_t) :: joined
     real(wp), allocatable :: means(:)
-    real(wp) :: before(3), normal(2)
+    real(wp) :: before(3), normal(2), membrane, curvature
     logical :: changed
     integer :: ply
 
     changed = .false.
     self%touched(element) = .false.
-    if (self%joined%shares(element)) means = self%joined%means_of(element)
+    joined = moments
+    if (self%joined%shares(element)) then
+      means = self%joined%means_of(element)
+      joined = moments_from(means(:moment_values))
+    end if
+    membrane = invariant_measure(joined%membrane)
+    curvature = invariant_measure(joined%curvature)
     associate (first => self%states%range(1, element), last => self%states%range(2, element))
       do ply = first, last
         associate (old => self%states%accepted(self%states%offset(element) + ply), &
                    new => self%states%trial(self%states%offset(element) + ply))
           before = stiffness_lost(new)
-          normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
           new = old
-          call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, means, new, strains)
+          ! The bound of `strain_bounds` for one ply.
+          if (.not. is_damaged(old) .and. membrane + self%height(ply)*curvature < self%onset(ply)) then
+            changed = changed .or. any(abs(before) > 0)
+            cycle
+          end if
+          normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
+          call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
           ! Mean width of the elements normal to a straight crack.
           call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                              dot_product(normal, self%sides([2, 1], element))], strains, old, new)

@@ -14,7 +14,7 @@ module joined_elements
   use layered_meshes, only: layered_mesh_t
   use models, only: model_t
   use plies, only: ply_t
-  use ply_strains, only: strain_moments_t, moment_values, strains_of_ply, values_of, moments_from
+  use ply_strains, only: strain_moments_t, moment_values, strains_of_ply, moments_from
   implicit none
   private
   public :: joined_elements_t, find_joined_elements, find_elastic_strains
@@ -176,12 +176,12 @@ contains
   end function shares
 
   !> Stores an element's strains.
-  pure subroutine accumulate_strains(self, element, moments, bound, first, plies, bands, states)
+  pure subroutine accumulate_strains(self, element, values, bound, first, plies, bands, states)
     class(joined_elements_t), intent(inout) :: self
     !> Element of this rank that shares its state
     integer, intent(in) :: element
-    !> Its strains
-    type(strain_moments_t), intent(in) :: moments
+    !> Its strains, from `strain_moments`
+    real(wp), intent(in) :: values(moment_values)
     !> Upper bound of the strains of its plies
     real(wp), intent(in) :: bound
     !> First ply of the element
@@ -197,10 +197,11 @@ contains
     integer :: ply
 
     associate (column => self%moments(:, self%number(element)))
-      column(:moment_values + 1) = [values_of(moments), bound]
+      column(:moment_values) = values
+      column(moment_values + 1) = bound
       if (size(column) == moment_values + 1) return
       do ply = 1, size(plies)
-        strains = strains_of_ply(plies(ply), moments)
+        strains = strains_of_ply(plies(ply), moments_from(values))
         state = states(ply)
         call flow_band(bands(ply), strains, state)
         column(moment_values + first + ply) = strains%shear_square
@@ -222,34 +223,47 @@ contains
     integer, intent(in) :: element
     !> The means, without the bound of strains
     real(wp), allocatable :: means(:)
-    integer, allocatable :: its(:)
+    real(wp) :: total
+    integer :: i
 
-    its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
-    means = matmul(self%moments(:, its), self%area(its))/sum(self%area(its))
-    means = [means(:moment_values), means(moment_values + 2:)]
+    associate (parts => self%parts(:, self%number(element)))
+      allocate (means(size(self%moments, 1)), source=0.0_wp)
+      total = 0
+      do i = 1, most
+        if (parts(i) == 0) exit
+        means = means + self%moments(:, parts(i))*self%area(parts(i))
+        total = total + self%area(parts(i))
+      end do
+      means = [means(:moment_values), means(moment_values + 2:)]/total
+    end associate
   end function means_of
 
   !> Elastic strains of a ply of an element with those joined with it, and the permanent shear strain of this element.
-  pure subroutine find_elastic_strains(number, ply, band, moments, means, state, strains)
+  pure subroutine find_elastic_strains(number, ply, band, moments, joined, means, state, strains)
     !> Number of the ply
     integer, intent(in) :: number
     type(ply_t), intent(in) :: ply
     !> Its law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the element
-    type(strain_moments_t), intent(in) :: moments
-    !> Means of it and those joined with it; absent: there are none
+    !> Strains of the element, and means of it and those joined with it
+    type(strain_moments_t), intent(in) :: moments, joined
+    !> The result of `means_of`; absent: there are no others
     real(wp), intent(in), optional :: means(:)
     !> The ply in the last accepted state; receives its permanent strain
     type(band_state_t), intent(inout) :: state
     !> The elastic strains
     type(band_strains_t), intent(out) :: strains
+    type(band_strains_t) :: own
 
-    strains = strains_of_ply(ply, moments)
-    call flow_band(band, strains, state)
-    if (.not. present(means)) return
-    strains = strains_of_ply(ply, moments_from(means(:moment_values)))
-    if (band%permanent_shear) strains%shear_square = means(moment_values + number)
+    strains = strains_of_ply(ply, joined)
+    if (.not. band%permanent_shear) return
+    if (.not. present(means)) then
+      call flow_band(band, strains, state)
+      return
+    end if
+    own = strains_of_ply(ply, moments)
+    call flow_band(band, own, state)
+    strains%shear_square = means(moment_values + number)
   end subroutine find_elastic_strains
 
   !> Upper bound of the strains of all plies of an element and those joined with it.
@@ -257,9 +271,13 @@ contains
     class(joined_elements_t), intent(in) :: self
     !> Element of this rank that shares its state
     integer, intent(in) :: element
-    integer, allocatable :: its(:)
+    integer :: i
 
-    its = pack(self%parts(:, self%number(element)), self%parts(:, self%number(element)) > 0)
-    bound = maxval(self%moments(moment_values + 1, its))
+    associate (parts => self%parts(:, self%number(element)))
+      bound = self%moments(moment_values + 1, parts(1))
+      do i = 2, most
+        if (parts(i) > 0) bound = max(bound, self%moments(moment_values + 1, parts(i)))
+      end do
+    end associate
   end function bound_of
 end module joined_elements

@@ -1,11 +1,13 @@
-!> Bounds that exclude elements in which no ply can be damaged.
+!> Strains of a batch of elements that determine the damage of their plies, and bounds that exclude elements in which no
+!> ply can be damaged.
 module strain_bounds
   use element_batches, only: lanes
   use kinds, only: wp
   use plies, only: ply_t
+  use ply_strains, only: moment_values
   implicit none
   private
-  public :: largest_strains
+  public :: largest_strains, strain_moments
 
 contains
 
@@ -33,4 +35,49 @@ contains
     height = max(abs(plies(1)%z_top), abs(plies(size(plies))%z_bottom))
     bounds = sqrt(membrane/area) + height*sqrt(curvature/area)
   end function largest_strains
+
+  !> Means over each element of its strains and of their products.
+  pure function strain_moments(weight, strains) result(moments)
+    !> Area of each Gauss point
+    real(wp), intent(in) :: weight(lanes, 9)
+    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
+    real(wp), intent(in) :: strains(lanes, 9, 6)
+    !> In the order of `moments_from`
+    real(wp) :: moments(lanes, moment_values)
+    real(wp) :: share(lanes), area(lanes), mean(lanes, 6)
+    real(wp), dimension(lanes, 3, 3) :: membrane, mixed, curvature
+    integer :: g, i, k, lane
+
+    area = tiny(area)
+    do g = 1, 9
+      area = area + weight(:, g)
+    end do
+    mean = 0
+    membrane = 0
+    mixed = 0
+    curvature = 0
+    do g = 1, 9
+      share = weight(:, g)/area
+      do k = 1, 6
+        do lane = 1, lanes
+          mean(lane, k) = mean(lane, k) + share(lane)*strains(lane, g, k)
+        end do
+      end do
+      do i = 1, 3
+        do k = 1, 3
+          do lane = 1, lanes
+            membrane(lane, k, i) = membrane(lane, k, i) + share(lane)*strains(lane, g, k)*strains(lane, g, i)
+            mixed(lane, k, i) = mixed(lane, k, i) + share(lane)*strains(lane, g, 3 + k)*strains(lane, g, i)
+            curvature(lane, k, i) = curvature(lane, k, i) + share(lane)*strains(lane, g, 3 + k)*strains(lane, g, 3 + i)
+          end do
+        end do
+      end do
+    end do
+    moments(:, :6) = mean
+    do i = 1, 3
+      moments(:, 3*i + 4:3*i + 6) = membrane(:, :, i)
+      moments(:, 3*i + 13:3*i + 15) = mixed(:, :, i)
+      moments(:, 3*i + 22:3*i + 24) = curvature(:, :, i)
+    end do
+  end function strain_moments
 end module strain_bounds

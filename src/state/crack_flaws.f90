@@ -29,15 +29,19 @@ contains
     !> The interfaces in the accepted state
     type(interface_state_t), intent(inout) :: interfaces
     real(wp), allocatable :: strains(:, :)
+    logical :: beside(size(model%mesh%zones)), cracked(product(model%mesh%cells))
     integer :: zone, ply
 
     if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
-    do zone = 1, size(model%mesh%zones)
-      associate (delamination => model%setup%delaminations(zone), below => model%mesh%zones(zone)%below_ply)
-        if (delamination%law /= law_cohesive .or. delamination%flaw_strength >= 1) cycle
-        do ply = below, below + 1
-          call weaken_beside(interfaces%cohesive, model, zone, cracked_cells(model, plies, ply), &
-                             block_thickness(model%plies, ply), delamination%flaw_strength)
+    do ply = 1, size(model%plies)
+      associate (below => model%mesh%zones%below_ply, delaminations => model%setup%delaminations)
+        beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &
+                 delaminations%flaw_strength < 1
+        if (.not. any(beside)) cycle
+        cracked = cracked_cells(model, plies, ply)
+        do zone = 1, size(beside)
+          if (beside(zone)) call weaken_beside(interfaces%cohesive, model, zone, cracked, &
+                                               block_thickness(model%plies, ply), delaminations(zone)%flaw_strength)
         end do
       end associate
     end do

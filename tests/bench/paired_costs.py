@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Cost of implicit runs relative to an older program: steps of large plates, Sun and Chen's plate, peanut, thresholds,
-specimens under load steps. Both programs run alternately. See README.md."""
+"""Cost of runs relative to an older program: implicit steps of large plates, Sun and Chen's plate, thresholds,
+specimens under load steps, and impacts by central differences that delaminate and break. Both programs run alternately.
+See README.md."""
 import argparse
 import os
 import pathlib
@@ -28,6 +29,15 @@ def stored(name, *settings):
     return change_deck(text, settings)
 
 
+def impact(name, *settings):
+    """A deck of the folder input with changed keys, by central differences."""
+    return change_deck(INPUT.joinpath(name).read_text(), ["time%integrator='central_difference'", *settings])
+
+
+PANEL, ANGLES = 'experiments/t700_m21_25J.nml', 'experiments/im7_8552_d7136_30J.nml'
+COARSE = ['mesh%elements=20, 30', 'mesh%cell=3e-3']
+PLIES_32 = ["laminate%stacking='[45/0/-45/90]4s'", 'impactor%energy=27', 'time%end=2e-3', 'output%history_every=4e-6']
+
 # Name: deck, whether only the steps are compared, and the limit of the ratio; for sun_chen that of the difference, s.
 CASES = {
     'plate, linear, a step': (lambda: plate('linear', 71, 100), True, 1.4),
@@ -39,6 +49,14 @@ CASES = {
     'li2002': (lambda: stored('li2002.nml'), False, 2),
     'peanut, implicit': (lambda: stored('peanut.nml', *IMPLICIT_PEANUT), False, 2),
     'crossply_threshold': (lambda: stored('crossply_threshold.nml'), False, 2),
+    'peanut': (lambda: impact('peanut.nml'), False, 0.5),
+    '22 interfaces': (lambda: impact(ANGLES), False, 0.65),
+    '32 plies, 2 ms': (lambda: impact(ANGLES, *PLIES_32), False, 0.65),
+    '25 J, cells of 1.5 mm': (lambda: impact(PANEL), False, 0.65),
+    '25 J, cells of 3 mm': (lambda: impact(PANEL, *COARSE), False, 0.7),
+    'breaking rounds': (lambda: impact('small/breaking_rounds.nml'), False, 0.7),
+    'breaking panel': (lambda: impact('breaking_panel.nml'), False, 0.7),
+    'sun_chen, central differences': (lambda: impact('sun_chen.nml'), False, 1),
 }
 
 
@@ -60,6 +78,7 @@ def main():
     parser.add_argument('program')
     parser.add_argument('old', help='path of the older implam')
     parser.add_argument('--only', nargs='+', choices=CASES, default=list(CASES))
+    parser.add_argument('--until', type=float, help='end of the impacts by central differences, s; default: their own')
     parser.add_argument('--repeat', type=int, default=3, help='runs of each; the median of the ratios is printed')
     arguments = parser.parse_args()
     programs = [os.path.abspath(arguments.old), os.path.abspath(arguments.program)]
@@ -67,7 +86,10 @@ def main():
     print('|---|---|---|---|---|---|')
     for name in arguments.only:
         deck, steps_alone, limit = CASES[name]
-        pairs = [[measure(program, deck(), steps_alone) for program in programs] for _ in range(arguments.repeat)]
+        text = deck()
+        if arguments.until and "'central_difference'" in text:
+            text = change_deck(text, [f'time%end={arguments.until}'])
+        pairs = [[measure(program, text, steps_alone) for program in programs] for _ in range(arguments.repeat)]
         old, new = (statistics.median(pair[i][0] for pair in pairs) for i in (0, 1))
         figure = f'{statistics.median(pair[1][0]/pair[0][0] for pair in pairs):.2f}'
         bound = f'{limit:g}'
