@@ -106,15 +106,22 @@ class Circle:
         means = [ratio[(grown >= k) & (grown < k + 1)].mean() for k in range(1, 6) if grown[-1] >= k + 1]
         return grown[-1], means
 
-    def shape(self, place):
-        """Return radii of the delamination along x, y and a diagonal over that of equal area, of half the toughness."""
+    def axes(self, place):
+        """Return the ratio of the axes of the delamination, and the angle of the longer one, by second moments."""
         with h5py.File(place/"circle.h5") as file:
-            print(list(file)[:20])
+            mesh, last = (file[group][max(file[group])] for group in ("meshes", "times"))
+            corners = mesh["coordinates"][:, :2][mesh["connectivity"][:]]
+            weight = last["cells/delaminated_above"][:]*np.prod(np.ptp(corners, axis=1), axis=1)
+        x, y = corners.mean(axis=1).T
+        product = 0.0 if not self.turned else (weight*x*y).sum()
+        moments = np.array([[(weight*x*x).sum(), product], [product, (weight*y*y).sum()]])
+        sizes, directions = np.linalg.eigh(moments)
+        return math.sqrt(sizes[1]/sizes[0]), math.degrees(math.atan2(directions[1, 1], directions[0, 1])) % 180
 
 
 def main(implam, folder, cases, cells, control="energy"):
     """Run the plates and print a row of the table for each."""
-    print("| case | cells, mm | cells grown | load over closed form, five cells | least and largest of a cell |")
+    print("| case | cells, mm | cells grown | load over closed form | least and largest mean of a cell | ratio of axes, angle |")
     for case in cases.split(","):
         for cell in cells.split(","):
             circle = Circle(case, 1e-3*float(cell))
@@ -125,8 +132,8 @@ def main(implam, folder, cases, cells, control="energy"):
                 run([implam, place/"deck.nml", "--output", place], check=True, capture_output=True)
             grown, means = circle.figures(place)
             print(f"| {case} | {cell} | {grown:.1f} | {sum(means)/max(1, len(means)):.3f} | "
-                  f"{min(means, default=0):.3f}, {max(means, default=0):.3f} | {' '.join(f'{m:.3f}' for m in means)}",
-                  flush=True)
+                  f"{min(means, default=0):.3f}, {max(means, default=0):.3f} | "
+                  "{:.3f}, {:.0f} |".format(*circle.axes(place)), flush=True)
 
 
 if __name__ == "__main__":
