@@ -23,7 +23,7 @@ module crack_bands
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, flow_band, soften_band, &
-            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, stiffness_lost
+            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, stiffness_lost, tensile_stress
 
   !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
   !> iterations are usual.
@@ -301,6 +301,20 @@ contains
       signs(2) = linear_softening_of(exposure, energy, g(fibre_compression), length, fibre_compression)
     end associate
   end subroutine soften_fibres
+
+  !> Undamaged stress of fibres in tension, which their exposure compares with XT.
+  pure real(wp) function tensile_stress(band, strains, state) result(stress)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Strains of the ply without permanent ones
+    type(band_strains_t), intent(in) :: strains
+    !> The ply with these strains
+    type(band_state_t), intent(in) :: state
+    real(wp) :: size, weights(2)
+
+    call find_strain_alone(band%elasticity, strains, remaining_fractions(band, state), 1, size, weights)
+    stress = weights(1)*band%elasticity%e1*size
+  end function tensile_stress
 
   !> Exposure of compressed fibres to kinking. The stresses across the fibres and in shear are those that the damaged
   !> matrix transfers: a failed matrix leaves XC.

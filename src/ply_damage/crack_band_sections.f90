@@ -9,8 +9,8 @@ module crack_band_sections
   use band_states, only: band_states_t, new_band_states
   use crack_closures, only: closing_resultants
   use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
-                         is_damaged, stiffness_lost
-  use crack_band_limits, only: onset_strain
+                         is_damaged, stiffness_lost, tensile_stress
+  use crack_band_limits, only: onset_strain, strain_of_stress
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
@@ -25,6 +25,7 @@ module crack_band_sections
   use section_laws, only: section_law_t
   use stacking, only: in_plane_section
   use strain_bounds, only: largest_strains
+  use stressed_volumes, only: factor_of, stressed_volumes_t, new_stressed_volumes
   implicit none
   private
   public :: crack_band_sections_t, new_crack_band_sections
@@ -39,6 +40,8 @@ module crack_band_sections
     real(wp), allocatable :: free(:, :, :)
     !> Sections against mean strains, where plies have E1c; unallocated: they have not
     type(mean_sections_t), allocatable :: signs
+    !> Volumes that the tensile strength of fibres depends on; unallocated: it does not
+    type(stressed_volumes_t), allocatable :: volumes
     !> True while plies keep their damage, during the transfer of a state to other layers
     logical :: keeps_damage = .false.
     !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
@@ -51,6 +54,8 @@ module crack_band_sections
     real(wp), allocatable, private :: sides(:, :)
     !> Area of each element, (elements)
     real(wp), allocatable :: area(:)
+    !> Tensile strengths along the fibres for the reference volume
+    real(wp), allocatable, private :: tensile_strengths(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
     !> Strain below which damage starts in no ply of the laminate
@@ -64,6 +69,7 @@ module crack_band_sections
     procedure :: exchange
     procedure :: commit
     procedure :: commit_sections
+    procedure :: update_strengths
     procedure :: dissipation_sums
     procedure :: dissipated
     procedure :: elasticity
@@ -98,9 +104,11 @@ contains
       self%signs = new_mean_sections(model)
       self%tensile = self%free
     end if
-    self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))]) &
-                 - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
+    self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))])
     self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
+    self%tensile_strengths = self%bands%along(1)
+    if (model%setup%ply_damage%weibull_modulus > 0) call add_volumes(self, model)
+    self%onset = self%onset - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
     allocate (self%touched(model%elements%elements), source=.false.)
@@ -112,6 +120,22 @@ contains
       end associate
     end do
   end function new_crack_band_sections
+
+  !> Adds the stressed volumes. The onset of damage is lowered to the smallest stress that contributes to them, where
+  !> the volume is that of all plies.
+  subroutine add_volumes(self, model)
+    type(crack_band_sections_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    real(wp) :: least
+    integer :: i
+
+    self%volumes = new_stressed_volumes(self%plies, model%setup%ply_damage, size(self%states%trial))
+    least = self%volumes%smallest_share()*min(1.0_wp, factor_of(model%setup%ply_damage, &
+                                                                product(model%setup%plate%length)*model%thickness))
+    do i = 1, size(self%bands)
+      self%onset = min(self%onset, strain_of_stress(self%bands(i), least*self%tensile_strengths(i)))
+    end do
+  end subroutine add_volumes
 
   !> True for a batch with elements that share their state.
   pure logical function needs_joined_strains(self, b)
@@ -174,6 +198,7 @@ contains
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
       if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
+      if (allocated(self%volumes)) call self%volumes%clear(self%states, element)
       if (.not. self%touched(element) .and. bounds(lane) < self%onset) cycle
       if (.not. self%keeps_damage) &
         call soften_element(self, element, strain_moments(weight(lane, :), strains(lane, :, :)), stiffness(lane, :))
@@ -249,6 +274,8 @@ contains
           ! Mean width of the elements normal to a straight crack.
           call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                              dot_product(normal, self%sides([2, 1], element))], strains, old, new)
+          if (allocated(self%volumes)) &
+            self%volumes%stress(self%states%offset(element) + ply) = tensile_stress(self%bands(ply), strains, new)
           changed = changed .or. any(abs(stiffness_lost(new) - before) > 0)
           self%touched(element) = self%touched(element) .or. is_damaged(new)
         end associate
@@ -288,6 +315,27 @@ contains
         free(lane_of(element), :, batch_of(element)) = self%free(lane_of(element), :, batch_of(element))
     end do
   end subroutine commit_sections
+
+  !> Tensile strengths of fibres for their stressed volumes in the accepted state, which must be the last trial; those
+  !> loaded remain until there is a trial. Collective.
+  subroutine update_strengths(self, model)
+    class(crack_band_sections_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+
+    if (.not. allocated(self%volumes)) return
+    call self%volumes%update(model%communicator, self%states, self%plies, self%area, model%mesh%multiplicity)
+    call set_strengths(self)
+  end subroutine update_strengths
+
+  !> Tensile strengths of fibres for their stressed volumes.
+  pure subroutine set_strengths(self)
+    type(crack_band_sections_t), intent(inout) :: self
+    integer :: ply
+
+    do ply = 1, size(self%bands)
+      self%bands(ply)%along(1) = self%tensile_strengths(ply)*self%volumes%factor(ply)
+    end do
+  end subroutine set_strengths
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
   pure function dissipation_sums(self) result(energies)
@@ -360,7 +408,9 @@ contains
     integer :: element
 
     call self%states%visit(archive, model)
+    if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return
+    if (allocated(self%volumes)) call set_strengths(self)
     do element = 1, size(self%touched)
       self%touched(element) = self%states%damaged(element)
     end do

@@ -54,6 +54,7 @@ module ply_failures
     procedure :: record
     procedure :: measure_lag
     procedure :: total_dissipation
+    procedure :: stressed_volume
     procedure :: strained_plies
     procedure :: carried_by_cracks
     procedure :: failed
@@ -130,6 +131,9 @@ contains
     real(wp) :: energy
 
     if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
+      ! Before the forces, not after them: a restart, which computes the last forces again, then does so with the
+      ! strengths that they had.
+      call self%bands%update_strengths(model)
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       call self%bands%commit_sections(self%stiffness, self%free)
@@ -235,6 +239,18 @@ contains
     end if
   end function elasticity
 
+  !> Stressed volume of the fibres of a ply at their first failure in tension; 0: they have not failed, or their
+  !> strength does not depend on it.
+  pure real(wp) function stressed_volume(self, ply) result(volume)
+    class(ply_failure_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+
+    volume = 0
+    if (.not. allocated(self%bands)) return
+    if (allocated(self%bands%volumes)) volume = self%bands%volumes%volume_at_failure(ply)
+  end function stressed_volume
+
   !> Neighbouring plies of an element with their permanent strains.
   pure function strained_plies(self, model, first, last, element) result(plies)
     class(ply_failure_t), intent(in) :: self
@@ -286,6 +302,7 @@ contains
 
     if (allocated(self%bands)) then
       call self%bands%commit()
+      call self%bands%update_strengths(model)
       return
     end if
     if (.not. model%setup%has_ply_damage) return

@@ -43,7 +43,8 @@ _COMPRESSION = dict.fromkeys(("residual_strength", "residual_strength_at", "shor
                              float) | {"has_failed": bool, "failure_code": OrNull(str), "collapse": _COLLAPSE}
 _POSSIBLE = dict.fromkeys(_FIGURES, _FIGURE) | dict.fromkeys(_ENERGIES, float) | _COMPRESSION | {
     "in_contact": bool, "interfaces": [_INTERFACE], "force_filter": {"frequency": float, "peak_force": float}}
-_POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float)
+_POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float) | \
+    dict.fromkeys(("stressed_volume", "fibre_strength"), OrNull(float))
 
 
 def missing_member(summary: Mapping[str, Any]) -> str:
