@@ -41,7 +41,7 @@ module ply_damage_deck
     'ply_damage | fibre_compression | choice | 1 | - | ''strength'' | strength kinking | &
       &Failure of compressed fibres: at XC, or by kinking under compression and shear (Davila et al. 2005).', &
     'ply_damage | weibull_modulus | real | 1 | - | none | >= 1 | &
-      &Weibull modulus of the tensile strength of fibres: XT grows as the stressed volume falls; left out: XT is constant.', &
+      &Weibull modulus of the fibres in tension: in small stressed volumes XT is larger; left out: XT is constant.', &
     'ply_damage | reference_volume | real | 1 | volume | = 3750 mm3 | > 0 | &
       &Stressed volume of the specimens that XT was measured on; 3750 mm3 is 250 mm by 15 mm by 1 mm.']
   !> Its default in cubic metres: the gauge length of a tension specimen after ASTM D3039, 250 x 15 x 1 mm.

@@ -10,7 +10,7 @@ module crack_band_sections
   use crack_closures, only: closing_resultants
   use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
                          is_damaged, stiffness_lost, tensile_stress
-  use crack_band_limits, only: onset_strain, strain_of_stress
+  use crack_band_limits, only: onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
   use free_strains, only: free_resultants
@@ -25,7 +25,7 @@ module crack_band_sections
   use section_laws, only: section_law_t
   use stacking, only: in_plane_section
   use strain_bounds, only: largest_strains
-  use stressed_volumes, only: factor_of, stressed_volumes_t, new_stressed_volumes
+  use stressed_volumes, only: stressed_volumes_t, new_stressed_volumes
   implicit none
   private
   public :: crack_band_sections_t, new_crack_band_sections
@@ -54,8 +54,6 @@ module crack_band_sections
     real(wp), allocatable, private :: sides(:, :)
     !> Area of each element, (elements)
     real(wp), allocatable :: area(:)
-    !> Tensile strengths along the fibres for the reference volume
-    real(wp), allocatable, private :: tensile_strengths(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
     !> Strain below which damage starts in no ply of the laminate
@@ -106,8 +104,11 @@ contains
     end if
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))])
     self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
-    self%tensile_strengths = self%bands%along(1)
-    if (model%setup%ply_damage%weibull_modulus > 0) call add_volumes(self, model)
+    if (model%setup%ply_damage%weibull_modulus > 0) then
+      self%volumes = new_stressed_volumes(self%plies, self%bands, model%setup%ply_damage, size(self%states%trial))
+      self%onset = min(self%onset, self%volumes%least_strain(self%bands, product(model%setup%plate%length) &
+                                                                         *model%thickness))
+    end if
     self%onset = self%onset - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
@@ -120,22 +121,6 @@ contains
       end associate
     end do
   end function new_crack_band_sections
-
-  !> Adds the stressed volumes. The onset of damage is lowered to the smallest stress that contributes to them, where
-  !> the volume is that of all plies.
-  subroutine add_volumes(self, model)
-    type(crack_band_sections_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
-    real(wp) :: least
-    integer :: i
-
-    self%volumes = new_stressed_volumes(self%plies, model%setup%ply_damage, size(self%states%trial))
-    least = self%volumes%smallest_share()*min(1.0_wp, factor_of(model%setup%ply_damage, &
-                                                                product(model%setup%plate%length)*model%thickness))
-    do i = 1, size(self%bands)
-      self%onset = min(self%onset, strain_of_stress(self%bands(i), least*self%tensile_strengths(i)))
-    end do
-  end subroutine add_volumes
 
   !> True for a batch with elements that share their state.
   pure logical function needs_joined_strains(self, b)
@@ -324,18 +309,8 @@ contains
 
     if (.not. allocated(self%volumes)) return
     call self%volumes%update(model%communicator, self%states, self%plies, self%area, model%mesh%multiplicity)
-    call set_strengths(self)
+    self%bands%along(1) = self%volumes%strengths()
   end subroutine update_strengths
-
-  !> Tensile strengths of fibres for their stressed volumes.
-  pure subroutine set_strengths(self)
-    type(crack_band_sections_t), intent(inout) :: self
-    integer :: ply
-
-    do ply = 1, size(self%bands)
-      self%bands(ply)%along(1) = self%tensile_strengths(ply)*self%volumes%factor(ply)
-    end do
-  end subroutine set_strengths
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
   pure function dissipation_sums(self) result(energies)
@@ -410,7 +385,7 @@ contains
     call self%states%visit(archive, model)
     if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return
-    if (allocated(self%volumes)) call set_strengths(self)
+    if (allocated(self%volumes)) self%bands%along(1) = self%volumes%strengths()
     do element = 1, size(self%touched)
       self%touched(element) = self%states%damaged(element)
     end do

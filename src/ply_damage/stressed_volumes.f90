@@ -7,6 +7,8 @@
 module stressed_volumes
   use archives, only: archive_t
   use band_states, only: band_states_t
+  use crack_band_limits, only: strain_of_stress
+  use crack_bands, only: crack_band_t
   use communicators, only: communicator_t
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
@@ -28,6 +30,8 @@ module stressed_volumes
     real(wp), allocatable :: stress(:)
     !> Weibull modulus, and the volume for which XT holds
     real(wp), private :: modulus = 0, reference = 0
+    !> Strength of each ply for that volume
+    real(wp), allocatable, private :: xt(:)
     !> First ply of the block of each ply
     integer, allocatable, private :: block(:)
     !> Stressed volume of the block that begins with each ply, of the full plate; 0: its fibres are not in tension
@@ -35,8 +39,10 @@ module stressed_volumes
     !> 1: fibres of the block have failed, and its volume is constant, otherwise 0
     real(wp), allocatable, private :: failed(:)
   contains
-    procedure :: smallest_share
+    procedure :: least_strain
     procedure :: factor
+    procedure :: strengths
+    procedure, private :: smallest_share
     procedure :: volume_at_failure
     procedure :: clear
     procedure :: update
@@ -46,9 +52,11 @@ module stressed_volumes
 contains
 
   !> Volumes of plies without load.
-  pure function new_stressed_volumes(plies, damage, states) result(self)
+  pure function new_stressed_volumes(plies, bands, damage, states) result(self)
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
+    !> Their laws
+    type(crack_band_t), intent(in) :: bands(:)
     type(ply_damage_t), intent(in) :: damage
     !> Number of plies of all elements
     integer, intent(in) :: states
@@ -57,6 +65,7 @@ contains
 
     self%modulus = damage%weibull_modulus
     self%reference = damage%reference_volume
+    self%xt = bands%along(1)
     allocate (self%stress(states), self%volume(size(plies)), self%failed(size(plies)), source=0.0_wp)
     allocate (self%block(size(plies)))
     do ply = 1, size(plies)
@@ -71,6 +80,30 @@ contains
 
     share = neglected**(1/self%modulus)
   end function smallest_share
+
+  !> A strain below which no ply contributes to the volume of a block, in the measure of `onset_strain`.
+  pure real(wp) function least_strain(self, bands, largest) result(strain)
+    class(stressed_volumes_t), intent(in) :: self
+    !> Laws of the plies
+    type(crack_band_t), intent(in) :: bands(:)
+    !> Volume of the plate
+    real(wp), intent(in) :: largest
+    real(wp) :: share
+    integer :: i
+
+    share = self%smallest_share()*min(1.0_wp, (self%reference/largest)**(1/self%modulus))
+    strain = minval([(strain_of_stress(bands(i), share*self%xt(i)), i=1, size(bands))])
+  end function least_strain
+
+  !> Tensile strengths of the plies.
+  pure function strengths(self)
+    class(stressed_volumes_t), intent(in) :: self
+    !> One a ply
+    real(wp) :: strengths(size(self%xt))
+    integer :: i
+
+    strengths = [(self%xt(i)*self%factor(i), i=1, size(self%xt))]
+  end function strengths
 
   !> Tensile strength of a ply over XT; 1 as long as its fibres have not been in tension.
   pure real(wp) function factor(self, ply)

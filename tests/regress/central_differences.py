@@ -51,7 +51,7 @@ MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
           "permanent": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "ply_damage%permanent_shear=.true.",
                                                      "material%shear_failure_strain=0.05",
                                                      "ply_damage%weibull_modulus=41",
-                                                     "ply_damage%reference_volume=3750e-9"]),
+                                                     "ply_damage%reference_volume=3750e-9", "material%XT=1000e6"]),
           "long_cells": ("../which_interfaces.nml", [EXPLICIT, "time%end=800e-6", "mesh%elements=10,20",
                                                      "mesh%cell=4e-3"]),
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT]),
