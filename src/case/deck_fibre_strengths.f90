@@ -16,8 +16,8 @@ module deck_fibre_strengths
   private
   public :: check_fibre_strengths, fibre_factors, block_volumes
 
-  !> Ratios of the reference volume to that of the plate beyond which it is probably in another unit: specimens have 1 to
-  !> 1e5 mm3, plates 1e3 to 1e8 mm3, and metres in place of millimetres change the ratio by 1e9.
+  !> Ratios of the reference volume to that of the plate beyond which it is probably in another unit: specimens have 1
+  !> to 1e5 mm3, plates 1e3 to 1e8 mm3, and metres in place of millimetres change the ratio by 1e9.
   real(wp), parameter :: usual_ratios(2) = [1.0e-8_wp, 1.0e3_wp]
 
 contains
@@ -50,10 +50,9 @@ contains
     end associate
   end subroutine check_fibre_strengths
 
-  !> Bounds of the stressed volume of the blocks of a material: that of its thinnest block in the smallest cell, and that
-  !> of its thickest block in the plate.
+  !> Bounds of the stressed volume of the blocks of a material: that of its thinnest block in the smallest cell, and
+  !> that of its thickest block in the plate.
   pure function block_volumes(deck, place) result(volumes)
-    !> The deck, without faults
     type(deck_t), intent(in) :: deck
     !> Index of the material, the first of equal ones
     integer, intent(in) :: place
@@ -77,7 +76,6 @@ contains
 
   !> Largest and smallest tensile strength of the fibres of a material over XT.
   pure function fibre_factors(deck, place) result(factors)
-    !> The deck, without faults
     type(deck_t), intent(in) :: deck
     !> Index of the material, the first of equal ones
     integer, intent(in) :: place
