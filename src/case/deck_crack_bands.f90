@@ -8,6 +8,7 @@ module deck_crack_bands
   use deck_fibre_strengths, only: check_fibre_strengths, fibre_factors
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, remark_idle, are_clear
+  use deck_strain_rates, only: check_strain_rates
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use larc_criteria, only: larc_objection
@@ -37,10 +38,13 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
+    logical :: softens
     integer :: i
 
-    call check_fibre_strengths(deck, any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))]), problems)
-    if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) then
+    softens = any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])
+    call check_fibre_strengths(deck, softens, problems)
+    call check_strain_rates(deck, softens, problems)
+    if (.not. softens) then
       if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
       if (deck%ply_damage%permanent_shear) call report(deck%settings, problems, ply_damage_group, key_permanent, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')

@@ -271,6 +271,7 @@ contains
     self%motion = now%motion%displacement
     if (model%map%layered) call model%map%to_motion(self%motion)
     self%field = 0
+    call now%plies%note_step(self%steps%now)
     call now%plies%add_layer_forces(model, self%motion, self%field, self%strain)
     call model%borders%add(self%field)
     self%force = -self%field(:, :size(self%force, 2))

@@ -17,6 +17,7 @@ module crack_band_sections
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
+  use loading_rates, only: loading_rates_t, new_loading_rates
   use mean_sections, only: mean_sections_t, new_mean_sections
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
@@ -40,19 +41,18 @@ module crack_band_sections
     real(wp), allocatable :: free(:, :, :)
     !> Sections against mean strains, where plies have E1c; unallocated: they have not
     type(mean_sections_t), allocatable :: signs
-    !> Volumes that the tensile strength of fibres depends on; unallocated: it does not
+    !> Stressed volumes and strain rates that strengths depend on; unallocated: they do not
     type(stressed_volumes_t), allocatable :: volumes
+    type(loading_rates_t), allocatable :: rates
     !> True while plies keep their damage, during the transfer of a state to other layers
     logical :: keeps_damage = .false.
     !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
     real(wp), allocatable, private :: tensile(:, :, :)
-    !> Plies of the laminate
+    !> Plies of the laminate, and their laws
     type(ply_t), allocatable, private :: plies(:)
-    !> Their laws
     type(crack_band_t), allocatable, private :: bands(:)
-    !> Sides along x and y of each element with those that share its state, (2, elements)
+    !> Sides along x and y of each element with those that share its state, (2, elements), and its own area
     real(wp), allocatable, private :: sides(:, :)
-    !> Area of each element, (elements)
     real(wp), allocatable :: area(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
@@ -71,7 +71,6 @@ module crack_band_sections
     procedure :: dissipation_sums
     procedure :: dissipated
     procedure :: elasticity
-    !> Adjacent plies of an element with their permanent strains; resultants of stress-free strains.
     procedure :: strained
     procedure, private :: free_resultants_of
     procedure, private :: signed_resultants
@@ -105,10 +104,11 @@ contains
     self%onset = minval([(onset_strain(self%bands(i)), i=1, size(self%bands))])
     self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
     if (model%setup%ply_damage%weibull_modulus > 0) then
-      self%volumes = new_stressed_volumes(self%plies, self%bands, model%setup%ply_damage, size(self%states%trial))
-      self%onset = min(self%onset, self%volumes%least_strain(self%bands, product(model%setup%plate%length) &
-                                                                         *model%thickness))
+      self%volumes = new_stressed_volumes(model, self%bands, size(self%states%trial))
+      self%onset = min(self%onset, self%volumes%least_strain(self%bands))
     end if
+    if (model%setup%has_rates()) self%rates = new_loading_rates(model, size(self%states%trial))
+    if (model%setup%counts_rates()) self%onset = 0
     self%onset = self%onset - maxval([(norm2(self%plies(i)%free_strain), i=1, size(self%plies))])
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
@@ -241,12 +241,13 @@ contains
     real(wp), intent(inout) :: stiffness(21)
     type(band_strains_t) :: strains
     real(wp), allocatable :: means(:)
-    real(wp) :: before(3), normal(2)
+    real(wp) :: before(3), normal(2), factor
     logical :: changed
     integer :: ply
 
     changed = .false.
     self%touched(element) = .false.
+    factor = 1
     if (self%joined%shares(element)) means = self%joined%means_of(element)
     associate (first => self%states%range(1, element), last => self%states%range(2, element))
       do ply = first, last
@@ -256,9 +257,13 @@ contains
           normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
           new = old
           call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, means, new, strains)
+          if (allocated(self%rates)) &
+            call self%rates%find_factor(self%states%offset(element) + ply, self%plies(ply), self%bands(ply), moments, &
+                                        means, factor)
           ! Mean width of the elements normal to a straight crack.
           call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
-                                             dot_product(normal, self%sides([2, 1], element))], strains, old, new)
+                                             dot_product(normal, self%sides([2, 1], element))], strains, old, new, &
+                           factor)
           if (allocated(self%volumes)) &
             self%volumes%stress(self%states%offset(element) + ply) = tensile_stress(self%bands(ply), strains, new)
           changed = changed .or. any(abs(stiffness_lost(new) - before) > 0)
@@ -278,6 +283,7 @@ contains
     class(crack_band_sections_t), intent(inout) :: self
     integer :: element
 
+    if (allocated(self%rates)) call self%rates%accept()
     do element = 1, size(self%touched)
       if (self%touched(element)) call self%states%accept(element)
     end do
@@ -292,9 +298,9 @@ contains
     real(wp), allocatable, intent(inout) :: free(:, :, :)
     integer :: element
 
+    call self%commit()
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
-      call self%states%accept(element)
       stiffness(lane_of(element), :, batch_of(element)) = self%stiffness(lane_of(element), :, batch_of(element))
       if (allocated(free)) &
         free(lane_of(element), :, batch_of(element)) = self%free(lane_of(element), :, batch_of(element))
@@ -383,6 +389,7 @@ contains
     integer :: element
 
     call self%states%visit(archive, model)
+    if (allocated(self%rates)) call self%rates%visit(archive, model, self%states%range, self%states%offset)
     if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return
     if (allocated(self%volumes)) self%bands%along(1) = self%volumes%strengths()

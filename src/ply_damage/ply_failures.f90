@@ -49,6 +49,7 @@ module ply_failures
     !> True while softening plies keep their stiffness, during the transfer of a state to other layers
     logical :: keeps_stiffness = .false.
   contains
+    procedure :: note_step
     procedure :: find_forces
     procedure :: add_layer_forces
     procedure :: record
@@ -87,6 +88,16 @@ contains
       self%mean_change = self%signs%signs%change
     end if
   end function new_ply_failure
+
+  !> Notes the length of a step, by which strain rates are found.
+  pure subroutine note_step(self, step)
+    class(ply_failure_t), intent(inout) :: self
+    !> Its length; 0: not in time
+    real(wp), intent(in) :: step
+
+    if (.not. allocated(self%bands)) return
+    if (allocated(self%bands%rates)) self%bands%rates%step = step
+  end subroutine note_step
 
   !> Internal forces of the plate, with the stiffness reduced by softening under this displacement.
   subroutine find_forces(self, model, displacement, force, energy)

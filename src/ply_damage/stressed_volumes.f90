@@ -12,6 +12,7 @@ module stressed_volumes
   use communicators, only: communicator_t
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
+  use models, only: model_t
   use plies, only: ply_t
   use ply_blocks, only: block_of
   use ply_damage_parameters, only: fibre_tension, ply_damage_t
@@ -28,8 +29,8 @@ module stressed_volumes
   type :: stressed_volumes_t
     !> Undamaged tensile stress along the fibres of each ply of each element in the trial, at the places of the states
     real(wp), allocatable :: stress(:)
-    !> Weibull modulus, and the volume for which XT holds
-    real(wp), private :: modulus = 0, reference = 0
+    !> Weibull modulus, the volume for which XT holds, and that of the plate
+    real(wp), private :: modulus = 0, reference = 0, plate = 0
     !> Strength of each ply for that volume
     real(wp), allocatable, private :: xt(:)
     !> First ply of the block of each ply
@@ -52,24 +53,23 @@ module stressed_volumes
 contains
 
   !> Volumes of plies without load.
-  pure function new_stressed_volumes(plies, bands, damage, states) result(self)
-    !> Plies of the laminate
-    type(ply_t), intent(in) :: plies(:)
-    !> Their laws
+  function new_stressed_volumes(model, bands, states) result(self)
+    type(model_t), intent(in) :: model
+    !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
-    type(ply_damage_t), intent(in) :: damage
     !> Number of plies of all elements
     integer, intent(in) :: states
     type(stressed_volumes_t) :: self
     integer :: ply, range(2)
 
-    self%modulus = damage%weibull_modulus
-    self%reference = damage%reference_volume
+    self%modulus = model%setup%ply_damage%weibull_modulus
+    self%reference = model%setup%ply_damage%reference_volume
+    self%plate = product(model%setup%plate%length)*model%thickness
     self%xt = bands%along(1)
-    allocate (self%stress(states), self%volume(size(plies)), self%failed(size(plies)), source=0.0_wp)
-    allocate (self%block(size(plies)))
-    do ply = 1, size(plies)
-      range = block_of(plies, ply)
+    allocate (self%stress(states), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
+    allocate (self%block(size(bands)))
+    do ply = 1, size(bands)
+      range = block_of(model%plies, ply)
       self%block(ply) = range(1)
     end do
   end function new_stressed_volumes
@@ -82,16 +82,14 @@ contains
   end function smallest_share
 
   !> A strain below which no ply contributes to the volume of a block, in the measure of `onset_strain`.
-  pure real(wp) function least_strain(self, bands, largest) result(strain)
+  pure real(wp) function least_strain(self, bands) result(strain)
     class(stressed_volumes_t), intent(in) :: self
     !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
-    !> Volume of the plate
-    real(wp), intent(in) :: largest
     real(wp) :: share
     integer :: i
 
-    share = self%smallest_share()*min(1.0_wp, (self%reference/largest)**(1/self%modulus))
+    share = self%smallest_share()*min(1.0_wp, (self%reference/self%plate)**(1/self%modulus))
     strain = minval([(strain_of_stress(bands(i), share*self%xt(i)), i=1, size(bands))])
   end function least_strain
 
