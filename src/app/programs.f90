@@ -8,7 +8,7 @@ module programs
   use deck_symmetries, only: symmetry_sentence
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use scale_tables, only: scale_lines, strength_lines, toughness_lines
+  use scale_tables, only: scale_lines, strength_lines, volume_lines, toughness_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -234,7 +234,8 @@ contains
     if (lacks) call print_lines(communicator, [line_t(missing_start(deck))])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
-    call print_lines(communicator, [scale_lines(deck), strength_lines(deck), toughness_lines(deck)])
+    call print_lines(communicator, [scale_lines(deck), strength_lines(deck), volume_lines(deck), &
+                                      toughness_lines(deck)])
     model_size = size_of_model(deck%setup_t, is_explicit(deck%stepping))
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check

@@ -39,6 +39,8 @@ module run_figures
     integer :: failures(failure_modes) = 0
     !> Area in which each ply has failed in each mode, (modes, plies)
     real(wp), allocatable :: failed_area(:, :)
+    !> Stressed volume of the fibres of each ply at their first failure in tension; 0: they have not failed
+    real(wp), allocatable :: stressed_volume(:)
     !> Closed form of the delamination threshold force of each interface, for equal delaminations in all interfaces,
     !> (zones)
     real(wp), allocatable :: threshold(:)
@@ -59,13 +61,14 @@ contains
     !> Its results
     type(run_figures_t), intent(out) :: figures
     real(wp) :: bending, toughness(2)
-    integer :: zone, zones, along
+    integer :: zone, zones, along, ply
 
     figures%interfaces = figures_of(model, now%interfaces)
     figures%projected_areas = projected_areas_of(model, now%interfaces)
     figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
     figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)
+    figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, size(model%plies))]
     along = pressed_axis(model)
     if (along > 0) then
       figures%compressed = damage_of(model, now, along)

@@ -16,8 +16,9 @@ module summary_file
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
   use run_results, only: results_t
-  use text, only: line_t
   use steppers, only: stepper_t
+  use stressed_volumes, only: factor_of
+  use text, only: line_t
   implicit none
   private
   public :: summary_text
@@ -137,11 +138,33 @@ contains
         call json%put('fibre_failure_area', figures%failed_area(1, ply))
         call json%put('matrix_crack_area', figures%failed_area(2, ply))
         call json%put('matrix_crushing_area', figures%failed_area(3, ply))
+        if (deck%ply_damage%weibull_modulus > 0) call put_strength(json, deck, figures%stressed_volume(ply), ply)
       end if
       call json%close()
     end do
     call json%close()
   end subroutine put_plies
+
+  !> Tensile strength of the fibres of a ply, and the stressed volume it belongs to, at their first failure; null
+  !> without.
+  subroutine put_strength(json, deck, volume, ply)
+    !> The summary
+    type(json_t), intent(inout) :: json
+    type(deck_t), intent(in) :: deck
+    !> The volume; 0: the fibres have not failed
+    real(wp), intent(in) :: volume
+    !> The ply
+    integer, intent(in) :: ply
+
+    if (volume > 0) then
+      call json%put('stressed_volume', volume)
+      call json%put('fibre_strength', factor_of(deck%ply_damage, volume)* &
+                                      deck%materials(deck%laminate%material(ply))%xt)
+    else
+      call json%put_null('stressed_volume')
+      call json%put_null('fibre_strength')
+    end if
+  end subroutine put_strength
 
   !> Warnings on the deck, which have no time, and those of the run.
   subroutine put_warnings(json, deck, record, given)

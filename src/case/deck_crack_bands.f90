@@ -5,8 +5,10 @@ module deck_crack_bands
   use crack_band_limits, only: longest_element
   use crack_bands, only: create_crack_band
   use deck_contents, only: deck_t
+  use deck_fibre_strengths, only: check_fibre_strengths, fibre_factors
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, remark_idle, are_clear
+  use deck_strain_rates, only: check_strain_rates
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use larc_criteria, only: larc_objection
@@ -16,6 +18,7 @@ module deck_crack_bands
   use plies, only: ply_t
   use ply_blocks, only: block_of
   use ply_damage_deck, only: ply_damage_group, key_closure, key_in_situ, key_permanent, keys_of_sudden_failure
+  use ply_damage_parameters, only: fibre_tension
   use short_numbers, only: short_text
   use scale_tables, only: length_text
   use stacking, only: stacked_plies
@@ -35,9 +38,13 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
+    logical :: softens
     integer :: i
 
-    if (.not. any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])) then
+    softens = any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])
+    call check_fibre_strengths(deck, softens, problems)
+    call check_strain_rates(deck, softens, problems)
+    if (.not. softens) then
       if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
       if (deck%ply_damage%permanent_shear) call report(deck%settings, problems, ply_damage_group, key_permanent, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
@@ -189,7 +196,7 @@ contains
   end subroutine check_lengths
 
   !> Longest elements that dissipate no more than the fracture energies, over all blocks of a material, with in-situ
-  !> strengths.
+  !> strengths and the fibres' strength in the smallest volume.
   pure function longest_elements(deck, place) result(longest)
     type(deck_t), intent(in) :: deck
     !> Index of the material
@@ -207,6 +214,8 @@ contains
       if (plies(ply)%material == alike) longest = min(longest, longest_element(create_crack_band( &
         material_in_place(plies, ply, deck%materials, deck%ply_damage), deck%ply_damage)))
     end do
+    ! The energy at the onset grows with the square of the strength.
+    longest(fibre_tension) = longest(fibre_tension)/maxval(fibre_factors(deck, alike))**2
   end function longest_elements
 
   !> Shortest and longest side of the cells, with joined cells at the lines of the struck point counted as one.

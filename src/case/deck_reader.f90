@@ -59,6 +59,7 @@ module deck_reader
   use deck_struck_faces, only: check_struck_face, struck_face_of
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
+  use unit_systems, only: units_in_metre
   implicit none
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
@@ -173,7 +174,7 @@ contains
     call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
     call fill_materials(deck%settings, deck%materials, problems)
     call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
-    call fill_ply_damage(deck%settings, deck%ply_damage)
+    call fill_ply_damage(deck%settings, units_in_metre(deck%units), deck%ply_damage)
     call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck), changes_of_angle(deck), &
                             deck%delaminations)
   end subroutine fill_model

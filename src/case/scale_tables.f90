@@ -2,6 +2,7 @@
 !> gives units, values are in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
 module scale_tables
   use deck_contents, only: deck_t
+  use deck_fibre_strengths, only: block_volumes, fibre_factors
   use fibre_toughnesses, only: measured_toughness, thick_block
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
@@ -16,7 +17,7 @@ module scale_tables
   use unit_systems, only: base_units, system_named
   implicit none
   private
-  public :: scale_lines, strength_lines, toughness_lines, length_unit, length_unit_size, length_text
+  public :: scale_lines, strength_lines, volume_lines, toughness_lines, length_unit, length_unit_size, length_text
 
   !> Characters before the values, and characters of a value.
   integer, parameter :: name_width = 56, value_width = 12
@@ -41,6 +42,7 @@ module scale_tables
     force = dimension_t('force', 'N', [1.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
     energy = dimension_t('energy', 'J', [2.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
     toughness = dimension_t('energy/area', 'N/mm', [0.0_wp, 1.0_wp, -2.0_wp], 1.0e3_wp), &
+    volume = dimension_t('volume', 'mm3', [3.0_wp, 0.0_wp, 0.0_wp], 1.0e-9_wp), &
     pressure = dimension_t('pressure', 'MPa', [-1.0_wp, 1.0_wp, -2.0_wp], 1.0e6_wp), &
     contact = dimension_t('force/length^1.5', 'N/mm^1.5', [-0.5_wp, 1.0_wp, -2.0_wp], 1.0e3_wp*sqrt(1.0e3_wp))
 
@@ -162,6 +164,30 @@ contains
       line = table_line(line, strengths, unit_of(deck, pressure))
     end function strength_line
   end function strength_lines
+
+  !> Tensile strength of the fibres of each material where the smallest and where the largest volume is stressed.
+  function volume_lines(deck) result(lines)
+    type(deck_t), intent(in) :: deck
+    !> The lines; none unless the deck requests it
+    type(line_t), allocatable :: lines(:)
+    character(len=*), parameter :: names(2) = [character(len=32) :: 'XT in one cell of a block', &
+                                               'XT in a block stressed all over']
+    real(wp) :: volumes(2), factors(2)
+    integer :: place, i
+
+    allocate (lines(0))
+    if (.not. (deck%has_ply_damage .and. deck%ply_damage%weibull_modulus > 0)) return
+    do place = 1, size(deck%materials)
+      volumes = block_volumes(deck, place)
+      factors = fibre_factors(deck, place)
+      if (first_alike(deck%materials, place) /= place .or. .not. all(volumes > 0)) cycle
+      do i = 1, size(names)
+        call append(lines, table_line(trim(names(i))//', '//read_as(deck, volumes(i), volume)//' '// &
+                                      unit_of(deck, volume), read_as(deck, factors(i)*deck%materials(place)%xt, &
+                                                                     pressure), unit_of(deck, pressure)))
+      end do
+    end do
+  end function volume_lines
 
   !> Fracture energy of fibres in tension of each material, in thick blocks of plies and in thin ones, with the energy
   !> measured in such blocks; none without units or without softening plies.

@@ -272,6 +272,7 @@ contains
     call multiply(size(self%motion), 1.0_wp, now%motion%displacement, self%motion)
     if (model%map%layered) call model%map%to_motion(self%motion)
     self%field = 0
+    call now%plies%note_step(self%steps%now)
     call now%plies%add_layer_forces(model, self%motion, self%field, self%strain)
     call model%borders%add(self%field)
     call multiply(size(self%force), -1.0_wp, self%field, self%force)

@@ -29,6 +29,8 @@ module crack_band_laws
     logical :: crack_closure = .false.
     !> True: compressed fibres fail by kinking
     logical :: kinking = .false.
+    !> Gain of the matrix strengths per decade of strain rate, as a fraction, and the rate at which they hold
+    real(wp) :: rate_gain = 0, reference_rate = 0
   end type crack_band_t
 
   !> History variables of a ply in an element.
@@ -47,6 +49,8 @@ module crack_band_laws
     real(wp) :: recovered(3) = 0
     !> Compressive strength along the fibres at the onset of kinking; 0: they have not kinked
     real(wp) :: kinked = 0
+    !> Factor of the matrix strengths by the strain rate at the onset of cracking; 0: the matrix has not cracked
+    real(wp) :: strengthened = 0
   end type band_state_t
 
 contains
@@ -66,6 +70,8 @@ contains
     band%toughness = material%toughness
     band%remainder = damage%e
     band%shear_beta = material%shear_beta
+    band%rate_gain = material%rate_gain
+    band%reference_rate = material%reference_rate
     band%crack_closure = damage%crack_closure
     band%kinking = damage%kinking
     band%permanent_shear = damage%permanent_shear .and. material%shear_beta > 0

@@ -11,7 +11,7 @@ module crack_band_limits
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
   implicit none
   private
-  public :: onset_strain, longest_element
+  public :: onset_strain, strain_of_stress, longest_element
 
 contains
 
@@ -26,7 +26,7 @@ contains
 
     nu12 = abs(band%elasticity%nu12)
     nu21 = nu12*band%elasticity%e2/band%elasticity%e1
-    exposure = max(1.0_wp, band%elasticity%compression)*band%elasticity%e1*sqrt(1 + nu21**2)/minval(band%along)
+    exposure = (1 - nu12*nu21)/strain_of_stress(band, minval(band%along)/max(1.0_wp, band%elasticity%compression))
     do i = 1, directions
       angle = pi*(i - 0.5_wp)/directions
       exposure = max(exposure, matrix_exposure(band%matrix, cos(angle)*band%elasticity%e2*sqrt(1 + nu12**2), &
@@ -39,6 +39,19 @@ contains
     if (band%kinking) onset_strain = min(onset_strain, kinking_strain(band))
     if (band%shear_beta > 0) onset_strain = 0
   end function onset_strain
+
+  !> A strain below which the stress along undamaged fibres is smaller than a value, in the same measure.
+  pure real(wp) function strain_of_stress(band, stress) result(strain)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> The stress
+    real(wp), intent(in) :: stress
+    real(wp) :: nu12, nu21
+
+    nu12 = abs(band%elasticity%nu12)
+    nu21 = nu12*band%elasticity%e2/band%elasticity%e1
+    strain = (1 - nu12*nu21)*stress/(band%elasticity%e1*sqrt(1 + nu21**2))
+  end function strain_of_stress
 
   !> A strain below which fibres do not kink, in the same measure: the smallest of a grid of directions, less the
   !> variation of the exposure between two of them.

@@ -23,7 +23,7 @@ module crack_bands
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, flow_band, soften_band, &
-            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, stiffness_lost
+            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, stiffness_lost, tensile_stress
 
   !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
   !> iterations are usual.
@@ -52,7 +52,7 @@ contains
   end subroutine flow_band
 
   !> Damage of a ply under trial strains.
-  pure subroutine soften_band(band, lengths, strains, old, new)
+  pure subroutine soften_band(band, lengths, strains, old, new, rate_factor)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
@@ -63,19 +63,29 @@ contains
     type(band_state_t), intent(in) :: old
     !> The same with its present permanent strain; receives the damage
     type(band_state_t), intent(inout) :: new
+    !> Factor of the matrix strengths by the strain rate before the matrix cracks; absent: 1
+    real(wp), intent(in), optional :: rate_factor
+    real(wp) :: factor
 
-    if (.not. band%permanent_shear) call shear_band(band, strains, old, new)
-    call find_damage(sheared_law(band, new%shear_damage), lengths, strains, old, new)
+    factor = 1
+    if (present(rate_factor)) factor = rate_factor
+    ! While the matrix softens its strengths are constant, so that it dissipates its fracture energies.
+    if (old%strengthened > 0) factor = max(1.0_wp, old%strengthened)
+    if (.not. band%permanent_shear) call shear_band(band, strains, factor, old, new)
+    call find_damage(sheared_law(band, new%shear_damage), lengths, strains, factor, old, new)
+    if (new%damage(2) > 0) new%strengthened = factor
   end subroutine soften_band
 
   !> Damage of fibres and matrix under trial strains, both found together, and the energy that it dissipates.
-  pure subroutine find_damage(band, lengths, strains, old, new)
+  pure subroutine find_damage(band, lengths, strains, factor, old, new)
     !> The law, with G12 reduced by nonlinear shear
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
+    !> Factor of the matrix strengths
+    real(wp), intent(in) :: factor
     !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
     !> The ply with these strains
@@ -90,7 +100,7 @@ contains
       left = remaining_fractions(band, new)
       new%kinked = old%kinked
       call soften_fibres(band, lengths(1), strains, left, new%kinked, signs(:, 1))
-      signs(:, 2) = matrix_softening(band, lengths(2), strains, left)
+      signs(:, 2) = matrix_softening(band, lengths(2), strains, factor, left)
       do i = 1, 2
         new%damage(i) = max(old%damage(i), damage_at(more_damaged(signs(:, i))))
         if (band%crack_closure) new%closed(i) = max(old%closed(i), damage_at(signs(2, i)))
@@ -125,11 +135,13 @@ contains
   end function energy_of_shear
 
   !> Loss of G12 by nonlinear shear before matrix cracking, found for the strains up to the onset of the crack.
-  pure subroutine shear_band(band, strains, old, new)
+  pure subroutine shear_band(band, strains, factor, old, new)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
+    !> Factor of the matrix strengths
+    real(wp), intent(in) :: factor
     !> The ply in the last accepted state
     type(band_state_t), intent(in) :: old
     !> The ply with these strains
@@ -172,7 +184,8 @@ contains
       real(wp), intent(in) :: part
       type(softening_t) :: signs(2)
 
-      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, remaining_fractions(band, old))
+      signs = matrix_softening(sheared_law(band, loss_at(part)), 1.0_wp, strains, factor, &
+                               remaining_fractions(band, old))
       cracks = part*maxval(signs%exposure) > 1
     end function cracks_at
   end subroutine shear_band
@@ -302,6 +315,20 @@ contains
     end associate
   end subroutine soften_fibres
 
+  !> Undamaged stress of fibres in tension, which their exposure compares with XT.
+  pure real(wp) function tensile_stress(band, strains, state) result(stress)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Strains of the ply without permanent ones
+    type(band_strains_t), intent(in) :: strains
+    !> The ply with these strains
+    type(band_state_t), intent(in) :: state
+    real(wp) :: size, weights(2)
+
+    call find_strain_alone(band%elasticity, strains, remaining_fractions(band, state), 1, size, weights)
+    stress = weights(1)*band%elasticity%e1*size
+  end function tensile_stress
+
   !> Exposure of compressed fibres to kinking. The stresses across the fibres and in shear are those that the damaged
   !> matrix transfers: a failed matrix leaves XC.
   pure real(wp) function exposure_to_kinking(band, strains, left, along) result(exposure)
@@ -327,13 +354,15 @@ contains
   end function exposure_to_kinking
 
   !> Softening laws of the matrix.
-  pure function matrix_softening(band, length, strains, left) result(signs)
+  pure function matrix_softening(band, length, strains, factor, left) result(signs)
     !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element across the fibres
     real(wp), intent(in) :: length
     !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
+    !> Factor of the matrix strengths
+    real(wp), intent(in) :: factor
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
     !> Of tension and compression
@@ -350,12 +379,10 @@ contains
         toughness = energy/((energy - shear_energy)/g(matrix_tension) + shear_energy/g(matrix_compression))
       across = c%e2*size
       shear = c%g12*sqrt(strains%shear_square)
-      signs(1) = linear_softening_of(weights(1)*matrix_exposure(band%matrix, across, shear), energy, toughness, &
-                                     length, &
-                         matrix_tension)
-      signs(2) = linear_softening_of(weights(2)*matrix_exposure(band%matrix, -across, shear), energy, &
-                                     g(matrix_compression), &
-                         length, matrix_compression)
+      signs(1) = linear_softening_of(weights(1)*matrix_exposure(band%matrix, across, shear)/factor, energy, toughness, &
+                                     length, matrix_tension)
+      signs(2) = linear_softening_of(weights(2)*matrix_exposure(band%matrix, -across, shear)/factor, energy, &
+                                     g(matrix_compression), length, matrix_compression)
     end associate
   end function matrix_softening
 end module crack_bands

@@ -21,7 +21,8 @@ module material_deck
                                          key_shear_strain = 'shear_failure_strain', &
                                          key_fibre_shear = 'Sf', key_shear_23 = 'Sm23', &
                                          key_expansion = 'alpha1 alpha2', key_library = 'library', &
-                                         key_compressive = 'XC'
+                                         key_compressive = 'XC', key_gain = 'rate_strengthening', &
+                                         key_rate = 'reference_rate'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'
@@ -80,7 +81,11 @@ module material_deck
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
       &Thermal expansion along the fibres.', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
-      &Transverse thermal expansion.']
+      &Transverse thermal expansion.', &
+    'material | rate_strengthening | real | 1 | - | 0 | >= 0 | &
+      &Gain of YT, YC, S12 and Sm23 of softening plies per decade of strain rate, as a fraction.', &
+    'material | reference_rate | real | 1 | 1/time | none | > 0 | &
+      &Strain rate of the tests that these strengths are from; strengths do not change below it.']
   !> Keys of the strengths.
   character(len=*), parameter, public :: strength_keys(7) = [character(len=4) :: 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', &
                                                              'Sm23']
@@ -140,6 +145,8 @@ contains
     material%sm23 = settings%real_of(material_group, 'Sm23', place)
     material%expansion = [settings%real_of(material_group, 'alpha1', place), &
                           settings%real_of(material_group, 'alpha2', place)]
+    material%rate_gain = settings%real_of(material_group, key_gain, place)
+    material%reference_rate = settings%real_of(material_group, key_rate, place)
     do mode = 1, size(toughness_keys)
       material%toughness(mode) = settings%real_of(material_group, toughness_keys(mode), place)
     end do

@@ -9,10 +9,10 @@ module material_parameters
   !> polymers, 1e-4 per degree, reach it at 500 degrees; fibres fail at far smaller strains.
   real(wp), parameter, public :: largest_strain = 0.05_wp
   !> Constants of a material, and their names in the deck in the order of the type.
-  integer, parameter, public :: constants = 23
-  character(len=*), parameter, public :: constant_names(constants) = [character(len=10) :: 'density', 'E1', 'E1c', &
+  integer, parameter, public :: constants = 25
+  character(len=*), parameter, public :: constant_names(constants) = [character(len=18) :: 'density', 'E1', 'E1c', &
     'E2', 'G12', 'G13', 'G23', 'nu12', 'nu23', 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', 'Sm23', 'shear_beta', 'G_ft', &
-    'G_fc', 'G_mt', 'G_mc', 'alpha1', 'alpha2']
+    'G_fc', 'G_mt', 'G_mc', 'alpha1', 'alpha2', 'rate_strengthening', 'reference_rate']
 
   !> An orthotropic ply, 1 along the fibres. A strength that the deck does not give is zero or less. It has many
   !> components because the deck gives that many constants.
@@ -41,6 +41,8 @@ module material_parameters
     real(wp) :: toughness(4) = 0
     !> Thermal expansion along and across the fibres
     real(wp) :: expansion(2) = 0
+    !> Gain of the matrix strengths per decade of strain rate, as a fraction, and the rate at which they hold
+    real(wp) :: rate_gain = 0, reference_rate = 0
   end type material_t
 
 contains
@@ -72,7 +74,8 @@ contains
 
     associate (m => material)
       values = [m%density, m%e1, merge(m%e1c, m%e1, m%e1c > 0), m%e2, m%g12, m%g13, m%g23, m%nu12, m%nu23, m%xt, &
-                m%xc, m%yt, m%yc, m%s12, m%sf, m%sm23, m%shear_beta, m%toughness, m%expansion]
+                m%xc, m%yt, m%yc, m%s12, m%sf, m%sm23, m%shear_beta, m%toughness, m%expansion, m%rate_gain, &
+                m%reference_rate]
     end associate
   end function constants_of
 end module material_parameters

@@ -3,9 +3,11 @@ module ply_damage_deck
   use deck_choices, only: code_of
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
+  use kinds, only: wp
   use ply_damage_parameters, only: ply_damage_t, criteria_hou, criteria_hashin, criteria_puck, criteria_larc, &
                                    stress_at_middle, &
                                    stress_at_faces
+  use text, only: to_text
   implicit none
   private
   public :: fill_ply_damage
@@ -13,7 +15,8 @@ module ply_damage_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ', &
                                          key_permanent = 'permanent_shear', key_closure = 'crack_closure', &
-                                         key_compression = 'fibre_compression'
+                                         key_compression = 'fibre_compression', &
+                                         key_weibull = 'weibull_modulus', key_volume = 'reference_volume'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
@@ -36,13 +39,22 @@ module ply_damage_deck
     'ply_damage | crack_closure | logical | 1 | - | .false. | .true. .false. | &
       &Whether plies that failed in tension, along or across the fibres, carry compression again.', &
     'ply_damage | fibre_compression | choice | 1 | - | ''strength'' | strength kinking | &
-      &Failure of compressed fibres: at XC, or by kinking under compression and shear (Davila et al. 2005).']
+      &Failure of compressed fibres: at XC, or by kinking under compression and shear (Davila et al. 2005).', &
+    'ply_damage | weibull_modulus | real | 1 | - | none | >= 1 | &
+      &Weibull modulus of the fibres in tension: in small stressed volumes XT is larger; left out: XT is constant.', &
+    'ply_damage | reference_volume | real | 1 | volume | = 3750 mm3 | > 0 | &
+      &Stressed volume of the specimens that XT was measured on; 3750 mm3 is 250 mm by 15 mm by 1 mm.']
+  !> Its default in cubic metres: the gauge length of a tension specimen after ASTM D3039, 250 x 15 x 1 mm.
+  real(wp), parameter :: usual_volume = 3.75e-6_wp
 
 contains
 
   !> Damage of the plies.
-  subroutine fill_ply_damage(settings, damage)
-    type(settings_t), intent(in) :: settings
+  subroutine fill_ply_damage(settings, units_in_metre, damage)
+    !> Keys in effect; receives the reference volume
+    type(settings_t), intent(inout) :: settings
+    !> Units of length in a metre; 0: not known
+    real(wp), intent(in) :: units_in_metre
     !> Receives them
     type(ply_damage_t), intent(inout) :: damage
 
@@ -56,5 +68,10 @@ contains
     damage%permanent_shear = settings%logical_of(ply_damage_group, key_permanent)
     damage%crack_closure = settings%logical_of(ply_damage_group, key_closure)
     damage%kinking = code_of(settings%text_of(ply_damage_group, key_compression), 'strength kinking', [1, 2]) == 2
+    damage%weibull_modulus = settings%real_of(ply_damage_group, key_weibull)
+    if (.not. damage%weibull_modulus > 0) return
+    if (.not. settings%is_given(ply_damage_group, key_volume) .and. units_in_metre > 0) &
+      call settings%derive(ply_damage_group, key_volume, to_text(usual_volume*units_in_metre**3), .false.)
+    damage%reference_volume = settings%real_of(ply_damage_group, key_volume)
   end subroutine fill_ply_damage
 end module ply_damage_deck

@@ -23,7 +23,7 @@ module ply_damage_parameters
   !> Properties that must be equal in two runs for one to start with the damage of the other, by their names in the
   !> deck.
   character(len=*), parameter, public :: damage_names(*) = [character(len=17) :: 'd', 'e', 'criteria', 'stress', &
-    'in_situ', 'permanent_shear', 'crack_closure', 'fibre_compression']
+    'in_situ', 'permanent_shear', 'crack_closure', 'fibre_compression', 'weibull_modulus', 'reference_volume']
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
@@ -43,6 +43,10 @@ module ply_damage_parameters
     logical :: crack_closure = .false.
     !> True: compressed fibres fail by kinking, otherwise at XC
     logical :: kinking = .false.
+    !> Weibull modulus of the tensile strength of fibres; 0: it does not depend on the stressed volume
+    real(wp) :: weibull_modulus = 0
+    !> Stressed volume for which XT holds
+    real(wp) :: reference_volume = 0
   end type ply_damage_t
 
 contains
@@ -55,6 +59,7 @@ contains
 
     numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, &
                                          merge(1, 0, [damage%in_situ, damage%permanent_shear, damage%crack_closure, &
-                                                      damage%kinking])], wp)]
+                                                      damage%kinking])], wp), damage%weibull_modulus, &
+               damage%reference_volume]
   end function numbers_of
 end module ply_damage_parameters

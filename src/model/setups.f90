@@ -35,6 +35,8 @@ module setups
   contains
     procedure :: has_crack_bands
     procedure :: is_bimodular
+    procedure :: has_rates
+    procedure :: counts_rates
     procedure :: has_variable_sections
   end type setup_t
 
@@ -61,6 +63,22 @@ contains
     is_bimodular = any([(modulus_differs(self%materials(self%laminate%material(i))), &
                          i=1, size(self%laminate%material))])
   end function is_bimodular
+
+  !> True: the matrix strengths of softening plies depend on the strain rate.
+  pure logical function has_rates(self)
+    class(setup_t), intent(in) :: self
+
+    has_rates = .false.
+    if (self%has_crack_bands()) has_rates = any(self%materials%rate_gain > 0)
+  end function has_rates
+
+  !> True: the strain rates of the run are those of its test. Load steps have none, and motions that are prescribed in
+  !> time are faster than the test that they stand for.
+  pure logical function counts_rates(self)
+    class(setup_t), intent(in) :: self
+
+    counts_rates = self%has_rates() .and. .not. self%is_static() .and. (self%is_impact() .or. self%has_pressure)
+  end function counts_rates
 
   !> True: the sections of the elements depend on their state, by failure of plies or the sign of their stresses.
   pure logical function has_variable_sections(self)

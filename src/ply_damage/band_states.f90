@@ -139,13 +139,14 @@ contains
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     integer, parameter :: numbers = 3 + energy_modes
-    real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked
+    real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked, cracked
     integer :: element, ply
 
     ! A column has all plies of the laminate, so that, when an element is split into layers, each layer can read its
     ! plies from the column of the undivided element.
     allocate (table(numbers*size(model%plies), size(self%offset)), strains(2*size(model%plies), size(self%offset)), &
               closed(2*size(model%plies), size(self%offset)), kinked(size(model%plies), size(self%offset)), &
+              cracked(size(model%plies), size(self%offset)), &
               source=0.0_wp)
     do element = 1, size(self%offset)
       do ply = self%range(1, element), self%range(2, element)
@@ -154,6 +155,7 @@ contains
           strains(2*ply - 1:2*ply, element) = [state%permanent, state%accumulated]
           closed(2*ply - 1:2*ply, element) = state%closed
           kinked(ply, element) = state%kinked
+          cracked(ply, element) = state%strengthened
         end associate
       end do
     end do
@@ -164,6 +166,8 @@ contains
       call archive%field('ply_failure/closed_cracks', model%distribution%elements, model%mesh%elements(), closed)
     if (model%setup%ply_damage%kinking) &
       call archive%field('ply_failure/kinked_fibres', model%distribution%elements, model%mesh%elements(), kinked)
+    if (model%setup%has_rates()) &
+      call archive%field('ply_failure/strengthened', model%distribution%elements, model%mesh%elements(), cracked)
     if (.not. archive%loading) return
     do element = 1, size(self%offset)
       do ply = self%range(1, element), self%range(2, element)
@@ -171,7 +175,8 @@ contains
                    shear => strains(2*ply - 1:2*ply, element))
           self%accepted(self%offset(element) + ply) = &
             band_state_t(damage=values(1:2), shear_damage=values(3), dissipated=values(4:), permanent=shear(1), &
-                         accumulated=shear(2), closed=closed(2*ply - 1:2*ply, element), kinked=kinked(ply, element))
+                         accumulated=shear(2), closed=closed(2*ply - 1:2*ply, element), kinked=kinked(ply, element), &
+                         strengthened=cracked(ply, element))
         end associate
       end do
     end do

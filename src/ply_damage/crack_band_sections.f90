@@ -9,7 +9,7 @@ module crack_band_sections
   use band_states, only: band_states_t, new_band_states
   use crack_closures, only: closing_resultants
   use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
-                         is_damaged, stiffness_lost
+                         is_damaged, stiffness_lost, tensile_stress
   use crack_band_limits, only: onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
@@ -17,6 +17,7 @@ module crack_band_sections
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
+  use loading_rates, only: loading_rates_t, new_loading_rates
   use mean_sections, only: mean_sections_t, new_mean_sections
   use models, only: model_t
   use plies, only: ply_t, elasticity_t
@@ -25,6 +26,7 @@ module crack_band_sections
   use section_laws, only: section_law_t
   use stacking, only: in_plane_section
   use strain_bounds, only: largest_strains, strain_moments
+  use stressed_volumes, only: stressed_volumes_t, new_stressed_volumes
   implicit none
   private
   public :: crack_band_sections_t, new_crack_band_sections
@@ -39,17 +41,18 @@ module crack_band_sections
     real(wp), allocatable :: free(:, :, :)
     !> Sections against mean strains, where plies have E1c; unallocated: they have not
     type(mean_sections_t), allocatable :: signs
+    !> Stressed volumes and strain rates that strengths depend on; unallocated: they do not
+    type(stressed_volumes_t), allocatable :: volumes
+    type(loading_rates_t), allocatable :: rates
     !> True while plies keep their damage, during the transfer of a state to other layers
     logical :: keeps_damage = .false.
     !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
     real(wp), allocatable, private :: tensile(:, :, :)
-    !> Plies of the laminate
+    !> Plies of the laminate, and their laws
     type(ply_t), allocatable, private :: plies(:)
-    !> Their laws
     type(crack_band_t), allocatable, private :: bands(:)
-    !> Sides along x and y of each element with those that share its state, (2, elements)
+    !> Sides along x and y of each element with those that share its state, (2, elements), and its own area
     real(wp), allocatable, private :: sides(:, :)
-    !> Area of each element, (elements)
     real(wp), allocatable :: area(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
@@ -64,10 +67,10 @@ module crack_band_sections
     procedure :: exchange
     procedure :: commit
     procedure :: commit_sections
+    procedure :: update_strengths
     procedure :: dissipation_sums
     procedure :: dissipated
     procedure :: elasticity
-    !> Adjacent plies of an element with their permanent strains; resultants of stress-free strains.
     procedure :: strained
     procedure, private :: free_resultants_of
     procedure, private :: signed_resultants
@@ -98,9 +101,16 @@ contains
       self%signs = new_mean_sections(model)
       self%tensile = self%free
     end if
-    self%onset = [(onset_strain(self%bands(i)) - norm2(self%plies(i)%free_strain), i=1, size(self%bands))]
+    self%onset = [(onset_strain(self%bands(i)), i=1, size(self%bands))]
     self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
     self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
+    if (model%setup%ply_damage%weibull_modulus > 0) then
+      self%volumes = new_stressed_volumes(model, self%bands, size(self%states%trial))
+      self%onset = min(self%onset, self%volumes%least_strain(self%bands))
+    end if
+    if (model%setup%has_rates()) self%rates = new_loading_rates(model, size(self%states%trial))
+    if (model%setup%counts_rates()) self%onset = 0
+    self%onset = self%onset - [(norm2(self%plies(i)%free_strain), i=1, size(self%plies))]
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
     allocate (self%touched(model%elements%elements), source=.false.)
@@ -178,6 +188,7 @@ contains
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
       if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
+      if (allocated(self%volumes)) call self%volumes%clear(self%states, element)
       if (.not. self%touched(element) .and. bounds(lane) < onset) cycle
       if (.not. (self%keeps_damage .or. has_moments)) then
         moments = strain_moments(weight, strains)
@@ -240,12 +251,13 @@ contains
     type(band_strains_t) :: strains
     type(strain_moments_t) :: joined
     real(wp), allocatable :: means(:)
-    real(wp) :: before(3), normal(2), membrane, curvature
+    real(wp) :: before(3), normal(2), factor, membrane, curvature
     logical :: changed
     integer :: ply
 
     changed = .false.
     self%touched(element) = .false.
+    factor = 1
     joined = moments
     if (self%joined%shares(element)) then
       means = self%joined%means_of(element)
@@ -266,9 +278,15 @@ contains
           end if
           normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
           call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
+          if (allocated(self%rates)) &
+            call self%rates%find_factor(self%states%offset(element) + ply, self%plies(ply), self%bands(ply), moments, &
+                                        means, factor)
           ! Mean width of the elements normal to a straight crack.
           call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
-                                             dot_product(normal, self%sides([2, 1], element))], strains, old, new)
+                                             dot_product(normal, self%sides([2, 1], element))], strains, old, new, &
+                           factor)
+          if (allocated(self%volumes)) &
+            self%volumes%stress(self%states%offset(element) + ply) = tensile_stress(self%bands(ply), strains, new)
           changed = changed .or. any(abs(stiffness_lost(new) - before) > 0)
           self%touched(element) = self%touched(element) .or. is_damaged(new)
         end associate
@@ -286,6 +304,7 @@ contains
     class(crack_band_sections_t), intent(inout) :: self
     integer :: element
 
+    if (allocated(self%rates)) call self%rates%accept()
     do element = 1, size(self%touched)
       if (self%touched(element)) call self%states%accept(element)
     end do
@@ -300,14 +319,25 @@ contains
     real(wp), allocatable, intent(inout) :: free(:, :, :)
     integer :: element
 
+    call self%commit()
     do element = 1, size(self%touched)
       if (.not. self%touched(element)) cycle
-      call self%states%accept(element)
       stiffness(lane_of(element), :, batch_of(element)) = self%stiffness(lane_of(element), :, batch_of(element))
       if (allocated(free)) &
         free(lane_of(element), :, batch_of(element)) = self%free(lane_of(element), :, batch_of(element))
     end do
   end subroutine commit_sections
+
+  !> Tensile strengths of fibres for their stressed volumes in the accepted state, which must be the last trial; those
+  !> loaded remain until there is a trial. Collective.
+  subroutine update_strengths(self, model)
+    class(crack_band_sections_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+
+    if (.not. allocated(self%volumes)) return
+    call self%volumes%update(model%communicator, self%states, self%plies, self%area, model%mesh%multiplicity)
+    self%bands%along(1) = self%volumes%strengths()
+  end subroutine update_strengths
 
   !> Energy that the trial dissipates in each mode beyond the accepted state, of this rank's elements, as exact sums.
   pure function dissipation_sums(self) result(energies)
@@ -380,7 +410,10 @@ contains
     integer :: element
 
     call self%states%visit(archive, model)
+    if (allocated(self%rates)) call self%rates%visit(archive, model, self%states%range, self%states%offset)
+    if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return
+    if (allocated(self%volumes)) self%bands%along(1) = self%volumes%strengths()
     do element = 1, size(self%touched)
       self%touched(element) = self%states%damaged(element)
     end do

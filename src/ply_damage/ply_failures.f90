@@ -49,11 +49,13 @@ module ply_failures
     !> True while softening plies keep their stiffness, during the transfer of a state to other layers
     logical :: keeps_stiffness = .false.
   contains
+    procedure :: note_step
     procedure :: find_forces
     procedure :: add_layer_forces
     procedure :: record
     procedure :: measure_lag
     procedure :: total_dissipation
+    procedure :: stressed_volume
     procedure :: strained_plies
     procedure :: carried_by_cracks
     procedure :: failed
@@ -86,6 +88,16 @@ contains
       self%mean_change = self%signs%signs%change
     end if
   end function new_ply_failure
+
+  !> Notes the length of a step, by which strain rates are found.
+  pure subroutine note_step(self, step)
+    class(ply_failure_t), intent(inout) :: self
+    !> Its length; 0: not in time
+    real(wp), intent(in) :: step
+
+    if (.not. allocated(self%bands)) return
+    if (allocated(self%bands%rates)) self%bands%rates%step = step
+  end subroutine note_step
 
   !> Internal forces of the plate, with the stiffness reduced by softening under this displacement.
   subroutine find_forces(self, model, displacement, force, energy)
@@ -130,6 +142,9 @@ contains
     real(wp) :: energy
 
     if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
+      ! Before the forces, not after them: a restart, which computes the last forces again, then does so with the
+      ! strengths that they had.
+      call self%bands%update_strengths(model)
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       call self%bands%commit_sections(self%stiffness, self%free)
@@ -235,6 +250,18 @@ contains
     end if
   end function elasticity
 
+  !> Stressed volume of the fibres of a ply at their first failure in tension; 0: they have not failed, or their
+  !> strength does not depend on it.
+  pure real(wp) function stressed_volume(self, ply) result(volume)
+    class(ply_failure_t), intent(in) :: self
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+
+    volume = 0
+    if (.not. allocated(self%bands)) return
+    if (allocated(self%bands%volumes)) volume = self%bands%volumes%volume_at_failure(ply)
+  end function stressed_volume
+
   !> Neighbouring plies of an element with their permanent strains.
   pure function strained_plies(self, model, first, last, element) result(plies)
     class(ply_failure_t), intent(in) :: self
@@ -286,6 +313,7 @@ contains
 
     if (allocated(self%bands)) then
       call self%bands%commit()
+      call self%bands%update_strengths(model)
       return
     end if
     if (.not. model%setup%has_ply_damage) return

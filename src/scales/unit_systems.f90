@@ -4,7 +4,7 @@ module unit_systems
   use text, only: lower_case
   implicit none
   private
-  public :: is_unusual, unit_that_fits, unit_name, system_named, base_units, decades_of
+  public :: is_unusual, unit_that_fits, unit_name, system_named, base_units, units_in_metre, decades_of
 
   !> Kinds of quantities.
   integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
@@ -85,6 +85,15 @@ contains
 
     base = bases(:, system)
   end function base_units
+
+  !> Number of units of length in a metre; 0: there is no such system.
+  pure real(wp) function units_in_metre(name) result(number)
+    !> Name of the system, in any case
+    character(len=*), intent(in) :: name
+
+    number = 0
+    if (system_named(name) > 0) number = 1/bases(1, system_named(name))
+  end function units_in_metre
 
   !> True: a value in the units of a system is outside the range of its kind of quantity.
   pure logical function is_unusual(quantity, value, system)

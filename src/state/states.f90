@@ -144,6 +144,7 @@ contains
     !> Strain energy
     real(wp), intent(out) :: energy
 
+    call self%plies%note_step(self%time - old%time)
     call self%plies%find_forces(model, self%motion%displacement, self%motion%internal, energy)
     call model%profile%enter('interface law')
     call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &

@@ -1,22 +1,24 @@
 #!/usr/bin/env python3
 """Measured panels of four materials: runs with drawn inputs, and the page doc/validation.md from their results.
 
-panels.py run IMPLAM [--panel NAME ...] [--variant NAME ...] [--seeds 1-10] [--jobs N] [--folder results/panels]
+panels.py run IMPLAM [--panel NAME ...] [--variant NAME ...] [--seeds 1-10] [--jobs N] [--again] [--folder results/panels]
 panels.py table [--panel NAME ...]      measured and computed values, one table a panel
 panels.py page [--check]                writes doc/validation.md, or compares it with what would be written
 
 Panels, with what was measured, are in panels/panels.toml. A job is one draw of one panel: its impact, and where the
 panel has one the compression of the struck plate. Inputs are drawn within their usual tolerances
 (doc/manual/scatter.md), those of a range uniformly within it; the seed decides. A completed job is a row of
-panels/rows.csv, and is not repeated as long as decks and inputs are the same, so that the command can be stopped at any
-time and continued. Rows of earlier decks are kept; the page shows the last ones, and says so, until there are rows of
-the present decks. The impact is not repeated for a variant that changes the compression only."""
+panels/rows.csv, and is not repeated as long as decks and inputs are the same, so that the command can be stopped at
+any time and continued; --again repeats jobs of another version of the program. The last row of a job counts. Rows of
+earlier decks are kept; the page shows the last ones, and says so, until there are rows of the present decks. The
+impact is not repeated for a variant that changes the compression only."""
 
 import argparse
 import csv
 import hashlib
 import os
 import re
+import subprocess
 import sys
 import threading
 import tomllib
@@ -60,7 +62,8 @@ def usable(rows, panels):
     found = []
     for name, panel in panels.items():
         for variant in ("", *panel.get("variants", {})):
-            own = [row for row in rows if (row["panel"], row["variant"]) == (name, variant)]
+            own = list({tuple(row[key] for key in IDENTITY[:5]): row for row in rows
+                        if (row["panel"], row["variant"]) == (name, variant)}.values())
             present = [row for row in own if row["inputs"] == digest(panel, variant)]
             found += present or [row | {"earlier": "yes"} for row in own if row["inputs"] == own[-1]["inputs"]]
     return found
@@ -84,9 +87,16 @@ def seeds_of(text):
     return range(int(first), int(last or first) + 1)
 
 
+def version_of(implam):
+    """Return the commit of the program."""
+    words = subprocess.run([implam, "--version"], capture_output=True, text=True, check=True).stdout
+    return re.search(r"\(([^)]*)\)", words)[1]
+
+
 def jobs_of(options, panels):
     """Return the jobs that have no row, panel by panel within a seed, so that all panels have results early."""
-    done = {tuple(row[name] for name in IDENTITY[:5]) for row in read_rows()}
+    version = version_of(options.implam) if options.again else None
+    done = {tuple(row[name] for name in IDENTITY[:5]) for row in read_rows() if version in (None, row["version"])}
     jobs = []
     for seed in options.seeds:
         for name in options.panel or panels:
@@ -136,6 +146,7 @@ def main():
     runner.add_argument("--variant", action="append")
     runner.add_argument("--seeds", type=seeds_of, default=range(1, 11))
     runner.add_argument("--jobs", type=int, default=os.cpu_count())
+    runner.add_argument("--again", action="store_true")
     runner.add_argument("--folder", type=Path, default=Path("results/panels"))
     table = commands.add_parser("table")
     for command in (runner, table):

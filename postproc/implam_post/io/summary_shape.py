@@ -39,7 +39,8 @@ _POSSIBLE = {name: _KINDS[result.type] for name, result in TABLES["summary"].ite
     _NEVER_NULL, float) | {
     "failure_code": OrNull(str), "collapse": _COLLAPSE, "interfaces": [_INTERFACE],
     "force_filter": {"frequency": float, "peak_force": float}}
-_POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float)
+_POSSIBLE_OF_PLIES = dict.fromkeys(("fibre_failure_area", "matrix_crack_area", "matrix_crushing_area"), float) | \
+    dict.fromkeys(("stressed_volume", "fibre_strength"), OrNull(float))
 
 
 def missing_member(summary: Mapping[str, Any]) -> str:

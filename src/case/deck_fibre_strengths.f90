@@ -1,0 +1,91 @@
+!> Tensile strength of fibres by their stressed volume: bounds of it in the plate of the deck, and checks of its keys.
+module deck_fibre_strengths
+  use cell_grids, only: cell_edges
+  use deck_contents, only: deck_t
+  use deck_problems, only: problems_t
+  use deck_remarks, only: are_clear, remark, remark_idle, report
+  use kinds, only: wp
+  use mesh_parameters, only: parts_of
+  use plies, only: ply_t
+  use ply_blocks, only: block_thickness
+  use ply_damage_deck, only: key_volume, key_weibull, ply_damage_group
+  use short_numbers, only: short_text
+  use stacking, only: stacked_plies
+  use stressed_volumes, only: factor_of
+  implicit none
+  private
+  public :: check_fibre_strengths, fibre_factors, block_volumes
+
+  !> Ratios of the reference volume to that of the plate beyond which it is probably in another unit: specimens have 1
+  !> to 1e5 mm3, plates 1e3 to 1e8 mm3, and metres in place of millimetres change the ratio by 1e9.
+  real(wp), parameter :: usual_ratios(2) = [1.0e-8_wp, 1.0e3_wp]
+
+contains
+
+  !> Checks the keys of plies with fracture energies, or without.
+  subroutine check_fibre_strengths(deck, softens, problems)
+    type(deck_t), intent(in) :: deck
+    !> True: plies soften by their fracture energies
+    logical, intent(in) :: softens
+    !> Faults and remarks are added
+    type(problems_t), intent(inout) :: problems
+
+    associate (s => deck%settings, damage => deck%ply_damage)
+      if (.not. damage%weibull_modulus > 0) then
+        call remark_idle(s, problems, ply_damage_group, key_volume, 'has no effect without '//key_weibull//'.')
+      else if (.not. softens) then
+        call report(s, problems, ply_damage_group, key_weibull, 'belongs to plies with fracture energies; give '// &
+                    'G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
+      else if (.not. damage%reference_volume > 0) then
+        if (are_clear(s, problems, ply_damage_group, key_volume)) &
+          call report(s, problems, ply_damage_group, key_weibull, 'needs '//key_volume//', the stressed volume of '// &
+                      'the specimens that XT was measured on; give it, or units of &case for its default of 3750 mm3.')
+      else if (allocated(deck%laminate%thickness)) then
+        associate (ratio => damage%reference_volume/(product(deck%plate%length)*sum(deck%laminate%thickness)))
+          if (ratio < usual_ratios(1) .or. ratio > usual_ratios(2)) &
+            call remark(s, problems, ply_damage_group, key_volume, 'is '//short_text(ratio)//' times the volume of '// &
+                        'the plate; it is probably in another unit than the lengths of the plate.')
+        end associate
+      end if
+    end associate
+  end subroutine check_fibre_strengths
+
+  !> Bounds of the stressed volume of the blocks of a material: that of its thinnest block in the smallest cell, and
+  !> that of its thickest block in the plate.
+  pure function block_volumes(deck, place) result(volumes)
+    type(deck_t), intent(in) :: deck
+    !> Index of the material, the first of equal ones
+    integer, intent(in) :: place
+    !> Smallest and largest; 0: no ply is of this material
+    real(wp) :: volumes(2)
+    type(ply_t), allocatable :: plies(:)
+    real(wp), allocatable :: x(:), y(:), thicknesses(:)
+    integer :: ply
+
+    plies = stacked_plies(deck%laminate, deck%materials)
+    thicknesses = [(block_thickness(plies, ply), ply=1, size(plies))]
+    thicknesses = pack(thicknesses, plies%material == place)
+    volumes = 0
+    if (size(thicknesses) == 0) return
+    x = cell_edges(deck%plate, deck%mesh, 1)
+    y = cell_edges(deck%plate, deck%mesh, 2)
+    volumes(1) = minval(thicknesses)*minval(x(2:) - x(:size(x) - 1))*minval(y(2:) - y(:size(y) - 1)) &
+                 *parts_of(deck%plate%symmetry)
+    volumes(2) = maxval(thicknesses)*product(deck%plate%length)
+  end function block_volumes
+
+  !> Largest and smallest tensile strength of the fibres of a material over XT.
+  pure function fibre_factors(deck, place) result(factors)
+    type(deck_t), intent(in) :: deck
+    !> Index of the material, the first of equal ones
+    integer, intent(in) :: place
+    !> Where the smallest and where the largest volume is stressed
+    real(wp) :: factors(2)
+    real(wp) :: volumes(2)
+
+    factors = 1
+    volumes = block_volumes(deck, place)
+    if (.not. deck%ply_damage%weibull_modulus > 0 .or. .not. all(volumes > 0)) return
+    factors = [factor_of(deck%ply_damage, volumes(1)), factor_of(deck%ply_damage, volumes(2))]
+  end function fibre_factors
+end module deck_fibre_strengths
