@@ -10,7 +10,7 @@ module curved_modes
   use mathematical_constants, only: pi
   implicit none
   private
-  public :: shallow_shape_t, membrane_stiffness
+  public :: shallow_shape_t, membrane_mode
 
   !> Curvature of a plate and what its edges hold.
   type :: shallow_shape_t
@@ -18,6 +18,8 @@ module curved_modes
     real(wp) :: curvature(2) = 0
     !> True: both ends of these lines are held along them
     logical :: is_held(2) = .false.
+    !> Factor of in-plane inertia
+    real(wp) :: scaling = 1
   contains
     procedure :: is_flat
   end type shallow_shape_t
@@ -31,8 +33,8 @@ contains
     is_flat = .not. any(abs(self%curvature) > 0)
   end function is_flat
 
-  !> Membrane stiffness per area of a mode.
-  pure real(wp) function membrane_stiffness(shape, extension, waves, lengths) result(stiffness)
+  !> Membrane stiffness of a mode per area, and the inertia of its in-plane displacements over that of its deflection.
+  pure function membrane_mode(shape, extension, waves, lengths) result(mode)
     type(shallow_shape_t), intent(in) :: shape
     !> A11, A12, A16, A22, A26, A66
     real(wp), intent(in) :: extension(6)
@@ -40,32 +42,37 @@ contains
     real(wp), intent(in) :: waves(2)
     !> Lengths over which the waves extend
     real(wp), intent(in) :: lengths(2)
+    !> Stiffness; inertia, as if edges were free across
+    real(wp) :: mode(2)
 
-    stiffness = 0
+    mode = 0
     if (shape%is_flat()) return
-    stiffness = max(with_free_edges(shape%curvature, extension, waves), &
-                    with_held_edges(shape, extension, waves*lengths/pi))
-  end function membrane_stiffness
+    mode = with_free_edges(shape%curvature, extension, waves)
+    mode(1) = max(mode(1), with_held_edges(shape, extension, waves*lengths/pi))
+    mode(2) = shape%scaling*mode(2)
+  end function membrane_mode
 
-  !> Stiffness with edges that are free across.
-  pure real(wp) function with_free_edges(curvature, a, waves) result(stiffness)
+  !> Stiffness and inertia with edges that are free across.
+  pure function with_free_edges(curvature, a, waves) result(mode)
     !> Curvatures along x and y
     real(wp), intent(in) :: curvature(2)
     !> Membrane stiffness A11, A12, A16, A22, A26, A66
     real(wp), intent(in) :: a(6)
     !> Wave numbers along x and y
     real(wp), intent(in) :: waves(2)
-    real(wp) :: forces(2), load(2), k11, k12, k22
+    !> Membrane stiffness; square of the in-plane displacements
+    real(wp) :: mode(2)
+    real(wp) :: forces(2), load(2), motion(2), k11, k12, k22
 
-    stiffness = 0
+    mode = 0
     if (all(waves <= 0)) return
     forces = [a(1)*curvature(1) + a(2)*curvature(2), a(2)*curvature(1) + a(4)*curvature(2)]
     load = forces*waves
     k11 = a(1)*waves(1)**2 + a(6)*waves(2)**2
     k12 = (a(2) + a(6))*product(waves)
     k22 = a(6)*waves(1)**2 + a(4)*waves(2)**2
-    stiffness = dot_product(forces, curvature) - (load(1)**2*k22 - 2*product(load)*k12 + load(2)**2*k11) &
-                /(k11*k22 - k12**2)
+    motion = [load(1)*k22 - load(2)*k12, load(2)*k11 - load(1)*k12]/(k11*k22 - k12**2)
+    mode = [dot_product(forces, curvature) - dot_product(load, motion), dot_product(motion, motion)]
   end function with_free_edges
 
   !> Stiffness by the mean strains of lines that are held at both ends: the square of the mean of an odd number n of

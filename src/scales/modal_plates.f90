@@ -5,7 +5,7 @@
 !> first frequency, and free opposite edges have cosines, with the rigid-body motion. A curved plate has the additional
 !> stiffness of its membrane forces.
 module modal_plates
-  use curved_modes, only: membrane_stiffness, shallow_shape_t
+  use curved_modes, only: membrane_mode, shallow_shape_t
   use kinds, only: wp
   use mathematical_constants, only: pi
   use mesh_parameters, only: edge_free, edge_simple, edge_clamped
@@ -71,8 +71,8 @@ contains
     do j = 1, size(y, 2)
       do i = 1, size(x, 2)
         condensed = condensed_mode(x(1, i), y(1, j), stiffness, mass)
-        if (present(shape)) condensed(1) = condensed(1) + &
-          membrane_stiffness(shape, stiffness(1:6), [x(1, i), y(1, j)], extent)
+        if (present(shape)) condensed = condensed + &
+          [1.0_wp, mass(1)]*membrane_mode(shape, stiffness(1:6), [x(1, i), y(1, j)], extent)
         this = x(2, i)*y(2, j)/condensed(2)
         if (condensed(1) > cutoff**2*condensed(2)) then
           plate%rest = plate%rest + this*condensed(2)/condensed(1)

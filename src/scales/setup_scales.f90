@@ -103,16 +103,19 @@ contains
     type(setup_t), intent(in) :: setup
     !> Circular frequency
     real(wp), intent(in) :: cutoff
-    !> Factor of rotary inertia, 1 if absent
+    !> Factor of rotary and in-plane inertia, 1 if absent
     real(wp), intent(in), optional :: scaling
     !> The modes
     type(modal_plate_t) :: plate
     type(section_t) :: section
+    type(shallow_shape_t) :: shape
 
     section = bending_section(setup)
+    shape = shape_of(setup)
     if (present(scaling)) section%mass(3) = scaling*section%mass(3)
+    if (present(scaling)) shape%scaling = scaling
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, section%mass, &
-                           loaded_side(setup), cutoff, shape_of(setup))
+                           loaded_side(setup), cutoff, shape)
   end function plate_modes
 
   !> Curvature of the plate, and the lines that its edges hold at both ends. Frames hold no in-plane displacement.
