@@ -40,7 +40,7 @@ class Strip:
         self.kind, self.arm, self.cell = kind, arm, cell
         self.bending, self.shear = E1*arm**3/12, 5/6*G13*arm
         self.root = arm*math.sqrt(E1/(10*G13))
-        self.growth = (8 if kind == "dcb" else 6)*cell
+        self.growth = 8*cell
         self.span = self.before = 0.0
         # The program refuses plates that are thicker than wide.
         self.width = max(2*cell, 3*arm)
