@@ -13,7 +13,7 @@ module deck_accuracy
   use mesh_parameters, only: is_halved
   use output_deck, only: output_group, key_fields_every
   use elastic_impacts, only: elastic_impact_t
-  use growth_errors, only: area_errors, cells_for_area
+  use growth_errors, only: cells_for_area
   use setup_elastic_impacts, only: setup_elastic_impact_t, start_elastic_impact, contact_end, largest_step, largest_cell
   use setup_scales, only: setup_scales_t, scales_of, contact_side
   use short_numbers, only: short_text
@@ -220,9 +220,8 @@ contains
       call append(deck%reasons, 'Elements of '//short_text(cell)//': the waves of first contact are '// &
                   short_text(scales%wave_length)//' long.')
     end if
-    if (length > 0) call append(deck%reasons, 'The shortest process zone of shear is '//short_text(length)//' long; '// &
-                                'with at least '//short_text(cells)//' cells in it errors of areas were '// &
-                                area_errors(cells)//' %.')
+    if (length > 0) call append(deck%reasons, 'The shortest process zone of shear, '//short_text(length)// &
+                                ' long, has at least '//short_text(cells)//' cells.')
   end subroutine choose_elements
 
   !> Core of elements of the required size around the struck point, so large that waves of first contact do not leave it

@@ -114,8 +114,8 @@ contains
     end if
   end subroutine remark_shear_cracks
 
-  !> Length of the shortest process zone of shear of the interfaces that grow by energy; 0: there are none. The mesh need
-  !> not be known.
+  !> Length of the shortest process zone of shear of the interfaces that grow by energy; 0: there are none. The mesh
+  !> need not be known.
   pure real(wp) function shortest_shear_zone(deck) result(shortest)
     type(deck_t), intent(in) :: deck
     integer :: i

@@ -1,4 +1,5 @@
-!> Lines of `implam check` and of the log on cells in the process zones of cohesive interfaces, and on the errors to expect.
+!> Lines of `implam check` and of the log on cells in the process zones of cohesive interfaces, and on the errors to
+!> expect.
 module zone_tables
   use deck_contents, only: deck_t
   use deck_process_zones, only: fewest_cells
@@ -16,10 +17,9 @@ module zone_tables
 
 contains
 
-  !> The lines; none without a cohesive interface. Errors are those of growth by energy, where the cells are too long for
-  !> the process zone.
+  !> The lines for a checked deck; none without a cohesive interface. Errors are those of growth by energy, where the
+  !> cells are too long for the process zone.
   function zone_lines(deck) result(lines)
-    !> The deck, checked
     type(deck_t), intent(in) :: deck
     type(line_t), allocatable :: lines(:)
     real(wp) :: cells(2)
@@ -34,7 +34,8 @@ contains
                   deck%delaminations%growth_control == growth_by_energy)) return
     if (.not. deck%has_impactor) cells(1) = minval(cells)
     if (cells(1) >= resolving_cells) return
-    call append(lines, table_line('error of the load at growth due to these cells (strips)', load_errors(cells(1)), '%'))
+    call append(lines, table_line('error of the load at growth due to these cells (strips)', &
+                                  load_errors(cells(1)), '%'))
     if (deck%has_impactor) call append(lines, table_line('error of the area due to these cells (impacts)', &
                                                          area_errors(cells(1)), '%'))
   end function zone_lines

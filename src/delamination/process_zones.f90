@@ -168,13 +168,10 @@ contains
     !> A clause and a sentence
     character(len=:), allocatable :: errors
 
-    if (zone%is_pulled) then
-      errors = 'errors of '//load_errors(minval(fewest))//' % of the load at growth, as in strips with such cells.'
-    else
-      errors = 'errors of '//load_errors(fewest(1))//' % of the load at growth, as in strips with such cells, and of '// &
-               area_errors(fewest(1))//' % of the area, as in impacts.'
-    end if
-    errors = errors//' `implam explain growth_errors` lists measured errors, --verify runs finer cells.'
+    errors = 'errors of '//load_errors(merge(minval(fewest), fewest(1), zone%is_pulled))// &
+             ' % of the load at growth, as in strips with such cells'
+    if (.not. zone%is_pulled) errors = errors//', and of '//area_errors(fewest(1))//' % of the area, as in impacts'
+    errors = errors//'. `implam explain growth_errors` lists measured errors, --verify runs finer cells.'
   end function expected_errors
 
   !> A number of cells, to one decimal, or to three digits if that would be zero.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Area, peak force and time of impacts by the cells, with growth by energy or by strengths.
-Usage: growth_plates.py run IMPLAM FOLDER DECK CELLS [CONTROL]  (DECK: peanut or which_interfaces; CELLS with commas, mm;
-                                                                 CONTROL: energy or strength)
+Usage: growth_plates.py run IMPLAM FOLDER DECK CELLS [CONTROL]  (DECK: peanut, which_interfaces or
+                                    experiments/t700_m21_6.5J; CELLS with commas, mm; CONTROL: energy or strength)
 
 The patch has its size on all meshes, the elements outside of the core their number. `run` adds a row to
 growth/plates.csv for each mesh that has none, so that a stopped command continues. Times are processor times."""
@@ -20,7 +20,8 @@ COLUMNS = ["deck", "cell", "control", "cells_shear", "peak_force", "projected_ar
            "seconds"]
 # Half extents of the core less half of the patch along x and y, mm; elements outside; whether x is halved; the
 # shortest process zone of shear, mm.
-DECKS = {"peanut": ((19.2, 7.2), (6, 7), True, 2.59), "which_interfaces": ((22, 22), (3, 6), False, 3.37)}
+DECKS = {"peanut": ((19.2, 7.2), (6, 7), True, 2.59), "which_interfaces": ((22, 22), (3, 6), False, 3.37),
+         "experiments/t700_m21_6.5J": ((20, 20), (18, 20), False, 2.8)}
 
 
 def text_of(deck, cell, control):
@@ -33,7 +34,8 @@ def text_of(deck, cell, control):
     counts = [along[0] + outside[0], along[1] + outside[1] if is_quarter else 2*along[1] + outside[1]]
     text = re.sub(r"elements=\d+, \d+", f"elements={counts[0]}, {counts[1]}", text)
     text = re.sub(r"cell=[\d.e-]+", f"cell={cell}e-3", text)
-    text = re.sub(r"(below_ply=\S+)", rf"\1  law='cohesive'  growth_control='{control}'", text, count=1)
+    law = "" if "law='cohesive'" in text else "law='cohesive'  "
+    text = re.sub(r"&delamination ", f"&delamination {law}growth_control='{control}'  ", text)
     return re.sub(r"&time .*/", lambda time: time[0].replace("integrator='central_difference'", "").replace(
         "&time", "&time integrator='central_difference'"), text)
 
@@ -56,7 +58,7 @@ def main(implam, folder, deck, cells, control="energy"):
     for cell in cells.split(","):
         if (deck, cell, control) in stored:
             continue
-        place = Path(folder)/f"{deck}_{cell}_{control}"
+        place = Path(folder)/f"{Path(deck).name}_{cell}_{control}"
         place.mkdir(parents=True, exist_ok=True)
         (place/"deck.nml").write_text(text_of(deck, float(cell), control), encoding="utf-8")
         summary, seconds = run_deck(implam, place/"deck.nml", place)

@@ -15,7 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parents[1]/"src"/"delamination"/"growth_errors.f90"
 # Least cells in a process zone: 1.7 and 2.5 are those of the warning and of resolved zones.
-LEAST = (0, .25, .5, 1, 1.7, 2.5)
+LEAST = (0, .25, .4, .5, 1, 1.7, 2.5)
 STUDIES = HERE.parents[1]/"doc"/"studies"
 NAMES = {"dcb": "double cantilever", "enf": "end-notched flexure", "slb": "single-leg bending, 43 % of shear"}
 # Tables of the pages by the beginning of their heading.

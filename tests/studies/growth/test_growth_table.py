@@ -44,9 +44,9 @@ class Errors(unittest.TestCase):
         lines = table_lines([(.1, (1.6,)), (.5, (-3.2,)), (.6, (2.4,))], [(1.0, (4.0, -1.0))]).splitlines()
         self.assertEqual(lines[0], "    growth_errors_t(0.0_wp, 3, [-3, 2], 0, [0, 0], [0, 0]), &")
         self.assertEqual(lines[1], "    growth_errors_t(0.25_wp, 0, [0, 0], 0, [0, 0], [0, 0]), &")
-        self.assertEqual(lines[2], "    growth_errors_t(0.5_wp, 2, [-3, 2], 0, [0, 0], [0, 0]), &")
-        self.assertEqual(lines[3], "    growth_errors_t(1.0_wp, 0, [0, 0], 1, [4, 4], [-1, -1]), &")
-        self.assertEqual(lines[5], "    growth_errors_t(2.5_wp, 0, [0, 0], 0, [0, 0], [0, 0])]")
+        self.assertEqual(lines[3], "    growth_errors_t(0.5_wp, 2, [-3, 2], 0, [0, 0], [0, 0]), &")
+        self.assertEqual(lines[4], "    growth_errors_t(1.0_wp, 0, [0, 0], 1, [4, 4], [-1, -1]), &")
+        self.assertEqual(lines[6], "    growth_errors_t(2.5_wp, 0, [0, 0], 0, [0, 0], [0, 0])]")
 
 
 class Models(unittest.TestCase):
