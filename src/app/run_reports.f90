@@ -16,6 +16,7 @@ module run_reports
   use kinds, only: wp
   use tangent_operators, only: tangent_operator_t
   use time_stepping, only: time_stepper_t
+  use usual_units, only: in_usual_unit, time_kind
   implicit none
   private
   public :: log_echo, log_model, log_costs, summary
@@ -81,8 +82,9 @@ contains
 
     associate (explicit => stepper%explicit, parameters => stepper%explicit%parameters)
       stable = 2/explicit%frequency
-      call log%note('Stable step '//rounded_text(stable)//' by element '//to_text(explicit%element)// &
-                    ', shorter during contact; steps are at most '//rounded_text(parameters%step_factor)//' of it.')
+      call log%note('Stable step '//in_usual_unit(stable, time_kind, deck%units)//' by element '// &
+                    to_text(explicit%element)//', shorter during contact; steps are at most '// &
+                    rounded_text(parameters%step_factor)//' of it.')
       longest = parameters%step_factor*stable
       if (parameters%longest > 0) longest = min(longest, parameters%longest)
       untaken = untaken_step(deck, longest)
