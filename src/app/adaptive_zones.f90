@@ -5,13 +5,12 @@ module adaptive_zones
   use delamination_parameters, only: delamination_t
   use errors, only: error_t
   use kinds, only: wp
-  use layer_switches, only: advance_with_layers
   use logger, only: log_t
   use models, only: model_t
   use plies, only: plies_text
   use run_moments, only: moment
   use text, only: append, line_t
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   use usual_units, only: in_usual_unit, length_kind
   implicit none
   private
@@ -24,7 +23,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
-    type(time_stepper_t), intent(inout) :: stepper
+    class(stepper_t), intent(inout) :: stepper
     !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
     !> Receives a note of new layers
@@ -35,7 +34,7 @@ contains
     logical :: switched
     integer :: i
 
-    call advance_with_layers(model, stepper, deck%linear_solver, event, switched, error)
+    call stepper%advance_with_layers(model, deck%linear_solver, event, switched, error)
     if (allocated(error) .or. .not. switched) return
     notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time), deck%units)
     do i = 1, size(notes)
@@ -73,7 +72,7 @@ contains
     !> The model with the zones of the archive
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
-    type(time_stepper_t), intent(inout) :: stepper
+    class(stepper_t), intent(inout) :: stepper
     class(archive_t), intent(inout) :: archive
     !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error

@@ -8,14 +8,13 @@ module coarse_runs
   use errors, only: error_t
   use interface_figures, only: interface_figures_t, figures_of
   use kinds, only: wp
-  use layer_switches, only: advance_with_layers
   use model_building, only: create_model
   use models, only: model_t
   use queue_signals, only: stop_signal
   use run_records, only: run_record_t, new_run_record
   use stepping_parameters, only: end_of_run
-  use step_intervals, only: steps_between_checks, steps_between_stages
-  use time_stepping, only: time_stepper_t
+  use stepper_choice, only: choose_stepper
+  use steppers, only: stepper_t
   implicit none
   private
   public :: coarse_run_t, run_coarse_model
@@ -45,7 +44,7 @@ contains
     type(deck_t) :: coarse
     type(model_t) :: model
     type(interface_figures_t), allocatable :: figures(:)
-    type(time_stepper_t) :: stepper
+    class(stepper_t), allocatable :: stepper
     type(error_t), allocatable :: error
     integer :: checks
     logical :: switched
@@ -53,16 +52,17 @@ contains
     coarse = coarser_deck(deck)
     if (lacks_window_lines(coarse)) return
     call create_model(coarse%setup_t, communicator, model, error)
+    call choose_stepper(coarse%stepping, stepper)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
     coarse_run%record = new_run_record(model)
-    checks = steps_between_checks(coarse%stepping, model%mesh%elements())
+    checks = stepper%steps_between_checks(model%mesh%elements())
     do while (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
       ! As the run itself: contact areas and adaptive layers follow the state.
-      call advance_with_layers(model, stepper, coarse%linear_solver, &
+      call stepper%advance_with_layers(model, coarse%linear_solver, &
                                end_of_run(coarse%stepping, coarse_run%record%contact_end), switched, error)
       if (allocated(error)) exit
-      call coarse_run%record%observe(model, stepper%now, steps_between_stages(coarse%stepping))
+      call coarse_run%record%observe(model, stepper%now, stepper%steps_between_stages())
       if (modulo(stepper%now%step, checks) > 0) cycle
       if (communicator%any(stop_signal() /= 0)) exit
     end do

@@ -14,7 +14,7 @@ module field_results
   use ply_fields, only: ply_field_rows, write_ply_fields
   use result_tables, only: result_row_length
   use text, only: lower_case
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   implicit none
   private
   public :: part_of, write_fields, write_mesh
@@ -91,7 +91,7 @@ contains
   !> Writes the requested fields of the state reached, if their physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)
     type(model_t), intent(in) :: model
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     !> Requested fields
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields

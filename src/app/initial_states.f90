@@ -12,7 +12,6 @@ module initial_states
   use deck_reader, only: read_deck_text
   use errors, only: error_t, exit_deck, exit_files, fail
   use files, only: file_exists, is_same_file
-  use inherited_starts, only: begin_inherited
   use inherited_states, only: visit_inheritance
   use initial_state_deck, only: initial_state_group
   use initial_state_parameters, only: motion_rest
@@ -34,7 +33,7 @@ module initial_states
   use states, only: new_state, state_t, time_item
   use stepping_parameters, only: end_of_run
   use text, only: append, line_t, rounded_text, to_text
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   implicit none
   private
   public :: fit_initial_state, missing_start, take_initial_state, visit_incomplete_start
@@ -217,7 +216,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     !> The time stepper at its start
-    type(time_stepper_t), intent(inout) :: stepper
+    class(stepper_t), intent(inout) :: stepper
     !> Receives the quantities before and after mapping, and the failures before this run
     type(run_record_t), intent(inout) :: record
     type(log_t), intent(inout) :: log
@@ -232,7 +231,7 @@ contains
     ! At rest, damage would only grow by errors of the mapping.
     call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%load_start > 0 .and. &
                                  deck%initial%motion == motion_rest)
-    call begin_inherited(model, transfer, deck%initial%motion, stepper, error)
+    call stepper%begin_inherited(model, transfer, deck%initial%motion, error)
     if (allocated(error)) return
     call record%inherit(model, stepper%now)
     if (is_mapped(deck, old)) then
@@ -259,7 +258,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     !> The time stepper; receives the inherited state
-    type(time_stepper_t), intent(inout) :: stepper
+    class(stepper_t), intent(inout) :: stepper
     !> Receives the map of points and elements
     class(layer_transfer_t), allocatable, intent(out) :: transfer
     !> Receives the quantities on the other mesh if this one differs

@@ -18,7 +18,7 @@ module result_rows
   use step_columns, only: contact_rows, damping_rows, heat_rows, heat_values, iteration_rows, iteration_values, &
                           ledger_rows, ledger_values, motion_rows, motion_values, step_rows, step_values
   use states, only: state_t
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   implicit none
   private
   public :: column_names, column_whole, row_of
@@ -154,7 +154,7 @@ contains
   !> Row of the state reached. Collective.
   function row_of(model, stepper, record) result(row)
     type(model_t), intent(in) :: model
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     type(run_record_t), intent(in) :: record
     !> Values in the order of the columns
     real(wp), allocatable :: row(:)
@@ -163,9 +163,10 @@ contains
     associate (now => stepper%now)
       loads = loads_on(model, now)
       row = [motion_values(now), area_values(model, now%interfaces), ledger_values(now%ledger), &
-             step_values(now, stepper%controller%last), &
-             release_values(model, now%interfaces, now%motion%displacement), iteration_values(now, stepper%rejected), &
-             operator_values(stepper%operator), ply_values(model, now%plies), border_values(model, now%interfaces), &
+             step_values(now, stepper%last_step()), &
+             release_values(model, now%interfaces, now%motion%displacement), &
+             iteration_values(now, stepper%rejected_steps()), operator_values(stepper%operator), &
+             ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
              real(size(record%warning_kinds), wp), now%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &

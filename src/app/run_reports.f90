@@ -1,6 +1,6 @@
 !> Reports of a run in its log: keys in effect at the start, costs at the end.
 module run_reports
-  use text, only: counted, line_t, rounded_text, to_text
+  use text, only: line_t, to_text
   use logger, only: log_t
   use models, only: model_t
   use profiles, only: part_length, profile_row_t
@@ -15,11 +15,10 @@ module run_reports
   use indentation_deck, only: echo_without_group
   use kinds, only: wp
   use tangent_operators, only: tangent_operator_t
-  use time_stepping, only: time_stepper_t
-  use usual_units, only: in_usual_unit, time_kind
+  use steppers, only: stepper_t
   implicit none
   private
-  public :: log_echo, log_model, log_costs, summary
+  public :: log_echo, log_model, log_costs
 
 contains
 
@@ -41,56 +40,23 @@ contains
     end do
   end subroutine log_echo
 
-  !> Reports the size of the model and the factorization package. Collective.
+  !> Reports the size of the model and its steps, and whether the deck's step is longer. Collective.
   subroutine log_model(deck, model, stepper, log)
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    type(time_stepper_t), intent(in) :: stepper
-    type(log_t), intent(inout) :: log
-    character(len=:), allocatable :: shares
-    integer :: most, least
-
-    if (allocated(stepper%explicit)) then
-      most = size(model%distribution%elements)
-      least = most
-      call model%communicator%maximum(most)
-      call model%communicator%minimum(least)
-      shares = ''
-      if (model%communicator%size > 1) shares = ' of '//to_text(least)//' to '//counted(to_text(most), 'element')
-      call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
-                    counted(to_text(stepper%unknowns), 'unknown')//', '// &
-                    counted(to_text(model%communicator%size), 'rank')//shares//'.')
-      call log_stable_step(deck, stepper, log)
-      return
-    end if
-    associate (operator => stepper%operator)
-      call log%note('Model: '//counted(to_text(model%mesh%elements()), 'element')//', '// &
-                    counted(to_text(stepper%unknowns), 'unknown')//', '// &
-                    counted(to_text(model%communicator%size), 'rank')//', factored by '// &
-                    operator%solver%package_used()//'.')
-    end associate
-  end subroutine log_model
-
-  !> Reports the element that determines the stable step, and whether the deck's step is longer.
-  subroutine log_stable_step(deck, stepper, log)
-    type(deck_t), intent(in) :: deck
-    !> The time stepper, by central differences
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     type(log_t), intent(inout) :: log
     character(len=:), allocatable :: untaken
-    real(wp) :: stable, longest
+    type(line_t), allocatable :: lines(:)
+    integer :: i
 
-    associate (explicit => stepper%explicit, parameters => stepper%explicit%parameters)
-      stable = 2/explicit%frequency
-      call log%note('Stable step '//in_usual_unit(stable, time_kind, deck%units)//' by element '// &
-                    to_text(explicit%element)//', shorter during contact; steps are at most '// &
-                    rounded_text(parameters%step_factor)//' of it.')
-      longest = parameters%step_factor*stable
-      if (parameters%longest > 0) longest = min(longest, parameters%longest)
-      untaken = untaken_step(deck, longest)
-      if (untaken /= '') call log%note(untaken)
-    end associate
-  end subroutine log_stable_step
+    lines = stepper%model_sentences(model)
+    do i = 1, size(lines)
+      call log%note(lines(i)%text)
+    end do
+    untaken = untaken_step(deck, stepper%longest_step())
+    if (untaken /= '') call log%note(untaken)
+  end subroutine log_model
 
   !> Lists the profile in the log, the longest parts first.
   subroutine log_profile(rows, log)
@@ -141,24 +107,4 @@ contains
     end associate
     call log_profile(timers%profile%rows(), log)
   end subroutine log_costs
-
-  !> Cost of a run in one line.
-  function summary(stepper) result(line)
-    type(time_stepper_t), intent(in) :: stepper
-    !> The line
-    character(len=:), allocatable :: line
-
-    associate (now => stepper%now, operator => stepper%operator)
-      line = counted(to_text(now%step), 'step')
-      if (allocated(stepper%explicit)) then
-        line = line//' by central differences'
-        return
-      end if
-      line = line//' ('//to_text(stepper%rejected)//' rejected), '// &
-             counted(to_text(now%all_iterations), 'iteration')//' of equilibrium, '// &
-             to_text(now%all_force_iterations)//' of the force, '// &
-             counted(to_text(operator%factorizations), 'factorization')//', '// &
-             counted(to_text(operator%solves), 'solve')//' by '//operator%solver%package_used()
-    end associate
-  end function summary
 end module run_reports

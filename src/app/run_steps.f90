@@ -9,8 +9,7 @@ module run_steps
   use models, only: model_t
   use output_parameters, only: output_t
   use run_records, only: run_record_t
-  use step_intervals, only: steps_between_checks, steps_between_stages
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   implicit none
   private
   public :: advance_to_output, row_is_due
@@ -23,7 +22,7 @@ contains
     !> The model; layers may grow with the damage
     type(model_t), intent(inout) :: model
     !> The time stepper, with the state
-    type(time_stepper_t), intent(inout) :: stepper
+    class(stepper_t), intent(inout) :: stepper
     !> The record, updated in each step
     type(run_record_t), intent(inout) :: record
     !> Time, or load factor, that must not be exceeded
@@ -34,17 +33,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: steps
 
-    steps = steps_between_checks(deck%stepping, model%mesh%elements())
+    steps = stepper%steps_between_checks(model%mesh%elements())
     do
       call advance(deck, model, stepper, event, log, error)
       if (allocated(error)) then
         if (error%code == exit_convergence) error%message = error%message//slow_motion_advice(deck)
         ! The step was accepted, but its failed plies have found no equilibrium.
         if (stepper%now%time > record%time) &
-          call record%observe(model, stepper%now, steps_between_stages(deck%stepping))
+          call record%observe(model, stepper%now, stepper%steps_between_stages())
         return
       end if
-      call record%observe(model, stepper%now, steps_between_stages(deck%stepping))
+      call record%observe(model, stepper%now, stepper%steps_between_stages())
       if (modulo(stepper%now%step, steps) == 0 .or. stepper%now%time >= event) return
       if (row_is_due(deck%output, stepper%now%step)) return
     end do

@@ -12,11 +12,12 @@ module run_summaries
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
   use run_results, only: results_t
+  use run_warnings, only: reported_warnings
   use summary_file, only: summary_text
   use summary_lines, only: lines_of_summary
   use summary_results, only: results_of
   use text, only: line_t
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   use whole_files, only: write_whole_file
   implicit none
   private
@@ -35,7 +36,7 @@ contains
   subroutine summarise(deck, model, stepper, record, provenance, seconds, path, log, error)
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     type(run_record_t), intent(in) :: record
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
@@ -51,7 +52,7 @@ contains
     type(run_errors_t) :: errors
     type(coarse_run_t) :: coarse_run
     type(error_t), allocatable :: fault
-    type(line_t), allocatable :: lines(:)
+    type(line_t), allocatable :: lines(:), given(:)
     character(len=:), allocatable :: unknown_because
     logical :: ended, needed
     integer :: i
@@ -71,13 +72,14 @@ contains
     else if (ended .and. errors%source == 'none') then
       unknown_because = unasked
     end if
-    lines = lines_of_summary(deck, results, record, figures, errors, unknown_because)
+    given = reported_warnings(record, deck, stepper)
+    lines = lines_of_summary(deck, results, record, figures, errors, unknown_because, given)
     do i = 1, size(lines)
       call log%note(lines(i)%text)
     end do
     if (model%communicator%is_root()) &
-      call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, ending_of(error), &
-                                               provenance, seconds), fault)
+      call write_whole_file(path, summary_text(deck, stepper, record, results, figures, errors, given, &
+                                               ending_of(error), provenance, seconds), fault)
     call model%communicator%agree(fault)
     if (allocated(fault) .and. .not. allocated(error)) error = fault
   end subroutine summarise

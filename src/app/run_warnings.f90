@@ -20,10 +20,9 @@ module run_warnings
                          warning_mapping
   use run_moments, only: moment
   use slow_motions, only: has_developed
-  use stepping_parameters, only: is_explicit
   use states, only: state_t
   use text, only: line_t, append
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   use warning_texts, only: warning_text, max_contact, max_deflection_ratio, max_hollow, &
                            max_kinetic, max_scaled
   implicit none
@@ -36,7 +35,7 @@ contains
   subroutine report_warnings(deck, model, stepper, record, energy_check, log, error)
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
@@ -46,16 +45,16 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(line_t), allocatable :: warnings(:)
 
-    call find_warnings(deck, model, stepper%now, stepper%exceeds_tolerance, record, energy_check, warnings)
+    call find_warnings(deck, model, stepper, stepper%now, record, energy_check, warnings)
     call give(deck, warnings, log, error)
   end subroutine report_warnings
 
   !> Warns of energies of the last state of a run. Those of a small load are compared with the energy of the full load,
   !> unless the run has ended at that load. Collective.
-  subroutine report_last_warnings(deck, model, now, record, energy_check, log, error)
+  subroutine report_last_warnings(deck, model, stepper, record, energy_check, log, error)
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
-    type(state_t), intent(in) :: now
+    class(stepper_t), intent(in) :: stepper
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
@@ -65,10 +64,12 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: warnings(:)
 
-    if (deck%load_level(now%time) >= 1) return
+    if (deck%load_level(stepper%now%time) >= 1) return
     allocate (warnings(0))
-    call add_energy_warnings(deck, energy_check%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, .true.), &
-                             now%time, record, warnings)
+    associate (now => stepper%now)
+      call add_energy_warnings(deck, stepper, energy_check%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, &
+                                                                 .true.), now%time, record, warnings)
+    end associate
     call give(deck, warnings, log, error)
   end subroutine report_last_warnings
 
@@ -92,12 +93,11 @@ contains
   end subroutine give
 
   !> Finds and stores new warnings of an accepted step. Collective.
-  subroutine find_warnings(deck, model, now, step_errs, record, energy_check, warnings)
+  subroutine find_warnings(deck, model, stepper, now, record, energy_check, warnings)
     type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
-    !> True: the error of the step exceeds the tolerance of error control at the smallest length
-    logical, intent(in) :: step_errs
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> The check of energies
@@ -116,7 +116,7 @@ contains
     end do
     if (now%indentation%alpha > max_indentation(deck)) call add(warning_indentation, 0)
     if (now%force > 0 .and. now%depth_below_impactor(model) > max_hollow*thickness) call add(warning_below_nose, 0)
-    if (step_errs) call add(warning_steps, 0)
+    if (stepper%exceeds_tolerance()) call add(warning_steps, 0)
     if (record%mapping%raises_strain()) call add(warning_mapping, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call add(warning_slopes, 0)
@@ -131,8 +131,8 @@ contains
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
     call record%note_motion(deck, now)
-    call add_motion_warnings(deck, now, record, warnings)
-    call add_energy_warnings(deck, exceeded, now%time, record, warnings)
+    call add_motion_warnings(deck, stepper, now, record, warnings)
+    call add_energy_warnings(deck, stepper, exceeded, now%time, record, warnings)
 
   contains
 
@@ -141,13 +141,14 @@ contains
       !> Its kind and zone
       integer, intent(in) :: kind, zone
 
-      call add_warning(deck, kind, zone, now%time, record, warnings)
+      call add_warning(deck, stepper, kind, zone, now%time, record, warnings)
     end subroutine add
   end subroutine find_warnings
 
   !> Adds warnings of kinetic energy: of motions with scaled inertia, lost as surfaces meet, and of a slow motion.
-  subroutine add_motion_warnings(deck, now, record, warnings)
+  subroutine add_motion_warnings(deck, stepper, now, record, warnings)
     type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     type(state_t), intent(in) :: now
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
@@ -156,17 +157,18 @@ contains
 
     if (deck%is_impact() .or. has_developed(deck, now%time)) then
       if (record%scaled_energy > max_scaled*now%ledger%largest) &
-        call add_warning(deck, warning_scaled, 0, now%time, record, warnings)
-      if (is_explicit(deck%stepping) .and. now%ledger%contact > max_contact*now%ledger%largest) &
-        call add_warning(deck, warning_contact, 0, now%time, record, warnings)
+        call add_warning(deck, stepper, warning_scaled, 0, now%time, record, warnings)
+      if (stepper%dissipates_in_contact() .and. now%ledger%contact > max_contact*now%ledger%largest) &
+        call add_warning(deck, stepper, warning_contact, 0, now%time, record, warnings)
     end if
     if (record%slow_motion%share > max_kinetic) &
-      call add_warning(deck, warning_kinetic, 0, now%time, record, warnings)
+      call add_warning(deck, stepper, warning_kinetic, 0, now%time, record, warnings)
   end subroutine add_motion_warnings
 
   !> Adds warnings of energies.
-  subroutine add_energy_warnings(deck, exceeded, time, record, warnings)
+  subroutine add_energy_warnings(deck, stepper, exceeded, time, record, warnings)
     type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     !> True for the kinds of errors found
     logical, intent(in) :: exceeded(3)
     !> Time or load factor
@@ -176,14 +178,15 @@ contains
     !> Receives their sentences
     type(line_t), allocatable, intent(inout) :: warnings(:)
 
-    if (exceeded(energy_created)) call add_warning(deck, warning_energy, 0, time, record, warnings)
-    if (exceeded(energy_dissipated)) call add_warning(deck, warning_loss, 0, time, record, warnings)
-    if (exceeded(energy_imbalance)) call add_warning(deck, warning_ledger, 0, time, record, warnings)
+    if (exceeded(energy_created)) call add_warning(deck, stepper, warning_energy, 0, time, record, warnings)
+    if (exceeded(energy_dissipated)) call add_warning(deck, stepper, warning_loss, 0, time, record, warnings)
+    if (exceeded(energy_imbalance)) call add_warning(deck, stepper, warning_ledger, 0, time, record, warnings)
   end subroutine add_energy_warnings
 
   !> Adds a warning at its first occurrence.
-  subroutine add_warning(deck, kind, zone, time, record, warnings)
+  subroutine add_warning(deck, stepper, kind, zone, time, record, warnings)
     type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     !> Its kind and zone
     integer, intent(in) :: kind, zone
     !> Time or load factor
@@ -195,7 +198,7 @@ contains
 
     if (record%has_warned(kind, zone)) return
     call record%note_warning(kind, zone, time)
-    call append(warnings, warning_text(kind, zone, moment(deck, time), deck))
+    call append(warnings, warning_text(kind, zone, moment(deck, time), deck, stepper))
   end subroutine add_warning
 
   !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor,
@@ -256,9 +259,10 @@ contains
   end function has_fibre_failure
 
   !> All warnings of a run, with those before a restart.
-  function reported_warnings(record, deck) result(lines)
+  function reported_warnings(record, deck, stepper) result(lines)
     type(run_record_t), intent(in) :: record
     type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     !> One sentence each, in the order of time
     type(line_t), allocatable :: lines(:)
     integer :: i
@@ -266,7 +270,7 @@ contains
     allocate (lines(0))
     do i = 1, size(record%warning_kinds)
       call append(lines, warning_text(record%warning_kinds(i), record%warning_zones(i), &
-                                      moment(deck, record%warning_times(i)), deck))
+                                      moment(deck, record%warning_times(i)), deck, stepper))
     end do
   end function reported_warnings
 end module run_warnings

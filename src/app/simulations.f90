@@ -10,7 +10,8 @@ module simulations
   use launchers, only: launched
   use models, only: model_t
   use model_building, only: create_model
-  use time_stepping, only: time_stepper_t
+  use stepper_choice, only: choose_stepper
+  use steppers, only: stepper_t
   use deck_contents, only: deck_t
   use deck_provenance, only: provenance_of
   use result_paths, only: refuse_pipes
@@ -19,7 +20,7 @@ module simulations
   use run_moments, only: moment
   use run_progress, only: progress_t
   use run_records, only: run_record_t, new_run_record
-  use run_reports, only: log_echo, log_model, log_costs, summary
+  use run_reports, only: log_echo, log_model, log_costs
   use run_steps, only: advance_to_output, row_is_due
   use run_warnings, only: report_last_warnings, report_warnings
   use stepping_parameters, only: end_of_run
@@ -49,7 +50,7 @@ module simulations
     !> The model
     type(model_t) :: model
     !> The time stepper, with the state
-    type(time_stepper_t) :: stepper
+    class(stepper_t), allocatable :: stepper
     !> Log, progress and result files
     type(log_t) :: log
     !> Time of set-up, steps and output
@@ -158,6 +159,7 @@ contains
     call self%timers%stop('model')
     self%model%profile = profile
     if (allocated(error)) return
+    call choose_stepper(deck%stepping, self%stepper)
     call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append .or. deck%initial%is_inherited, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
@@ -356,7 +358,7 @@ contains
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
     call self%history%close(error)
-    call self%progress%finish(self%log, summary(self%stepper))
+    call self%progress%finish(self%log, self%stepper%cost())
     call log_costs(self%timers, self%stepper%operator, self%log)
     call self%log%note('Results: '//self%base//'_history.csv, '//self%base//'.xdmf, '//self%base//summary_ending// &
                        ', '//self%base//'.log')
@@ -371,7 +373,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     if (.not. self%is_ready) return
-    call report_last_warnings(self%deck, self%model, self%stepper%now, self%record, self%energy_check, self%log, error)
+    call report_last_warnings(self%deck, self%model, self%stepper, self%record, self%energy_check, self%log, error)
     call summarise(self%deck, self%model, self%stepper, self%record, self%provenance, &
                    wall_time() - self%timers%profile%begun, self%base//summary_ending, self%log, error)
   end subroutine conclude

@@ -16,9 +16,8 @@ module summary_file
   use run_provenance, only: provenance_t
   use run_records, only: run_record_t
   use run_results, only: results_t
-  use run_warnings, only: reported_warnings
   use text, only: line_t
-  use time_stepping, only: time_stepper_t
+  use steppers, only: stepper_t
   implicit none
   private
   public :: summary_text
@@ -29,9 +28,10 @@ module summary_file
 contains
 
   !> The summary as JSON.
-  function summary_text(deck, stepper, record, results, figures, errors, ending, provenance, seconds) result(content)
+  function summary_text(deck, stepper, record, results, figures, errors, given, ending, provenance, seconds) &
+    result(content)
     type(deck_t), intent(in) :: deck
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     type(run_record_t), intent(in) :: record
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -39,6 +39,8 @@ contains
     type(run_figures_t), intent(in) :: figures
     !> Estimated errors
     type(run_errors_t), intent(in) :: errors
+    !> Warnings of the run
+    type(line_t), intent(in) :: given(:)
     type(ending_t), intent(in) :: ending
     !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
@@ -63,7 +65,7 @@ contains
     call put_errors(json, errors)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
     call put_plies(json, deck, figures)
-    call put_warnings(json, deck, record)
+    call put_warnings(json, deck, record, given)
     call put_costs(json, stepper, seconds)
     call put_profile(json, stepper%operator%timers%profile%rows())
     call put_provenance(json, provenance)
@@ -142,15 +144,15 @@ contains
   end subroutine put_plies
 
   !> Warnings on the deck, which have no time, and those of the run.
-  subroutine put_warnings(json, deck, record)
+  subroutine put_warnings(json, deck, record, given)
     !> The summary
     type(json_t), intent(inout) :: json
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record
-    type(line_t), allocatable :: given(:)
+    !> Those of the run
+    type(line_t), intent(in) :: given(:)
     integer :: i
 
-    given = reported_warnings(record, deck)
     call json%open_list('warnings')
     do i = 1, size(deck%remarks)
       call json%open_object('')
@@ -171,13 +173,13 @@ contains
   subroutine put_costs(json, stepper, seconds)
     !> The summary
     type(json_t), intent(inout) :: json
-    type(time_stepper_t), intent(in) :: stepper
+    class(stepper_t), intent(in) :: stepper
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
 
     call json%open_object('costs')
     call json%put('unknowns', stepper%unknowns)
-    call json%put('rejected', stepper%rejected)
+    call json%put('rejected', stepper%rejected_steps())
     call json%put('total_iterations', stepper%now%all_iterations)
     call json%put('total_force_iterations', stepper%now%all_force_iterations)
     call json%put('refactorisations', stepper%operator%factorizations)

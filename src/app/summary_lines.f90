@@ -9,7 +9,6 @@ module summary_lines
   use run_moments, only: moment
   use run_records, only: run_record_t
   use run_results, only: results_t
-  use run_warnings, only: reported_warnings
   use summary_rows, only: label_of_result, unit_of_result
   use text, only: line_t, append, counted, rounded_text, to_text
   use usual_units, only: area_kind, energy_kind, force_kind, length_kind, time_kind, velocity_kind
@@ -23,7 +22,7 @@ module summary_lines
 contains
 
   !> The summary as lines of the log.
-  function lines_of_summary(deck, results, record, figures, errors, unknown_because) result(lines)
+  function lines_of_summary(deck, results, record, figures, errors, unknown_because, given) result(lines)
     type(deck_t), intent(in) :: deck
     !> Results of the run
     type(results_t), intent(in) :: results
@@ -34,6 +33,8 @@ contains
     type(run_errors_t), intent(in) :: errors
     !> Reason why errors are not known; empty: known, or not to be reported
     character(len=*), intent(in) :: unknown_because
+    !> Warnings of the run
+    type(line_t), intent(in) :: given(:)
     type(line_t), allocatable :: lines(:)
     logical :: struck
 
@@ -68,7 +69,7 @@ contains
     if (deck%has_ply_damage) call add_figure(lines, 'failed plies', counted_of('fibre_failures')//', '// &
       counted_of('matrix_cracks')//', '//counted_of('matrix_crushings')//' (counted in each element)')
     if (len(unknown_because) > 0) call add_figure(lines, 'errors', unknown_because)
-    call add_warnings(lines, deck, record)
+    call add_warnings(lines, deck, given)
 
   contains
 
@@ -305,14 +306,13 @@ contains
   end subroutine add_interfaces
 
   !> Warnings on the deck and those of the run.
-  subroutine add_warnings(lines, deck, record)
+  subroutine add_warnings(lines, deck, given)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    type(run_record_t), intent(in) :: record
-    type(line_t), allocatable :: given(:)
+    !> Those of the run
+    type(line_t), intent(in) :: given(:)
     integer :: i
 
-    given = reported_warnings(record, deck)
     if (size(deck%remarks) + size(given) == 0) call add_figure(lines, 'warnings', 'none')
     do i = 1, size(deck%remarks)
       call add_figure(lines, 'warning', deck%remarks(i)%text)

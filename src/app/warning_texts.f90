@@ -10,7 +10,7 @@ module warning_texts
                          warning_mapping
   use plate_options, only: max_slope
   use short_numbers, only: short_text
-  use stepping_parameters, only: is_explicit
+  use steppers, only: stepper_t
   use text, only: to_text
   implicit none
   private
@@ -37,7 +37,7 @@ module warning_texts
 contains
 
   !> Sentence of a warning.
-  pure function warning_text(kind, zone, at, deck) result(text)
+  pure function warning_text(kind, zone, at, deck, stepper) result(text)
     !> One of the kinds of warnings
     integer, intent(in) :: kind
     !> Its zone; 0: none
@@ -45,6 +45,7 @@ contains
     !> Its time, such as time 0.001
     character(len=*), intent(in) :: at
     type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     !> One sentence
     character(len=:), allocatable :: text
 
@@ -58,14 +59,12 @@ contains
       text = 'Layers have extended with the damage beyond the core of the mesh since '//at// &
              ', where cells are larger: make the core larger.'
     case (warning_energy)
-      text = energy_text('created', 'use smaller steps, &impactor integrator=''conserving'', or more damping '// &
-                         '(rho_inf) with delamination.', 'use a smaller step_factor.')
+      text = energy_text('created', stepper%energy_remedy(deck%setup_t, .true.))
     case (warning_loss)
-      text = energy_text('dissipated', 'use smaller steps, or less damping (rho_inf).', dissipation_remedy(deck))
+      text = energy_text('dissipated', stepper%energy_remedy(deck%setup_t, .false.))
     case (warning_ledger)
       text = 'The energy error (energy_error) has exceeded '//short_text(100*energy_tolerance)// &
-             ' % of the energy since '//at//': use a smaller '// &
-             trim(merge('step_factor.         ', 'tolerance of &solver.', is_explicit(deck%stepping)))
+             ' % of the energy since '//at//': '//stepper%ledger_remedy()
     case (warning_kinetic)
       text = 'The kinetic energy of the plate has exceeded '//short_text(100*max_kinetic)//' % of the work of the '// &
              'load since '//at//': the motion is too fast for a quasi-static test; give a longer end or rise.'
@@ -105,27 +104,16 @@ contains
   contains
 
     !> Sentence on an energy above its limit, with a remedy.
-    pure function energy_text(what, cure, explicit_remedy) result(words)
+    pure function energy_text(what, remedy) result(words)
       !> created or dissipated
       character(len=*), intent(in) :: what
-      !> Remedies for implicit steps and for central differences
-      character(len=*), intent(in) :: cure, explicit_remedy
+      !> End of the sentence
+      character(len=*), intent(in) :: remedy
       !> The sentence
       character(len=:), allocatable :: words
 
-      if (deck%is_static()) then
-        words = 'Load steps have '//what//' more than '//short_text(100*energy_tolerance)//' % of the energy by '// &
-          at// &
-                ' (energy_algorithmic): use more steps, unless failures or snap-through release it as kinetic energy.'
-      else if (is_explicit(deck%stepping)) then
-        words = 'Central differences have '//what//' more than '//short_text(100*energy_tolerance)// &
-          ' % of the energy by '//at &
-                //' (energy_algorithmic): '//explicit_remedy
-      else
-        words = 'The time integrators have '//what//' more than '//short_text(100*energy_tolerance)// &
-          ' % of the energy by '//at &
-                //': '//cure
-      end if
+      words = stepper%method_name()//' have '//what//' more than '//short_text(100*energy_tolerance)// &
+              ' % of the energy by '//at//' (energy_algorithmic): '//remedy
     end function energy_text
   end function warning_text
 
@@ -142,18 +130,6 @@ contains
              'plate is at rest, or the mesh of the other run.'
     end if
   end function mapping_remedy
-
-  !> Remedy for energy dissipated by central differences. Layers inserted by a growing zone relax, and the energy
-  !> released is damped.
-  pure function dissipation_remedy(deck) result(cure)
-    type(deck_t), intent(in) :: deck
-    !> End of a sentence
-    character(len=:), allocatable :: cure
-
-    cure = 'use a smaller step_factor.'
-    if (any(deck%delaminations%is_adaptive)) &
-      cure = 'use a smaller step_factor or, as zones that grow release energy, a larger zone of &delamination.'
-  end function dissipation_remedy
 
   !> Cause and remedy of a struck point deeper than the impactor.
   pure function hollow_remedy(deck) result(cure)

@@ -8,7 +8,7 @@ module load_steps
   use static_steps, only: static_step_t, new_static_step
   use step_acceptance, only: accept_step
   use step_problems, only: solve_step
-  use steppers, only: stepper_t, step_kind_t
+  use implicit_steps, only: implicit_steps_t, step_kind_t
   use text, only: rounded_text
   implicit none
   private
@@ -21,6 +21,8 @@ module load_steps
     procedure :: try
     procedure :: complete_trial
     procedure :: choose_next
+    procedure :: name
+    procedure :: energy_remedy
     procedure :: equilibrate
   end type load_steps_t
 
@@ -30,7 +32,7 @@ contains
   subroutine start(self, stepper, model, error)
     class(load_steps_t), intent(in) :: self
     !> The stepper, its state in equilibrium
-    class(stepper_t), intent(inout) :: stepper
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(inout) :: error
 
@@ -41,7 +43,8 @@ contains
   !> Tries one load step.
   subroutine try(self, stepper, model, event, step, converged, error)
     class(load_steps_t), intent(in) :: self
-    class(stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Load factor that must not be exceeded
     real(wp), intent(in) :: event
@@ -68,7 +71,8 @@ contains
 
   !> Tries a step that dissipates a given energy.
   subroutine try_dissipation(stepper, model, step, converged, error)
-    class(stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Step tried
     real(wp), intent(in) :: step
@@ -92,7 +96,8 @@ contains
   !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
   subroutine complete_trial(self, stepper, model)
     class(load_steps_t), intent(in) :: self
-    class(stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
@@ -104,7 +109,7 @@ contains
   subroutine choose_next(self, stepper, model, step, change, extended)
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
-    class(stepper_t), intent(inout) :: stepper
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Step taken
     real(wp), intent(in) :: step
@@ -120,7 +125,7 @@ contains
   subroutine equilibrate(self, stepper, model, error)
     class(load_steps_t), intent(in) :: self
     !> The stepper, the step accepted
-    class(stepper_t), intent(inout) :: stepper
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Set if the damaged plate cannot carry the load
     type(error_t), allocatable, intent(inout) :: error
@@ -139,4 +144,22 @@ contains
       call accept_step(stepper, model, 0.0_wp)
     end do
   end subroutine equilibrate
+
+  !> Subject of a sentence.
+  pure function name(self) result(words)
+    class(load_steps_t), intent(in) :: self
+    character(len=:), allocatable :: words
+
+    words = 'Load steps'
+  end function name
+
+  !> What to change where steps have created or dissipated too much energy.
+  pure function energy_remedy(self, created) result(words)
+    class(load_steps_t), intent(in) :: self
+    !> True: energy was created; false: dissipated
+    logical, intent(in) :: created
+    character(len=:), allocatable :: words
+
+    words = 'use more steps, unless failures or snap-through release it as kinetic energy.'
+  end function energy_remedy
 end module load_steps

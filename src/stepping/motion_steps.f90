@@ -10,7 +10,7 @@ module motion_steps
   use plate_options, only: kinematics_von_karman
   use step_limits, only: impactor_limit, growth_limit, has_gear
   use step_problems, only: solve_step
-  use steppers, only: stepper_t, step_kind_t
+  use implicit_steps, only: implicit_steps_t, step_kind_t
   use stepping_parameters, only: is_error_controlled
   implicit none
   private
@@ -23,6 +23,8 @@ module motion_steps
     procedure :: try
     procedure :: complete_trial
     procedure :: choose_next
+    procedure :: name
+    procedure :: energy_remedy
   end type motion_steps_t
 
 contains
@@ -31,7 +33,7 @@ contains
   subroutine start(self, stepper, model, error)
     class(motion_steps_t), intent(in) :: self
     !> The stepper, its state in equilibrium
-    class(stepper_t), intent(inout) :: stepper
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Set if the mass matrix is singular
     type(error_t), allocatable, intent(inout) :: error
@@ -49,7 +51,8 @@ contains
   !> Tries one time step.
   subroutine try(self, stepper, model, event, step, converged, error)
     class(motion_steps_t), intent(in) :: self
-    class(stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Time that must not be exceeded
     real(wp), intent(in) :: event
@@ -82,7 +85,8 @@ contains
   !> Factorizes the operator if there is no factor. A factorization that is due again is left to the step, whose first
   !> correction requires the tangent at the predictor.
   subroutine prepare_operator(stepper, model, mass_factor, factor_is_due, error)
-    class(stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Factor of the mass in the step
     real(wp), intent(in) :: mass_factor
@@ -108,7 +112,8 @@ contains
   !> Records that surfaces are glued once the impactor moves back (unloading = 'glued').
   subroutine complete_trial(self, stepper, model)
     class(motion_steps_t), intent(in) :: self
-    class(stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
@@ -121,7 +126,7 @@ contains
   subroutine choose_next(self, stepper, model, step, change, extended)
     class(motion_steps_t), intent(in) :: self
     !> The stepper, the step accepted
-    class(stepper_t), intent(inout) :: stepper
+    class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Step taken
     real(wp), intent(in) :: step
@@ -144,4 +149,24 @@ contains
       if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
     end associate
   end subroutine choose_next
+
+  !> Subject of a sentence.
+  pure function name(self) result(words)
+    class(motion_steps_t), intent(in) :: self
+    character(len=:), allocatable :: words
+
+    words = 'The time integrators'
+  end function name
+
+  !> What to change where steps have created or dissipated too much energy.
+  pure function energy_remedy(self, created) result(words)
+    class(motion_steps_t), intent(in) :: self
+    !> True: energy was created; false: dissipated
+    logical, intent(in) :: created
+    character(len=:), allocatable :: words
+
+    words = 'use smaller steps, or less damping (rho_inf).'
+    if (created) words = 'use smaller steps, &impactor integrator=''conserving'', or more damping (rho_inf) with '// &
+                         'delamination.'
+  end function energy_remedy
 end module motion_steps

@@ -6,7 +6,7 @@ module step_acceptance
   use errors, only: error_t, fail, exit_convergence
   use models, only: model_t
   use states, only: state_t
-  use steppers, only: stepper_t
+  use implicit_steps, only: implicit_steps_t
   use struck_stresses, only: struck_stress
   use text, only: rounded_text
   implicit none
@@ -17,7 +17,7 @@ contains
 
   !> Makes the trial state the accepted state.
   subroutine accept_step(self, model, step)
-    class(stepper_t), intent(inout) :: self
+    class(implicit_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step taken
     real(wp), intent(in) :: step
@@ -45,7 +45,7 @@ contains
 
   !> Updates failures of plies and flaws of interfaces in the trial state.
   subroutine update_damage(self, model)
-    class(stepper_t), intent(inout) :: self
+    class(implicit_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
 
     call model%profile%enter('ply criteria')
@@ -61,7 +61,7 @@ contains
 
   !> Estimates the error of the trial step and whether it has to be repeated with a shorter length.
   subroutine assess_error(self, model, step, shortest, accurate)
-    class(stepper_t), intent(inout) :: self
+    class(implicit_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step tried
     real(wp), intent(in) :: step
@@ -81,7 +81,7 @@ contains
 
   !> Prepares a shorter step after a step that has not converged.
   subroutine reject_step(self, model, step, error)
-    class(stepper_t), intent(inout) :: self
+    class(implicit_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> Step tried
     real(wp), intent(in) :: step

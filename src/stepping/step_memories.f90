@@ -3,7 +3,7 @@ module step_memories
   use states, only: state_t
   use step_controllers, only: step_controller_t
   use step_errors, only: step_error_t
-  use time_stepping, only: time_stepper_t
+  use implicit_steps, only: implicit_steps_t
   implicit none
   private
   public :: step_memory_t, save_state
@@ -25,7 +25,8 @@ contains
 
   !> Saves the stepper before a step.
   pure function save_state(stepper) result(self)
-    type(time_stepper_t), intent(in) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(in) :: stepper
     type(step_memory_t) :: self
 
     self%now = stepper%now
@@ -37,7 +38,8 @@ contains
   subroutine restore_state(self, stepper)
     !> The state saved before the step
     class(step_memory_t), intent(in) :: self
-    type(time_stepper_t), intent(inout) :: stepper
+    !> The state accepted, the trial state and the step control
+    class(implicit_steps_t), intent(inout) :: stepper
 
     stepper%now = self%now
     stepper%controller = self%controller

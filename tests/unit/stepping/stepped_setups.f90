@@ -12,7 +12,7 @@ module stepped_setups
   use small_operators, only: factor
   use small_setups, only: unit_plate
   use tangent_operators, only: tangent_operator_t
-  use time_stepping, only: time_stepper_t
+  use implicit_steppers, only: implicit_stepper_t
   implicit none
   private
   public :: stepped_setup_t, stepped_plate, build_model, start_stepping, release_from
@@ -63,7 +63,7 @@ contains
     !> Its model
     type(model_t), intent(in) :: model
     !> The stepper
-    type(time_stepper_t), intent(out) :: stepper
+    type(implicit_stepper_t), intent(out) :: stepper
     !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
     type(linear_solver_parameters_t) :: linear_solver
@@ -74,7 +74,7 @@ contains
   !> Gives a started plate a shape from which it is released.
   subroutine release_from(stepper, model, displacement, error)
     !> The time stepper, started
-    type(time_stepper_t), intent(inout) :: stepper
+    type(implicit_stepper_t), intent(inout) :: stepper
     !> The model
     type(model_t), intent(in) :: model
     !> The shape, (5, points)
