@@ -43,8 +43,8 @@ module rig_decks
     '&mesh         elements=20, 30                ! of the modelled half', &
     '              core=72e-3, 54e-3  cell=3e-3   ! equal cells at the damage, larger ones outside', &
     '              patch=2e-3 /                   ! least side of the loaded square', &
-    '! 3 mm is for a first estimate. `implam check` reports which cells the interfaces and plies require;', &
-    '! cell=1.5e-3 with elements=34, 50 takes some ten times as long.', &
+    '! On 3 mm delaminations of single plies grow by energy: `implam check` prints the errors measured with such', &
+    '! cells (doc/manual/which_cells.md); cell=1.5e-3 with elements=34, 50 takes some ten times as long.', &
     blank, laminate, blank, &
     '&impactor     mass=5.5  energy=28.1          ! 6.7 J/mm times 4.19 mm', &
     '              radius=8e-3  contact_area=''sphere'' /', &
@@ -70,7 +70,7 @@ module rig_decks
     blank, &
     '&mesh         elements=20, 34                ! of the modelled half', &
     '              core=72e-3, 90e-3  cell=3e-3 / ! from side to side, as fibres are crushed; damage is mapped', &
-    '! 3 mm is for a first estimate. `implam check` reports the longest cell for G_fc, which strengths require.', &
+    '! `implam check` reports the longest cell for G_fc, which strengths require.', &
     blank, laminate, blank, damage, blank, &
     '! The plate comes to rest in the fixture during settle: at least 1.3 periods of its first bending mode, which', &
     '! `implam check` prints; the load takes ten or more. The undamaged panel, for comparison: leave out', &
