@@ -213,7 +213,8 @@ def check_compression_of_rig(implam, folder):
     output_of(implam, "new", "--rig", "d7137", cwd=folder)
     impact, compression = ((folder / f"{rig}.nml").read_text(encoding="utf-8") for rig in ("d7136", "d7137"))
     for group in ("case", "plate", "material", "laminate", "ply_damage", "delamination"):
-        found = [re.search(rf"^&{group} .*?/ *(?:!|$)", deck, re.DOTALL | re.MULTILINE) for deck in (impact, compression)]
+        pattern = re.compile(rf"^&{group} .*?/ *(?:!|$)", re.DOTALL | re.MULTILINE)
+        found = [pattern.search(deck) for deck in (impact, compression)]
         require(all(found) and found[0][0] == found[1][0], f"&{group} differs.")
     printed = output_of(implam, "check", "d7137.nml", cwd=folder)
     period = float(re.search(r"period of the first bending mode +([\d.]+)", printed)[1])
