@@ -20,8 +20,8 @@ module explicit_costs
   private
   public :: explicit_sentence, duration_text, untaken_step
 
-  !> Ratio of the times of a step, with rows of the history, in the mean over an impact and of an undamaged plate: without
-  !> and with softening plies (doc/performance.md).
+  !> Ratio of the times of a step in the mean over an impact, with rows of the history, and of an undamaged plate:
+  !> without and with softening plies (doc/performance.md).
   real(wp), parameter :: of_impact = 1.1_wp, of_breaking = 1.7_wp
 
 contains

@@ -28,8 +28,8 @@ module deck_accuracy
   !> steep history more than its peak (doc/studies/speed.md). Half of each is permitted for the mesh, half for the step.
   real(wp), parameter :: history_over_peak = 3, share = 0.5_wp
   !> Largest number of elements from the plate's centre to an edge, twice that from edge to edge, with
-  !> factorizations and without: more take hours. Central differences take .2 us an element and step (doc/performance.md):
-  !> 1e5 steps of 400 x 400 elements are an hour.
+  !> factorizations and without: more take hours. Central differences take about .2 us an element and step
+  !> (doc/performance.md): 1e5 steps of 400 x 400 elements are an hour.
   integer, parameter :: max_factored = 100, max_explicit = 400
   !> Extent of the core with the required elements on either side of the patch, in wavelengths of first contact, if
   !> these elements are too many for the full plate. On random model 9 of `tests/bench/elastic_models.py` the error of

@@ -14,8 +14,8 @@ module step_timings
   private
   public :: measured_element_time
 
-  !> Elements of all layers of the plate in motion. With a fifth or five times as many the time of an element is within a
-  !> tenth on plates of 1 to 23 layers.
+  !> Elements of all layers of the plate: so many that the time of a step is that of its elements and stacks, and so few
+  !> that the plate is built in hundredths of a second.
   integer, parameter :: elements = 2000
   !> Processor seconds of the measurement
   real(wp), parameter :: duration = 0.05_wp

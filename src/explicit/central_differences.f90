@@ -287,7 +287,9 @@ contains
   pure subroutine multiply(values, factor, field, product)
     !> Number of values, the first of the field
     integer, intent(in) :: values
+    !> The factor and the field
     real(wp), intent(in) :: factor, field(values)
+    !> The field times the factor
     real(wp), intent(out) :: product(values)
 
     product = factor*field

@@ -126,9 +126,11 @@ contains
   pure subroutine take(values, points, field, first, rows, taken)
     !> Number of values of a point, and of points
     integer, intent(in) :: values, points
+    !> Values of all points
     real(wp), intent(in) :: field(values, points)
     !> The first point of each lane, and number of consecutive points
     integer, intent(in) :: first(lanes), rows
+    !> Those of the lanes
     real(wp), intent(out) :: taken(lanes, values, rows)
     integer :: lane, l
 
@@ -145,7 +147,9 @@ contains
     integer, intent(in) :: values, points
     !> The first point of each lane, and number of consecutive points
     integer, intent(in) :: first(lanes), rows
+    !> Values of the lanes
     real(wp), intent(in) :: taken(lanes, values, rows)
+    !> Those of all points
     real(wp), intent(inout) :: field(values, points)
     integer :: lane, l
 

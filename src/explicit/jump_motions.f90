@@ -109,7 +109,8 @@ contains
         u(1:3, p) = before + change
         work = work_of(stacks, p, steps, forces(:, j), change)
         in_contact = 0
-        if (nodes%workspaces(size(forces, 2))%closing(j)) in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
+        if (nodes%workspaces(size(forces, 2))%closing(j)) &
+          in_contact = lost_in_contact(stacks, p, steps, before(3), change(3))
         old = cohesive%points(p)
         associate (new => cohesive%points(p), area => stacks%area(p), &
                    friction => nodes%workspaces(size(forces, 2))%friction(j), &

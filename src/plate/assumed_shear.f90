@@ -137,7 +137,7 @@ contains
       n3 = n2 + along
       s1 = offset + 2*line - 1
       s2 = s1 + 1
-      ! The loop over lanes is vectorised if it stores nothing to f, as the compiler does not know that the nodes differ.
+      ! The loop over lanes is vectorised if it stores nothing to f: the compiler does not know that the nodes differ.
       do lane = 1, lanes
         total = 0.5_wp*(shear(lane, 1, line) + shear(lane, 2, line) + shear(lane, 3, line))
         half = half_stretch*(shear(lane, 3, line) - shear(lane, 1, line))
