@@ -57,8 +57,7 @@ contains
   !> The tractions of one law are in the ratio of the jumps times the stiffnesses. In thin layers on long cells a small
   !> traction opens the front much farther than the same traction shears it, and a law of equal stiffnesses would resist
   !> the opening with a traction that the layers cannot exert. The stiffness of opening is therefore reduced until
-  !> tractions in the ratio of those at the front cause jumps in the ratio of those behind it, but not so far that the
-  !> present opening traction stores a larger part of the toughness than strengths do.
+  !> tractions in the ratio of those at the front cause jumps in the ratio of those behind it.
   pure subroutine reduce_law(law, jump, traction, behind, strength, opening)
     !> The law of the undamaged interface
     type(cohesive_law_t), intent(in) :: law
@@ -67,15 +66,14 @@ contains
     !> Factors of the strengths and of the stiffness of opening
     real(wp), intent(out) :: strength, opening
     type(separation_t) :: onset
-    real(wp) :: shear, slid, compliance, stored
+    real(wp) :: shear, slid, compliance
 
     opening = 1
     shear = norm2(traction(:2))
     if (shear > 0 .and. traction(3) > 0 .and. behind(3) > 0) then
       slid = dot_product(traction(:2), behind(:2))/shear
-      compliance = traction(3)/law%stiffness_opening
-      stored = min_failure_ratio*traction(3)/(2*law%toughness_opening)
-      if (slid > 0) opening = min(1.0_wp, compliance*max(stored, law%stiffness_shear*slid/(shear*behind(3))))
+      compliance = traction(3)/(law%stiffness_opening*behind(3))
+      if (slid > 0) opening = min(1.0_wp, compliance*max(min_failure_ratio, law%stiffness_shear*slid/shear))
     end if
     onset = separation_of(weakened(law, 1.0_wp, opening), opened(jump)/[1.0_wp, 1.0_wp, opening])
     strength = max(min_strength, onset%ratio)

@@ -98,7 +98,8 @@ class Circle:
     def figures(self, place):
         """Return cells grown, mean ratio of the load, and least and largest mean over one cell of growth."""
         with open(place/"circle_history.csv", encoding="utf-8") as history:
-            rows = [(float(row["delaminated_area"])/self.number, float(row["force"])) for row in csv.DictReader(history)]
+            rows = [(float(row["delaminated_area"])/self.number, float(row["force"]))
+                    for row in csv.DictReader(history)]
         radius = np.sqrt(np.array([row[0] for row in rows])/math.pi)
         force = np.array([row[1] for row in rows])
         ratio = force/np.array([self.load(max(r, self.first)) for r in radius])
@@ -121,7 +122,7 @@ class Circle:
 
 def main(implam, folder, cases, cells, control="energy"):
     """Run the plates and print a row of the table for each."""
-    print("| case | cells, mm | cells grown | load over closed form | least and largest mean of a cell | ratio of axes, angle |")
+    print("| case | cells, mm | cells grown | load over closed form | least and largest mean of a cell | axes, angle |")
     for case in cases.split(","):
         for cell in cells.split(","):
             circle = Circle(case, 1e-3*float(cell))
