@@ -243,7 +243,7 @@ contains
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), zone_lines(deck), strength_lines(deck), volume_lines(deck), &
-                                      toughness_lines(deck)])
+                                    toughness_lines(deck)])
     model_size = size_of_model(deck%setup_t, is_explicit(deck%stepping))
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check

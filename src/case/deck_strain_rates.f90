@@ -31,8 +31,8 @@ contains
             call report(s, problems, material_group, key_gain, 'needs '//key_rate//', the strain rate of the tests '// &
                         'that YT, YC and S12 are from; give it.', place)
         else if (problems%errors() == 0 .and. .not. deck%counts_rates()) then
-          call remark(s, problems, material_group, key_gain, 'has no effect in this run: the strain rates are those '// &
-                      'of the test under an impactor with a mass or a pressure in time only.', place)
+          call remark(s, problems, material_group, key_gain, 'has no effect in this run: the strain rates are '// &
+                      'those of the test under an impactor with a mass or a pressure in time only.', place)
         end if
       end associate
     end do

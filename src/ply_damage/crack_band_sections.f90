@@ -41,18 +41,21 @@ module crack_band_sections
     real(wp), allocatable :: free(:, :, :)
     !> Sections against mean strains, where plies have E1c; unallocated: they have not
     type(mean_sections_t), allocatable :: signs
-    !> Stressed volumes and strain rates that strengths depend on; unallocated: they do not
+    !> Stressed volumes that the strengths of fibres depend on; unallocated: they do not
     type(stressed_volumes_t), allocatable :: volumes
+    !> Strain rates that the strengths of the matrix depend on; unallocated: they do not
     type(loading_rates_t), allocatable :: rates
     !> True while plies keep their damage, during the transfer of a state to other layers
     logical :: keeps_damage = .false.
     !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
     real(wp), allocatable, private :: tensile(:, :, :)
-    !> Plies of the laminate, and their laws
+    !> Plies of the laminate
     type(ply_t), allocatable, private :: plies(:)
+    !> Their laws
     type(crack_band_t), allocatable, private :: bands(:)
-    !> Sides along x and y of each element with those that share its state, (2, elements), and its own area
+    !> Sides along x and y of each element with those that share its state, (2, elements)
     real(wp), allocatable, private :: sides(:, :)
+    !> Area of each element, (elements)
     real(wp), allocatable :: area(:)
     !> Elements that share their state with others
     type(joined_elements_t), private :: joined
@@ -216,7 +219,6 @@ contains
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
-    !> Of the sections, and their energy per area
     real(wp) :: resultants(lanes, 7)
     real(wp) :: means(lanes, 6)
     real(wp), allocatable :: common(:)
@@ -362,7 +364,6 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
-    !> The constants
     type(elasticity_t) :: elasticity
 
     elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
@@ -373,7 +374,6 @@ contains
     class(crack_band_sections_t), intent(in) :: self
     !> First and last ply, and element of this rank
     integer, intent(in) :: first, last, element
-    !> The plies
     type(ply_t) :: plies(first:last)
     integer :: ply
 

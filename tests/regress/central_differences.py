@@ -43,13 +43,16 @@ from solver_runs import checkpoint_of, history_of, read_history, require, run_de
 
 EXPLICIT = "time%integrator='central_difference'"
 # Failing plies and an interface, adaptive layers, turned halves on a unilateral frame, plies that soften and fail in
-# the fibres, with strengths by their stressed volume, a curved plate, prescribed and loaded lines, residual stresses that
-# deflect the plate before the impact, and interfaces that grow by their energy release rate on long cells.
+# the fibres, with strengths by their stressed volume and by the strain rate, a curved plate, prescribed and loaded lines,
+# residual stresses that deflect the plate before the impact, and interfaces that grow by their energy release rate on
+# long cells.
 MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
           "permanent": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "ply_damage%permanent_shear=.true.",
                                                      "material%shear_failure_strain=0.05",
+                                                     "material%rate_strengthening=0.075",
+                                                     "material%reference_rate=1e-3",
                                                      "ply_damage%weibull_modulus=41",
                                                      "ply_damage%reference_volume=3750e-9", "material%XT=1000e6"]),
           "long_cells": ("../which_interfaces.nml", [EXPLICIT, "time%end=800e-6", "mesh%elements=10,20",
