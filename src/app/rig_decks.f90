@@ -23,8 +23,8 @@ module rig_decks
     '&mesh         elements=20, 30                ! of the modelled half', &
     '              core=72e-3, 54e-3  cell=3e-3   ! equal cells at the damage, larger ones outside', &
     '              patch=2e-3 /                   ! least side of the loaded square', &
-    '! 3 mm is for a first estimate. `implam check` reports which cells the interfaces and plies require;', &
-    '! cell=1.5e-3 with elements=34, 50 takes some ten times as long.', &
+    '! On 3 mm delaminations of single plies grow by energy: `implam check` prints the errors measured with such', &
+    '! cells (doc/manual/which_cells.md); cell=1.5e-3 with elements=34, 50 takes some ten times as long.', &
     '', &
     '&material     name=''ply''  library=''im7_8552'' /   ! `implam explain materials` lists values and sources;', &
     '                                             ! keys given here replace them, such as E1=165e9', &
