@@ -1,8 +1,8 @@
 """CalculiX: the hinged cylindrical roof of Sabir and Lock (Int. J. Mech. Sci. 14 (1972)) pressed through its limit load.
 Usage: roof.py IMPLAM FOLDER     (ends with 77 where ccx is not installed)
 
-CalculiX has the circle and finite rotations, Implam the parabola of shallow shells. Measured: limit load within .4 %,
-forces within 1.5 % of the limit load up to a deflection of twice the rise."""
+CalculiX has the circle and finite rotations, Implam the parabola of shallow shells. Measured: limit load within .3 %,
+forces within 3.0 % of the limit load up to a deflection of twice the rise."""
 
 import contextlib
 import math
@@ -18,7 +18,7 @@ SKIPPED = 77
 DECK = "roof.nml"
 RADIUS, LENGTH, ANGLE, THICKNESS, YOUNG, POISSON = 2.54, 0.508, 0.1, 12.7e-3, 3102.75e6, 0.3
 ELEMENTS, TRAVEL, INCREMENT = 8, 25e-3, 0.04
-LIMIT_ERROR, CURVE_ERROR = 0.03, 0.03
+LIMIT_ERROR, CURVE_ERROR = 0.01, 0.04
 
 
 def write_input(path):
