@@ -31,7 +31,6 @@ module programs
   use stepping_parameters, only: is_explicit
   use queue_scripts, only: queue_job_t, write_queue_script
   use shell_pages, only: completion, manual_page
-  use rig_decks, only: rig_deck_name
   use starter_decks, only: starter_name, write_starter
   use usage_texts, only: command_help, usage_lines
   implicit none
@@ -138,7 +137,7 @@ contains
 
     path = command%target
     if (path == '') path = starter_name
-    if (command%target == '' .and. command%rig /= '') path = rig_deck_name
+    if (command%target == '' .and. command%rig /= '') path = command%rig//'.nml'
     if (.not. communicator%is_root()) return
     call write_starter(path, command%rig, error)
     if (.not. allocated(error)) call print_lines(communicator, [line_t('Wrote '//path//'. To run it: implam '//path)])

@@ -3,7 +3,7 @@
 module starter_decks
   use errors, only: error_t
   use new_files, only: write_new_file
-  use rig_decks, only: d7136_lines
+  use rig_decks, only: rig_lines
   use text, only: line_t, append
   implicit none
   private
@@ -60,9 +60,7 @@ contains
 
     allocate (deck(0))
     if (rig /= '') then
-      do i = 1, size(d7136_lines)
-        call append(deck, trim(d7136_lines(i)))
-      end do
+      deck = rig_lines(rig)
     else
       do i = 1, size(lines)
         call append(deck, trim(lines(i)))

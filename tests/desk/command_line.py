@@ -207,6 +207,23 @@ def read_until(terminal, words):
     return said
 
 
+def check_compression_of_rig(implam, folder):
+    """The compression has the groups of the impact that must be the same, and rests and loads for the periods of the
+    manual."""
+    output_of(implam, "new", "--rig", "d7137", cwd=folder)
+    impact, compression = ((folder / f"{rig}.nml").read_text(encoding="utf-8") for rig in ("d7136", "d7137"))
+    for group in ("case", "plate", "material", "laminate", "ply_damage", "delamination"):
+        pattern = re.compile(rf"^&{group} .*?/ *(?:!|$)", re.DOTALL | re.MULTILINE)
+        found = [pattern.search(deck) for deck in (impact, compression)]
+        require(all(found) and found[0][0] == found[1][0], f"&{group} differs.")
+    printed = output_of(implam, "check", "d7137.nml", cwd=folder)
+    period = float(re.search(r"period of the first bending mode +([\d.]+)", printed)[1])
+    rest, end = (1e3*float(re.search(rf"{key}=([\d.e-]+)", compression)[1]) for key in ("settle", "end"))
+    print(f"compression of the rig: period {period} ms, at rest after {rest:.2g} ms, loaded for {end - rest:.2g} ms")
+    require("no errors" in printed and rest >= 1.3*period and end - rest >= 10*period, printed)
+    require(printed.count("warning:") <= 3, printed)
+
+
 def check_new(implam, folder):
     """The starter deck passes the check without a warning, grows a delamination, and overwrites nothing."""
     output_of(implam, "new", cwd=folder)
@@ -224,7 +241,8 @@ def check_new(implam, folder):
     require("no errors" in printed and 4 <= thickness <= 6, printed)
     require(abs(energy - 6.7*thickness) < 0.01*energy, "The energy is not that of D7136.")
     require(printed.count("warning:") <= 2, "There are more warnings than one for plies and one for interfaces.")
-    require("d7136" in output_of(implam, "new", "--rig", "d7137", code=EXIT_USAGE), "The rigs are not listed.")
+    require("d7136, d7137" in output_of(implam, "new", "--rig", "d7138", code=EXIT_USAGE), "The rigs are not listed.")
+    check_compression_of_rig(implam, folder)
     require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig is accepted without new.")
     output_of(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
     run_coarse(implam, folder)

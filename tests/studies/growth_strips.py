@@ -139,8 +139,9 @@ class Strip:
         pairs = [self.ratios(row) for row in used]
         share = max((row["energy_kinetic"]/row["work_external"] for row in used or rows[len(rows)//2:]))
         if last < 2:
-            largest = max(self.ratios(row)[1] for row in rows)
-            means, bounds = ["", ""], ["", f"{largest:.3f}"]
+            # The load that is borne without growth: the median of the last twentieth, since the load oscillates.
+            ending = sorted(self.ratios(row)[1] for row in rows[-len(rows)//20:])
+            means, bounds = ["", ""], ["", f"{ending[len(ending)//2]:.3f}"]
         else:
             means = [f"{sum(pair[k] for pair in pairs)/len(pairs):.3f}" for k in (0, 1)]
             bounds = [f"{bound(pair[0] for pair in pairs):.3f}" for bound in (min, max)]
