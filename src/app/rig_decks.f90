@@ -46,14 +46,14 @@ module rig_decks
     '! Strength after impact: `implam new --rig d7137` writes the deck of the compression.']
   character(len=110), parameter :: d7137_lines(*) = [character(len=110) :: &
     '! Compression after impact after ASTM D7137 on the panel of d7136.nml (`implam new --rig d7136`), which has to', &
-    '! run first. Ends are clamped on both faces, sides are on knife edges, and the ends approach by 1.2 mm until the', &
+    '! run first. Ends are clamped on both faces, sides are on knife edges, and the ends approach by 1.2 mm: the', &
     '! panel fails. `implam explain GROUP` lists all keys of a group; doc/manual/compression_after_impact.md says', &
     '! how to choose cells, shortening and rate. Change both decks alike: plate, cells, material, laminate.', &
     '', &
     '&case         units=''SI'' /                   ! m, kg, s, N, Pa, J', &
     '&plate        length=150e-3, 100e-3  edges=''free''  in_plane=''free''', &
     '              symmetry=''point'' /             ! as in the impact', &
-    '&support      window=134e-3, 90e-3  bearing=''face''  sides=''edge'' /   ! fixture: 8 mm of each end are clamped', &
+    '&support      window=134e-3, 90e-3  bearing=''face''  sides=''edge'' /   ! fixture, 8 mm of each end clamped', &
     '', &
     '&mesh         elements=20, 30  core=72e-3, 54e-3  cell=3e-3  patch=2e-3   ! those of the impact', &
     '              lines_x=62.5e-3  lines_y=37.5e-3 /      ! of the frame of the impact', &
@@ -79,6 +79,7 @@ contains
 
   !> True for the name of a rig.
   pure logical function is_rig(name)
+    !> As given on the command line
     character(len=*), intent(in) :: name
 
     is_rig = any(rig_names == name)
@@ -86,7 +87,9 @@ contains
 
   !> Lines of the deck of a rig.
   pure function rig_lines(name) result(lines)
+    !> One of `rig_names`
     character(len=*), intent(in) :: name
+    !> The deck
     character(len=110), allocatable :: lines(:)
 
     lines = d7136_lines
