@@ -31,30 +31,29 @@ is_offered() {
   [[ $(LC_ALL=C apt-cache policy "$1") == *"Candidate: "[!\(]* ]]
 }
 
-# run_apt WORD...: apt and dpkg print every package three times; their output is shown only if they fail.
-run_apt() {
+# quietly WORD...: runs a command whose output is shown only if it fails.
+quietly() {
   local log
   log=$(mktemp)
-  if ! DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 -qq "$@" >"$log" 2>&1; then
+  if ! "$@" >"$log" 2>&1; then
     cat "$log" >&2
     exit 1
   fi
   rm "$log"
 }
 
-# build WORD...: without a terminal ninja prints a line for each of 840 files; they are shown only if the build fails.
+# run_apt WORD...: apt and dpkg print every package three times.
+run_apt() {
+  DEBIAN_FRONTEND=noninteractive quietly apt-get -o DPkg::Lock::Timeout=300 -qq "$@"
+}
+
+# build WORD...: without a terminal ninja prints a line for each of 840 files.
 build() {
-  local log
   if [[ -t 1 ]]; then
     cmake --build --preset release "$@"
-    return
+  else
+    quietly cmake --build --preset release "$@"
   fi
-  log=$(mktemp)
-  if ! cmake --build --preset release "$@" >"$log" 2>&1; then
-    cat "$log" >&2
-    exit 1
-  fi
-  rm "$log"
 }
 
 install_packages() {
@@ -113,7 +112,7 @@ install_python_tools() {
 install_packages
 install_python_tools
 stage "Configuring"
-cmake --preset release
+quietly cmake --preset release
 
 if [[ $task == test ]]; then
   stage "Building program and tests"
@@ -136,5 +135,5 @@ echo
 echo "Done. The history of force, deflection and energies is in results/peanut/peanut_history.csv,"
 echo "the fields for ParaView in results/peanut/peanut.xdmf."
 if [[ -x .venv/bin/implam-plot ]]; then
-  echo "To draw the delamination: .venv/bin/implam-plot results/peanut/peanut.h5"
+  echo "To draw the delamination: .venv/bin/implam-plot results/peanut/peanut.h5 --save results/peanut/peanut.png"
 fi

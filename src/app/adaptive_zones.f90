@@ -9,9 +9,9 @@ module adaptive_zones
   use models, only: model_t
   use plies, only: plies_text
   use run_moments, only: moment
-  use short_numbers, only: short_text
   use text, only: append, line_t
   use steppers, only: stepper_t
+  use usual_units, only: in_usual_unit, length_kind
   implicit none
   private
   public :: advance, visit_evolving, visit_zones, zone_notes
@@ -36,18 +36,18 @@ contains
 
     call stepper%advance_with_layers(model, deck%linear_solver, event, switched, error)
     if (allocated(error) .or. .not. switched) return
-    notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time))
+    notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time), deck%units)
     do i = 1, size(notes)
       call log%note(notes(i)%text)
     end do
   end subroutine advance
 
   !> A note on each extent of the adaptive zones, with all plies above zones of that extent.
-  pure function zone_notes(delaminations, since) result(notes)
+  pure function zone_notes(delaminations, since, units) result(notes)
     !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
-    !> Since when, such as time 0.001
-    character(len=*), intent(in) :: since
+    !> Since when, such as time 0.001, and the deck's system of units
+    character(len=*), intent(in) :: since, units
     !> One line each
     type(line_t), allocatable :: notes(:)
     logical, dimension(size(delaminations)) :: noted, alike
@@ -60,7 +60,8 @@ contains
       associate (extent => delaminations(first)%zone)
         alike = [(all(abs(delaminations(zone)%zone - extent) <= 0), zone=1, size(delaminations))] .and. .not. noted
         call append(notes, 'Layers below '//plies_text(pack(delaminations%below_ply, alike))//': '// &
-                    short_text(extent(1))//' x '//short_text(extent(2))//' from '//since//' on.')
+                    in_usual_unit(extent(1), length_kind, units, 3)//' x '// &
+                    in_usual_unit(extent(2), length_kind, units, 3)//' from '//since//' on.')
       end associate
       noted = noted .or. alike
     end do

@@ -4,7 +4,7 @@ module command_lines
   use errors, only: error_t, fail, exit_files, exit_usage
   use folder_listings, only: file_by_age
   use kinds, only: wp
-  use rig_decks, only: is_rig, rig_names
+  use rig_decks, only: rig_names, rigs
   use text, only: line_t, append, nearest_name, words_of
   use usage_texts, only: of_term, option_rows
   implicit none
@@ -193,8 +193,7 @@ contains
     select case (word)
     case ('--rig')
       command%rig = value
-      if (.not. is_rig(value)) &
-        call fail(error, exit_usage, '--rig needs the name of a rig: '//rig_names(1)//' or '//rig_names(2)//'.')
+      if (all(rigs /= value)) call fail(error, exit_usage, '--rig needs the name of a rig: '//rig_names//'.')
     case ('--ranks')
       command%ranks = whole_number(value)
       if (command%ranks < 1) call fail(error, exit_usage, '--ranks needs a whole number above 0.')

@@ -14,6 +14,7 @@ module explicit_costs
   use stepping_parameters, only: end_of_run
   use text, only: counted, rounded_text, to_text
   use time_deck, only: key_step, time_group
+  use usual_units, only: in_usual_unit, time_kind
   implicit none
   private
   public :: explicit_sentence, duration_text, untaken_step
@@ -46,8 +47,8 @@ contains
     lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
-    sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '//rounded_text(step)// &
-               ' for '// &
+    sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
+               in_usual_unit(step, time_kind, deck%units)//' for '// &
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
                time_bound//duration_text(seconds_of_element(deck)*steps*model_size%elements)//' of one processor'
     if (lengthened) &
@@ -91,7 +92,8 @@ contains
     sentence = ''
     if (.not. deck%settings%is_given(time_group, key_step)) return
     given = deck%settings%real_of(time_group, key_step)/2**deck%refine
-    if (given > step) sentence = 'The step of the deck, '//rounded_text(given)//', is longer and is not taken.'
+    if (given > step) sentence = 'The step of the deck, '// &
+      in_usual_unit(given, time_kind, deck%units)//', is longer and is not taken.'
   end function untaken_step
 
   !> Ratio of the stable step of the flat plate to that of the deflected one, with the largest slope of half a sine.

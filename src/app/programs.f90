@@ -9,6 +9,7 @@ module programs
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use scale_tables, only: scale_lines, strength_lines, toughness_lines
+  use zone_tables, only: zone_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -22,6 +23,7 @@ module programs
   use computations, only: compute, read_deck_everywhere
   use root_output, only: print_lines
   use queue_signals, only: release_stop_signals
+  use growth_explain, only: explain_growth_errors, growth_topic_sentence, is_growth_topic
   use material_explain, only: explain_materials, is_material_topic, material_topic_sentence
   use result_explain, only: explain_column, explain_results, is_result_topic, result_topics_sentence
   use run_costs, only: cost_lines
@@ -186,6 +188,11 @@ contains
       call print_lines(communicator, columns)
       return
     end if
+    if (is_growth_topic(command%target)) then
+      call explain_growth_errors(command%markdown, lines)
+      call print_lines(communicator, lines)
+      return
+    end if
     if (is_result_topic(command%target) .or. is_material_topic(command%target)) then
       if (is_material_topic(command%target)) then
         call explain_materials(command%target, command%markdown, lines, error)
@@ -207,7 +214,8 @@ contains
     if (size(columns) > 0 .and. .not. command%markdown) &
       call print_lines(communicator, [line_t('Results have this name too:'), columns])
     if (command%target == '') call print_lines(communicator, &
-      [line_t(result_topics_sentence), line_t(material_topic_sentence)])
+      [line_t(result_topics_sentence), line_t(material_topic_sentence), &
+       line_t(growth_topic_sentence)])
   end subroutine explain_topic
 
   !> Reads and checks a deck, and lists its errors.
@@ -234,7 +242,7 @@ contains
     if (lacks) call print_lines(communicator, [line_t(missing_start(deck))])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
-    call print_lines(communicator, [scale_lines(deck), strength_lines(deck), toughness_lines(deck)])
+    call print_lines(communicator, [scale_lines(deck), zone_lines(deck), strength_lines(deck), toughness_lines(deck)])
     model_size = size_of_model(deck%setup_t, is_explicit(deck%stepping))
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check

@@ -8,6 +8,7 @@ module run_costs
   use shortest_cells, only: shortest_cell_text
   use stepping_parameters, only: is_error_controlled, is_explicit
   use text, only: line_t, append, counted, rounded_text, to_text
+  use usual_units, only: in_usual_unit, time_kind
   implicit none
   private
   public :: cost_lines
@@ -61,7 +62,7 @@ contains
     steps = deck%stepping%time%end/deck%stepping%time%step
     solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
     sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
-               rounded_text(deck%stepping%time%step)
+               in_usual_unit(deck%stepping%time%step, time_kind, deck%units)
     if (is_error_controlled(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
     sentence = sentence//min_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
   end function implicit_sentence

@@ -140,14 +140,18 @@ contains
   end function shown
 
   !> Label and value of a result.
-  pure function labelled(self, name) result(words)
+  pure function labelled(self, name, round_off) result(words)
     class(results_t), intent(in) :: self
     !> Its name
     character(len=*), intent(in) :: name
+    !> Size up to which it is printed as 0; 0 if not given
+    real(wp), intent(in), optional :: round_off
     !> Such as strain 1.2 J
     character(len=:), allocatable :: words
 
     words = label_of_result(name)//' '//self%shown(name)
+    if (.not. present(round_off)) return
+    if (abs(self%value(name)) <= round_off) words = label_of_result(name)//' 0'
   end function labelled
 
   !> A value of some kind with its unit; times of load steps have none.

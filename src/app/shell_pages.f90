@@ -3,6 +3,7 @@ module shell_pages
   use allowed_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use errors, only: error_t, fail, exit_usage
+  use growth_explain, only: growth_topic
   use material_explain, only: material_topic
   use result_explain, only: result_topics
   use text, only: line_t, append
@@ -117,7 +118,7 @@ contains
     integer :: i
 
     allocate (lines(0))
-    topics = result_topics//' '//material_topic
+    topics = result_topics//' '//material_topic//' '//growth_topic
     do i = 1, size(vocabulary%groups)
       topics = topics//' '//vocabulary%groups(i)%name
     end do

@@ -60,11 +60,7 @@ contains
 
     allocate (deck(0))
     if (rig /= '') then
-      associate (of_rig => rig_lines(rig))
-        do i = 1, size(of_rig)
-          call append(deck, trim(of_rig(i)))
-        end do
-      end associate
+      deck = rig_lines(rig)
     else
       do i = 1, size(lines)
         call append(deck, trim(lines(i)))

@@ -45,14 +45,14 @@ contains
       call add_impact(lines, deck, results, record, errors)
     else if (deck%has_impactor) then
       call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')//' at '// &
-                      instant(deck, results, results%value('peak_force_at')))
+                      moment(deck, results%value('peak_force_at')))
     end if
     call add_figure(lines, label_of_result('largest_deflection'), results%shown('largest_deflection')// &
                     within(results, 'largest_deflection', errors%deflection)//' at '// &
-                    instant(deck, results, results%value('largest_deflection_at')))
+                    moment(deck, results%value('largest_deflection_at')))
     if (results%has('residual_strength')) then
       call add_figure(lines, label_of_result('residual_strength'), &
-                      compression_text(results, instant(deck, results, results%value('residual_strength_at'))))
+                      compression_text(results, moment(deck, results%value('residual_strength_at'))))
       if (record%compression%failed) &
         call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
     end if
@@ -84,20 +84,6 @@ contains
     end function counted_of
   end function lines_of_summary
 
-  !> Time with its unit; without a known system of units, and in load steps, with its name.
-  pure function instant(deck, results, time) result(words)
-    type(deck_t), intent(in) :: deck
-    !> Results of the run
-    type(results_t), intent(in) :: results
-    !> The time, or the progress of load steps
-    real(wp), intent(in) :: time
-    !> Such as 1.878 ms, or time 0.001878
-    character(len=:), allocatable :: words
-
-    words = moment(deck, time)
-    if (deck%units /= '' .and. .not. deck%is_static()) words = results%with_unit(time, time_kind)
-  end function instant
-
   !> Adds a line.
   subroutine add_figure(lines, label, figures)
     type(line_t), allocatable, intent(inout) :: lines(:)
@@ -122,11 +108,11 @@ contains
 
     call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')// &
                     within(results, 'peak_force', errors%peak_force)//' at '// &
-                    instant(deck, results, results%value('peak_force_at'))// &
+                    moment(deck, results%value('peak_force_at'))// &
                     within(results, 'peak_force_at', errors%peak_time))
     if (record%filter%frequency > 0) &
       call add_figure(lines, 'filtered', results%with_unit(record%peak_filtered, force_kind)//' at '// &
-                      instant(deck, results, record%peak_filtered_time)//' after the low-pass filter of '// &
+                      moment(deck, record%peak_filtered_time)//' after the low-pass filter of '// &
                       rounded_text(record%filter%frequency))
     until = ', until '//results%shown('contact_until')
     if (results%value('in_contact') > 0) until = ', and still at the end'
@@ -218,7 +204,9 @@ contains
     !> Results of the run
     type(results_t), intent(in) :: results
     character(len=:), allocatable :: damping
+    real(wp) :: round_off
 
+    round_off = epsilon(round_off)*max(results%value('energy_impact'), results%value('energy_strain'))
     damping = ''
     if (results%value('energy_damping') > 0) damping = ', '//results%labelled('energy_damping')
     if (abs(results%value('work_external')) > 0) &
@@ -227,7 +215,8 @@ contains
                     ', '//results%labelled('energy_indentation')//', '//results%labelled('energy_delamination')// &
                     ', '//results%labelled('energy_ply_damage'))
     call add_figure(lines, '', results%labelled('energy_contact')//', '//results%labelled('energy_friction')// &
-                    ', '//results%labelled('energy_layers')//damping//', '//results%labelled('energy_algorithmic')// &
+                    ', '//results%labelled('energy_layers', round_off)//damping// &
+                    ', '//results%labelled('energy_algorithmic')// &
                     ', '//label_of_result('energy_error')//' '//results%shown('energy_error', 2))
   end subroutine add_energies
 
@@ -280,9 +269,9 @@ contains
         call add_figure(lines, '', 'no '//name)
       else if (deck%has_impactor) then
         call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
-                        instant(deck, results, event(1)))
+                        moment(deck, event(1)))
       else
-        call add_figure(lines, '', name//' at '//instant(deck, results, event(1)))
+        call add_figure(lines, '', name//' at '//moment(deck, event(1)))
       end if
     end subroutine add_event
 

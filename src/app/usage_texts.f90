@@ -31,8 +31,8 @@ module usage_texts
   integer, parameter, public :: of_term = 1, of_commands = 2, of_meaning = 3
   character(len=*), parameter :: runs = 'run restart'
   character(len=text_length), parameter, public :: option_rows(3, 12) = reshape([character(len=text_length) :: &
-    '--rig d7136|d7137', 'new', 'the deck of a drop-weight test after ASTM D7136, or of the compression after it &
-      &after ASTM D7137', &
+    '--rig NAME', 'new', 'the deck of a test: d7136, a drop-weight test after ASTM D7136; d7137, the compression &
+    &of its panel after the impact', &
     '--output DIR', runs//' queue', 'folder of the results, instead of the deck''s; for restart the folder of the &
       &checkpoint', &
     '--wall-limit SECONDS', runs, 'end with a checkpoint before this wall-clock time has passed', &

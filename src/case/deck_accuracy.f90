@@ -3,6 +3,7 @@ module deck_accuracy
   use case_deck, only: case_group, key_accuracy, has_accuracy
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_process_zones, only: shortest_shear_zone
   use deck_remarks, only: remark
   use deck_settings, only: settings_t
   use impact_parameters, only: integrator_trapezoidal
@@ -12,6 +13,7 @@ module deck_accuracy
   use mesh_parameters, only: is_halved
   use output_deck, only: output_group, key_fields_every
   use elastic_impacts, only: elastic_impact_t
+  use growth_errors, only: cells_for_area
   use setup_elastic_impacts, only: setup_elastic_impact_t, start_elastic_impact, contact_end, largest_step, largest_cell
   use setup_scales, only: setup_scales_t, scales_of, contact_side
   use short_numbers, only: short_text
@@ -183,7 +185,7 @@ contains
     !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
     type(problems_t), intent(inout) :: problems
-    real(wp) :: half(2), cell
+    real(wp) :: half(2), cell, length, cells
     integer :: number(2), parts(2), max_along
     type(line_t), allocatable :: words(:)
 
@@ -192,7 +194,13 @@ contains
     half = deck%plate%length/2
     cell = side
     if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%mesh%cell)
-    if (size(deck%delaminations) > 0) cell = min(cell, smallest_zone(deck)/zone_elements)
+    length = shortest_shear_zone(deck)
+    cells = cells_for_area(history_over_peak*deck%accuracy)
+    if (length > 0) then
+      cell = min(cell, length/cells)
+    else if (size(deck%delaminations) > 0) then
+      cell = min(cell, smallest_zone(deck)/zone_elements)
+    end if
     number = max(2, ceiling(min(half/cell, 1.0e6_wp) - 0.01_wp))
     if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) &
                                                                      - 0.01_wp)))
@@ -212,6 +220,8 @@ contains
       call append(deck%reasons, 'Elements of '//short_text(cell)//': the waves of first contact are '// &
                   short_text(scales%wave_length)//' long.')
     end if
+    if (length > 0) call append(deck%reasons, 'The shortest process zone of shear, '//short_text(length)// &
+                                ' long, has at least '//short_text(cells)//' cells.')
   end subroutine choose_elements
 
   !> Core of elements of the required size around the struck point, so large that waves of first contact do not leave it

@@ -259,18 +259,22 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
     type(line_t), allocatable :: needed(:), missing(:)
+    character(len=:), allocatable :: names, instead
     integer :: i, j
 
     do i = 1, size(deck%materials)
-      needed = words_of(needed_strengths(deck%ply_damage%criteria, any(deck%materials(i)%toughness > 0), &
-                                       deck%materials(i)), ',')
+      names = needed_strengths(deck%ply_damage%criteria, any(deck%materials(i)%toughness > 0), deck%materials(i))
+      instead = ''
+      if (names /= needed_strengths(deck%ply_damage%criteria, .true., deck%materials(i))) &
+        instead = ', or fracture energies (G_ft, G_fc, G_mt, G_mc) in place of Sf and Sm23,'
+      needed = words_of(names, ',')
       allocate (missing(0))
       do j = 1, size(needed)
         if (needed(j)%text == '') cycle
         if (are_clear(deck%settings, problems, material_group, needed(j)%text, i)) call append(missing, needed(j)%text)
       end do
       if (size(missing) > 0) call report(deck%settings, problems, material_group, '', 'ply damage needs the '// &
-        'strengths '//joined(missing, ', ')//'; give them or leave &ply_damage out.', i)
+        'strengths '//joined(missing, ', ')//'; give them'//instead//' or leave &ply_damage out.', i)
       if (deck%ply_damage%kinking .and. size(missing) == 0) call check_kinking(deck, i, problems)
       deallocate (missing)
     end do

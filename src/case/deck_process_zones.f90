@@ -15,7 +15,7 @@ module deck_process_zones
   use laminate_parameters, only: shear_five_sixths
   use matrix_exposures, only: shear_across_strength
   use plies, only: ply_t
-  use process_zones, only: process_zone_t, process_zone_warning, resolved_part
+  use process_zones, only: cells_in_zones, process_zone_t, process_zone_warning, resolved_part, shear_zone_length
   use scale_tables, only: length_unit, length_unit_size
   use mean_stiffnesses, only: in_bending
   use stacking, only: stacked_plies, section_stiffness
@@ -23,7 +23,7 @@ module deck_process_zones
   use text, only: to_text
   implicit none
   private
-  public :: check_process_zones, set_flaws
+  public :: check_process_zones, fewest_cells, set_flaws, shortest_shear_zone
 
 contains
 
@@ -33,20 +33,37 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: warning
+    real(wp) :: fewest(2)
     integer :: i
 
     if (problems%errors() > 0) return
+    fewest = fewest_cells(deck)
     do i = 1, size(deck%delaminations)
       if (deck%delaminations(i)%law /= law_cohesive) cycle
       if (deck%delaminations(i)%growth_control == growth_by_energy .and. .not. is_explicit(deck%stepping)) &
         call remark_idle(deck%settings, problems, delamination_group, key_growth_control, 'has no effect without '// &
                          '&time integrator = ''central_difference''.', deck%delaminations(i)%group)
       warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply, &
-                                     length_unit(deck), length_unit_size(deck))
+                                     fewest, length_unit(deck), length_unit_size(deck))
       if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
                                      deck%delaminations(i)%group)
     end do
   end subroutine check_process_zones
+
+  !> Fewest cells in the process zones of shear and opening of all cohesive interfaces; huge without any.
+  pure function fewest_cells(deck) result(fewest)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    !> In shear and in opening
+    real(wp) :: fewest(2)
+    integer :: i
+
+    fewest = huge(fewest)
+    do i = 1, size(deck%delaminations)
+      if (deck%delaminations(i)%law /= law_cohesive) cycle
+      fewest = min(fewest, cells_in_zones(process_zone(deck, deck%delaminations(i))))
+    end do
+  end function fewest_cells
 
   !> Finds the strength of interfaces beside cracks, and reports where cracks have no effect.
   subroutine set_flaws(deck, problems)
@@ -97,6 +114,33 @@ contains
     end if
   end subroutine remark_shear_cracks
 
+  !> Length of the shortest process zone of shear of the interfaces that grow by energy; 0: there are none. The mesh
+  !> need not be known.
+  pure real(wp) function shortest_shear_zone(deck) result(shortest)
+    type(deck_t), intent(in) :: deck
+    integer :: i
+
+    shortest = huge(shortest)
+    do i = 1, size(deck%delaminations)
+      associate (d => deck%delaminations(i))
+        if (d%law /= law_cohesive .or. .not. d%strength_shear > 0 .or. d%below_ply < 1 .or. &
+            d%below_ply >= size(deck%laminate%angle)) cycle
+        if (grows_by_energy(deck, d)) shortest = min(shortest, shear_zone_length(zone_of_any_cells(deck, d)))
+      end associate
+    end do
+    if (.not. shortest < huge(shortest)) shortest = 0
+  end function shortest_shear_zone
+
+  !> True where the energy release rate starts growth.
+  pure logical function grows_by_energy(deck, delamination)
+    type(deck_t), intent(in) :: deck
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+
+    grows_by_energy = delamination%growth_control == growth_by_energy .and. deck%has_time .and. &
+                      is_explicit(deck%stepping)
+  end function grows_by_energy
+
   !> Data of the process zone of an interface.
   pure function process_zone(deck, delamination) result(zone)
     type(deck_t), intent(in) :: deck
@@ -104,8 +148,34 @@ contains
     type(delamination_t), intent(in) :: delamination
     !> Modulus and thickness of the thinner layer, toughness, strengths and cells
     type(process_zone_t) :: zone
+    real(wp) :: cells(2), extents(2)
+
+    zone = zone_of_any_cells(deck, delamination)
+    extents = delamination%zone
+    if (delamination%is_adaptive) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
+    cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), extents(1)), &
+             longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
+    zone%cell = maxval(cells)
+    if (has_strip(delamination)) zone%cell = cells(1)
+  end function process_zone
+
+  !> True for a starter across the full width. Its front runs along y and advances along x.
+  pure logical function has_strip(delamination)
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+
+    has_strip = delamination%starter_strip(1) < delamination%starter_strip(2)
+  end function has_strip
+
+  !> Data of the process zone of an interface, without cells.
+  pure function zone_of_any_cells(deck, delamination) result(zone)
+    type(deck_t), intent(in) :: deck
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    !> Modulus and thickness of the thinner layer, toughness and strengths
+    type(process_zone_t) :: zone
     type(ply_t), allocatable :: plies(:), layer(:)
-    real(wp) :: toughness(2), bending(6), cells(2), extents(2)
+    real(wp) :: toughness(2), bending(6)
 
     plies = in_bending(stacked_plies(deck%laminate, deck%materials))
     layer = plies(:delamination%below_ply)
@@ -113,25 +183,18 @@ contains
     if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)
     zone%thickness = thickness_of(layer)
     bending = bending_moduli(layer)
-    extents = delamination%zone
-    if (delamination%is_adaptive) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
-    cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), extents(1)), &
-             longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
     zone%modulus = largest_modulus(bending)
-    zone%cell = maxval(cells)
-    ! The front of a strip runs along y and advances along x.
-    if (delamination%starter_strip(1) < delamination%starter_strip(2)) then
-      zone%modulus = bending(1)
-      zone%cell = cells(1)
-    end if
+    if (has_strip(delamination)) zone%modulus = bending(1)
     toughness = toughnesses(delamination)
     zone%toughness_opening = toughness(1)
     zone%toughness_shear = toughness(2)
     zone%strength_opening = delamination%strength_opening
     zone%strength_shear = delamination%strength_shear
     zone%is_pulled = .not. deck%has_impactor
-    zone%by_energy = delamination%growth_control == growth_by_energy .and. is_explicit(deck%stepping)
-  end function process_zone
+    zone%by_energy = grows_by_energy(deck, delamination)
+    zone%is_implicit_specimen = zone%is_pulled .and. .not. (deck%has_time .and. is_explicit(deck%stepping)) .and. &
+                                (delamination%starter > 0 .or. has_strip(delamination))
+  end function zone_of_any_cells
 
   !> Total thickness of plies.
   pure real(wp) function thickness_of(layer)

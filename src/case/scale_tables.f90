@@ -16,7 +16,7 @@ module scale_tables
   use unit_systems, only: base_units, system_named
   implicit none
   private
-  public :: scale_lines, strength_lines, toughness_lines, length_unit, length_unit_size, length_text
+  public :: scale_lines, strength_lines, toughness_lines, length_unit, length_unit_size, length_text, table_line
 
   !> Characters before the values, and characters of a value.
   integer, parameter :: name_width = 56, value_width = 12

@@ -17,7 +17,7 @@ module cohesive_laws
   real(wp), parameter :: usual_stiffness = 5
   !> Smallest ratio of the jump at failure to the jump at the onset. Its inverse is the part of the toughness that is
   !> stored at the onset: 5 %.
-  real(wp), parameter :: min_ratio = 20
+  real(wp), parameter, public :: min_failure_ratio = 20
 
   !> The law of one interface.
   type :: cohesive_law_t
@@ -64,15 +64,15 @@ contains
     end if
     law%stiffness_closing = law%stiffness_opening
     law%stiffness_shear = law%stiffness_opening*(toughness(1)/toughness(2))*(strength(2)/strength(1))**2
-    law%failure_ratio = min_ratio*law%stiffness_opening/min_stiffness(law)
+    law%failure_ratio = min_failure_ratio*law%stiffness_opening/min_stiffness(law)
   end function create_cohesive_law
 
-  !> Smallest stiffness of opening with a softening branch of the ratio `min_ratio`, 10 sigma**2/G_Ic.
+  !> Smallest stiffness of opening with a softening branch of the ratio `min_failure_ratio`, 10 sigma**2/G_Ic.
   pure real(wp) function min_stiffness(law)
     !> The law, with toughness and strength of opening
     type(cohesive_law_t), intent(in) :: law
 
-    min_stiffness = min_ratio*law%strength_opening**2/(2*law%toughness_opening)
+    min_stiffness = min_failure_ratio*law%strength_opening**2/(2*law%toughness_opening)
   end function min_stiffness
 
   !> Objection to the parameters of a law; empty: none.
@@ -90,7 +90,7 @@ contains
       objection = 'strength_opening and strength_shear must be positive'
     else if (.not. (positive(law%stiffness_opening) .and. positive(law%stiffness_shear))) then
       objection = 'stiffness must be positive'
-    else if (law%failure_ratio < min_ratio*(1 - sqrt(epsilon(1.0_wp)))) then
+    else if (law%failure_ratio < min_failure_ratio*(1 - sqrt(epsilon(1.0_wp)))) then
       objection = 'stiffness must be at least '//text_at_least(min_stiffness(law))// &
                   ' (10 strength_opening**2/G_Ic)'
     end if

@@ -7,20 +7,20 @@
 !> traction and dissipates the toughness, as all cohesive laws do.
 module energy_onsets
   use benzeggagh_kenane, only: toughness_gain
-  use cohesive_laws, only: cohesive_law_t, weakened
+  use cohesive_laws, only: cohesive_law_t, min_failure_ratio, weakened
   use cohesive_points, only: opened, separation_of, separation_t
   use kinds, only: wp
   implicit none
   private
   public :: onset_share, release_over_toughness, reduce_law
 
-  !> Energy release rate at the onset over the toughness. A corner node of elements much longer than their thickness
-  !> releases up to 1.65 times the energy of its area, so that softening from more than .6 of the toughness is unstable.
-  !> Below that the value is not derived: from .15 to .4 loads at growth of a double cantilever differ by less than two
-  !> runs of one value, 2.7 %; single-leg bending has 11 % more at .6 (doc/studies/interfaces.md).
+  !> Energy release rate at the onset over the toughness. In opening a corner node of elements much longer than their
+  !> thickness releases r = 1.65 times the energy of its area. If it softens from the share s while the node ahead is
+  !> intact, it is stable for s < 1/r = .6 and fails at the share 1/(r**2 s): above s = 1/r**2 = .37 it fails before the
+  !> toughness is reached. Below that the value is not derived: from .15 to .4 loads at growth of a double cantilever
+  !> differ by less than two runs of one value, 2.7 %; smaller values give longer softening zones, which lower the load
+  !> of a round delamination by 1 % from .37 to .2 (doc/studies/interfaces.md).
   real(wp), parameter :: onset_share = 0.2_wp
-  !> Smallest ratio of jumps at failure and at the onset in opening, as that of undamaged laws (`cohesive_laws`)
-  real(wp), parameter :: min_ratio = 20
   !> Smallest factor of the strengths: where a point carries less, softening waits for more traction. It makes the ratio
   !> of jumps at failure and at the onset 1e6 times that of the undamaged law.
   real(wp), parameter :: min_strength = 1.0e-3_wp
@@ -73,7 +73,7 @@ contains
     if (shear > 0 .and. traction(3) > 0 .and. behind(3) > 0) then
       slid = dot_product(traction(:2), behind(:2))/shear
       compliance = traction(3)/(law%stiffness_opening*behind(3))
-      if (slid > 0) opening = min(1.0_wp, compliance*max(min_ratio, law%stiffness_shear*slid/shear))
+      if (slid > 0) opening = min(1.0_wp, compliance*max(min_failure_ratio, law%stiffness_shear*slid/shear))
     end if
     onset = separation_of(weakened(law, 1.0_wp, opening), opened(jump)/[1.0_wp, 1.0_wp, opening])
     strength = max(min_strength, onset%ratio)

@@ -31,6 +31,8 @@ ENTRY = re.compile(r"^\| `(energy_\w+|work_external)`", re.MULTILINE)
 EXAMPLE = re.compile(r"^```fortran\n(.*?)^```", re.DOTALL | re.MULTILINE)
 # Values of materials, and their sources.
 MATERIALS = re.compile(r"^\| key \|.*?\n\n(?:- .*\n)+", re.DOTALL | re.MULTILINE)
+# Measured errors of long cells.
+ERRORS = re.compile(r"^\| cells, at least \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
 GROUP = re.compile(r"^&(\w+).*?/[ ]*$", re.DOTALL | re.MULTILINE)
 # Groups that replace these of the completing deck in a static example.
 TRANSIENT = ("impactor", "indentation", "time")
@@ -106,6 +108,20 @@ def check_materials(program, wrong):
     if table not in text:
         wrong.append(f"{path}: the tables are not the program's; run check_manual.py IMPLAM --write")
     check_examples(program, "materials", text, wrong)
+
+
+def check_growth_errors(program, wrong):
+    """Add a message to `wrong` if the page on cells has other measured errors than the program."""
+    path = os.path.join(MANUAL, "which_cells.md")
+    with open(path, encoding="utf-8") as page:
+        text = page.read()
+    table = ask(program, "explain", "--markdown", "growth_errors")[1].strip()
+    if "--write" in sys.argv:
+        text = ERRORS.sub(lambda _: table, text)
+        with open(path, "w", encoding="utf-8") as page:
+            page.write(text)
+    if not table.startswith("| cells") or table not in text:
+        wrong.append(f"{path}: the table of errors is not the program's; run check_manual.py IMPLAM --write")
 
 
 def check_ledger(program, wrong):
@@ -211,6 +227,7 @@ def main():
     check_summary(program, wrong)
     check_exit_codes(program, wrong)
     check_once((*groups, *RESULTS), wrong)
+    check_growth_errors(program, wrong)
     check_materials(program, wrong)
     print("\n".join(wrong) or f"{len(groups) + len(RESULTS)} pages agree with the program, so does that of the ledger")
     return 1 if wrong else 0
