@@ -6,6 +6,7 @@ module field_results
   use fields_file, only: fields_file_t
   use interface_fields, only: interface_field_rows, starters_above, write_interface_fields
   use kinds, only: wp
+  use mesh_parameters, only: initial_deflection
   use models, only: model_t
   use motion_fields, only: motion_field_rows, write_motion_fields
   use output_clocks, only: shown_time
@@ -62,16 +63,29 @@ contains
     end associate
   end subroutine write_mesh
 
-  !> Heights at which the owned points are drawn: the middle of their layer, or of the laminate where
-  !> there is one layer.
+  !> Heights at which the owned points are drawn: the middle of their layer, or of the laminate where there is one
+  !> layer, on the stress-free shape.
   pure function heights(model) result(z)
+    type(model_t), intent(in) :: model
+    !> Height of each owned point
+    real(wp) :: z(model%distribution%owned)
+    integer :: i
+
+    associate (mesh => model%mesh, partition => model%distribution)
+      z = [(initial_deflection(model%setup%plate, mesh%node_coordinates(:, mesh%point_node(partition%points(i)))), &
+            i=1, partition%owned)]
+    end associate
+    if (model%map%layered) z = z + middles_of_layers(model)
+  end function heights
+
+  !> Heights of the middles of layers above the mid-plane.
+  pure function middles_of_layers(model) result(z)
     type(model_t), intent(in) :: model
     !> Height of each owned point
     real(wp) :: z(model%distribution%owned)
     integer :: i, point, last
 
     z = 0
-    if (.not. model%map%layered) return
     associate (mesh => model%mesh)
       do i = 1, model%distribution%owned
         point = model%distribution%points(i)
@@ -86,7 +100,7 @@ contains
         end if
       end do
     end associate
-  end function heights
+  end function middles_of_layers
 
   !> Writes the requested fields of the state reached, if their physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)

@@ -24,7 +24,7 @@ module deck_cross_checks
   use mesh_deck, only: mesh_group, key_patch
   use output_deck, only: check_intervals, remark_idle_fields
   use plies, only: ply_t, material_objection
-  use plate_deck, only: plate_group, check_edges
+  use plate_deck, only: plate_group, check_edges, key_curvature_radius
   use pressure_deck, only: pressure_group, key_history
   use stepping_parameters, only: is_explicit
   use support_deck, only: check_static_rigs, support_group
@@ -212,6 +212,10 @@ contains
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call report(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
+      if (deck%impactor%radius > 0 .and. .not. deck%contact_radius() > 0 .and. &
+          are_clear(s, problems, plate_group, key_curvature_radius)) &
+        call report(s, problems, plate_group, key_curvature_radius, 'the nose of the impactor, radius '// &
+                    short_text(deck%impactor%radius)//', does not fit into the concave side; allowed: a larger radius.')
       if (deck%is_static() .or. s%is_given(impactor_group, key_travel)) return
       if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
           .not. problems%concern(pressure_group) .and. &

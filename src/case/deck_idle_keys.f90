@@ -13,8 +13,6 @@ module deck_idle_keys
   use material_deck, only: material_group, key_expansion, key_fibre_shear, key_shear_23, key_shear_strain, &
                            of_interfaces, strength_keys, toughness_keys
   use output_deck, only: output_group, key_force_filter
-  use plate_deck, only: key_imperfection, plate_group
-  use plate_options, only: kinematics_linear
   use ply_damage_deck, only: ply_damage_group
   use ply_damage_parameters, only: criteria_hou, criteria_puck, criteria_larc
   use stepping_parameters, only: is_explicit
@@ -46,8 +44,6 @@ contains
                          ', as every step has the length of step.')
       if (s%has_group(adapt_group) .and. .not. deck%stepping%adapt%on) &
         call remark_idle(s, problems, adapt_group, keys_of_lengths, 'has no effect with on = .false.')
-      if (deck%kinematics == kinematics_linear) &
-        call remark_idle(s, problems, plate_group, key_imperfection, 'has no effect with kinematics = ''linear''.')
       if (deck%is_static()) then
         call remark_idle(s, problems, impactor_group, key_rise, 'has no effect on a static analysis.')
         call remark_idle(s, problems, output_group, key_force_filter, 'has no effect on a static analysis.')

@@ -86,6 +86,9 @@ contains
       objection = both('&plate imperfection', to_text(deck%plate%imperfection), to_text(old%plate%imperfection))
     else if (abs(deck%plate%imperfection) > 0 .and. any(deck%plate%half_waves /= old%plate%half_waves)) then
       objection = both('&plate half_waves', integer_list(deck%plate%half_waves), integer_list(old%plate%half_waves))
+    else if (any(differ(deck%plate%curvature_radius, old%plate%curvature_radius))) then
+      objection = both('&plate curvature_radius', short_list(deck%plate%curvature_radius), &
+                       short_list(old%plate%curvature_radius))
     else if (deck%plate%symmetry /= old%plate%symmetry .and. deck%plate%symmetry /= symmetry_none) then
       objection = both(key_symmetry, part_name(deck%plate%symmetry), part_name(old%plate%symmetry))// &
                   '; allowed: the same, or ''none'''

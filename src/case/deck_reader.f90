@@ -217,7 +217,7 @@ contains
     call fill_impactor(deck%settings, deck%impactor, problems)
     if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
     if (deck%has_impactor) &
-      call fill_indentation(deck%settings, deck%impactor%radius, struck_face_of(deck), deck%indentation)
+      call fill_indentation(deck%settings, deck%contact_radius(), struck_face_of(deck), deck%indentation)
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)

@@ -7,6 +7,7 @@
 !> on the jumps B u are those of weighted jumps, which include the jumps at the end of the step (`weighted_jumps`).
 module central_differences
   use archives, only: archive_t
+  use batch_strains, only: depends_on_slopes
   use central_difference_parameters, only: central_difference_parameters_t
   use circle_frames, only: circle_frames_t, create_circle_frames
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
@@ -21,7 +22,6 @@ module central_differences
   use element_batches, only: lanes
   use rank_totals, only: total_of
   use rig_steps, only: add_clamp_forces, create_rig_steps
-  use plate_options, only: kinematics_von_karman
   use section_bounds, only: largest_stiffness
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
@@ -137,7 +137,8 @@ contains
     type(state_t), intent(in) :: now
     real(wp) :: frequency, square
 
-    if (model%setup%kinematics == kinematics_von_karman .and. modulo(now%step, steps_between_frequencies) == 0) then
+    if (depends_on_slopes(model%elements, model%setup%kinematics) .and. &
+        modulo(now%step, steps_between_frequencies) == 0) then
       frequency = stiffened_frequency(model, largest_stiffness(now%plies), self%of_elements, self%motion)
       if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
         self%stiffened = stiffened_reserve*frequency

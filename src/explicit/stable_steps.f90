@@ -7,14 +7,14 @@
 module stable_steps
   use batch_resultants, only: in_plane_resultants
   use batch_strains, only: strains_of_batch
-  use element_batches, only: lanes
+  use element_batches, only: element_batches_t, lanes
   use inertia_scaling, only: inertia_scaling_t
   use internal_forces, only: batch_force
   use kinds, only: long, wp
   use lagrange9, only: gauss_shapes
   use models, only: model_t
-  use plate_options, only: kinematics_von_karman
-  use reference_fields, only: gather
+  use plate_options, only: kinematics_linear
+  use reference_fields, only: gather, reference_values
   implicit none
   private
   public :: highest_element_frequency, stiffened_frequency
@@ -89,7 +89,9 @@ contains
   !> per area is grad w^T G grad w / 2, G = S^T A S + N, with the damaged membrane stiffness A. In element coordinates
   !> of length 2 it is at most `gradient_bound` times the larger eigenvalue of G times the integral of w**2
   !> (`geometric_stiffness`). The energies of strains u and of slopes are at most (omega_u |u| + omega_w |w|)**2, so the
-  !> squares of both frequencies are added. Collective.
+  !> squares of both frequencies are added. With linear strains the slopes are those of the stress-free shape, and N
+  !> does not act. The curvature of a surface along which u and v are measured is part of `of_elements`, not of the
+  !> slopes. Collective.
   real(wp) function stiffened_frequency(model, stiffness, of_elements, motion) result(omega)
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
@@ -106,7 +108,9 @@ contains
     unused = 0
     do b = 1, model%elements%batches
       call gather(model%elements%points(:, :, b), motion, r)
-      call strains_of_batch(model%elements, b, kinematics_von_karman, r, strains, slopes)
+      call strains_of_batch(model%elements, b, model%setup%kinematics, r, strains, slopes)
+      if (allocated(model%elements%surface_slopes)) call take_surface_slopes(model%elements, b, slopes)
+      if (model%setup%kinematics == kinematics_linear) strains = 0
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
       added = gradient_bound*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), &
                                                  slopes, strains)/max(smallest_divisor, model%elements%mass(:, 1, b))
@@ -115,6 +119,22 @@ contains
     call model%communicator%maximum(omega)
     omega = sqrt(omega)
   end function stiffened_frequency
+
+  !> Subtracts the slopes of the surface along which u and v are measured.
+  pure subroutine take_surface_slopes(elements, b, slopes)
+    type(element_batches_t), intent(in) :: elements
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> At the Gauss points
+    real(wp), intent(inout) :: slopes(lanes, 9, 2)
+    real(wp) :: values(lanes, 9)
+    integer :: i
+
+    do i = 1, 2
+      call reference_values(elements%surface_slopes(:, :, i, b), values)
+      slopes(:, :, i) = slopes(:, :, i) - values
+    end do
+  end subroutine take_surface_slopes
 
   !> Largest geometric stiffness per area in each element of a batch: the larger eigenvalue of S^T A S + N in element
   !> coordinates.

@@ -62,7 +62,7 @@ contains
   subroutine fill_indentation(settings, radius, face, law)
     !> Keys in effect; receives a default of the contact stiffness
     type(settings_t), intent(inout) :: settings
-    !> Radius of the impactor's nose
+    !> Radius of the impactor's nose, or of its relative curvature on a curved plate
     real(wp), intent(in) :: radius
     type(struck_face_t), intent(in) :: face
     type(indentation_law_t), intent(inout) :: law
@@ -85,7 +85,7 @@ contains
   subroutine fill_stiffness(settings, radius, face, law)
     !> Keys in effect; receives a default of the contact stiffness
     type(settings_t), intent(inout) :: settings
-    !> Radius of the impactor's nose
+    !> Radius of the impactor's nose, or of its relative curvature on a curved plate
     real(wp), intent(in) :: radius
     type(struck_face_t), intent(in) :: face
     type(indentation_law_t), intent(inout) :: law
@@ -112,7 +112,7 @@ contains
   subroutine fill_yield(settings, radius, face, law)
     !> Keys in effect; receives the yield pressure and the indentation
     type(settings_t), intent(inout) :: settings
-    !> Radius of the impactor's nose
+    !> Radius of the impactor's nose, or of its relative curvature on a curved plate
     real(wp), intent(in) :: radius
     type(struck_face_t), intent(in) :: face
     type(indentation_law_t), intent(inout) :: law

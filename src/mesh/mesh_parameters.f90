@@ -6,10 +6,13 @@ module mesh_parameters
   use roundings, only: rounding
   implicit none
   private
-  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, has_symmetric_imperfection, initial_deflection, add_lines
+  public :: plate_t, mesh_t, parts_of, is_halved, is_mirrored, has_symmetric_imperfection, is_flat, curvatures, &
+            initial_deflection, add_lines
 
   !> Supports of an edge.
   integer, parameter, public :: edge_free = 0, edge_simple = 1, edge_clamped = 2, edge_elastic = 3
+  !> In-plane displacements of supported edges: free; fixed; along the edge fixed and across it free.
+  integer, parameter, public :: in_plane_free = 1, in_plane_fixed = 2, in_plane_tangential = 3
   !> Modelled parts of the plate: the full plate; x >= 0 and y >= 0; x >= 0; y >= 0; x >= 0 with point symmetry.
   integer, parameter, public :: symmetry_none = 1, symmetry_quarter = 2, symmetry_half_x = 3, symmetry_half_y = 4, &
                                 symmetry_point = 5
@@ -22,9 +25,11 @@ module mesh_parameters
     integer :: edges(4) = edge_clamped
     !> Stiffness of elastic edges per length, against deflection, 0: rigid, and against rotation about the edge
     real(wp) :: edge_stiffness(2) = 0
-    !> True: supported edges also fix the in-plane displacements
-    logical :: in_plane_fixed = .true.
-    !> Amplitude of the stress-free initial deflection; 0: the plate is flat
+    !> In-plane displacements of supported edges, one of the constants above
+    integer :: in_plane = in_plane_fixed
+    !> Radii of the lines along x and along y, positive with the centre on the far side of the impactor; 0: straight
+    real(wp) :: curvature_radius(2) = 0
+    !> Amplitude of the stress-free initial deflection, added to the curvature; 0: none
     real(wp) :: imperfection = 0
     !> Number of half waves of this deflection along x and y
     integer :: half_waves(2) = 1
@@ -74,13 +79,32 @@ contains
     end do
   end subroutine add_lines
 
-  !> Stress-free initial deflection of the plate: half waves over its lengths.
+  !> True if the stress-free plate is flat.
+  pure logical function is_flat(plate)
+    type(plate_t), intent(in) :: plate
+
+    is_flat = .not. (abs(plate%imperfection) > 0 .or. any(abs(plate%curvature_radius) > 0))
+  end function is_flat
+
+  !> Curvatures of the lines along x and along y of the stress-free shape; an imperfection is not counted.
+  pure function curvatures(plate) result(curvature)
+    type(plate_t), intent(in) :: plate
+    !> 1/radius, 0: straight
+    real(wp) :: curvature(2)
+
+    curvature = 0
+    where (abs(plate%curvature_radius) > 0) curvature = 1/plate%curvature_radius
+  end function curvatures
+
+  !> Height of the stress-free mid-plane along z, 0 at the centre without imperfection: paraboloid of the shallow shell,
+  !> and half waves over the plate's lengths.
   pure real(wp) function initial_deflection(plate, at) result(deflection)
     type(plate_t), intent(in) :: plate
     !> The point, from the centre of the plate
     real(wp), intent(in) :: at(2)
 
-    deflection = plate%imperfection*product(sin(plate%half_waves*pi*(at/plate%length + 0.5_wp)))
+    deflection = plate%imperfection*product(sin(plate%half_waves*pi*(at/plate%length + 0.5_wp))) &
+                 + dot_product(curvatures(plate), at**2)/2
   end function initial_deflection
 
   !> True if the initial deflection has the symmetry of the modelled part, so that it is that of the full plate.

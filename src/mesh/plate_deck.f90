@@ -8,8 +8,8 @@ module plate_deck
   use kinds, only: wp
   use mathematical_constants, only: pi
   use mesh_parameters, only: plate_t, edge_free, edge_simple, edge_clamped, edge_elastic, symmetry_none, &
-                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, is_halved, &
-                             has_symmetric_imperfection
+                             symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point, in_plane_free, &
+                             in_plane_fixed, in_plane_tangential, curvatures, is_halved, has_symmetric_imperfection
   use plate_options, only: max_slope
   use text, only: line_t, lower_case, rounded_text, to_text
   implicit none
@@ -18,10 +18,11 @@ module plate_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: plate_group = 'plate', key_length = 'length', key_symmetry = 'symmetry', &
-                                         key_imperfection = 'imperfection', key_half_waves = 'half_waves'
+                                         key_imperfection = 'imperfection', key_half_waves = 'half_waves', &
+                                         key_curvature_radius = 'curvature_radius'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: plate_group_row = &
-    'plate | required | The plate: size, edges, imperfection and symmetry.'
+    'plate | required | The plate: size, edges, curvature, imperfection and symmetry.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
@@ -32,8 +33,10 @@ module plate_deck
       &Stiffness of an elastic edge against deflection, force per length and deflection; left out: rigid.', &
     'plate | edge_rotation_stiffness | real | 1 | force | none | > 0 | &
       &Stiffness of an elastic edge against rotation, moment per length and angle; left out: free rotation.', &
-    'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free | &
-      &Whether supported edges also constrain in-plane displacements.', &
+    'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free tangential | &
+      &In-plane displacements of supported edges: fixed, free, or fixed along the edge and free across it.', &
+    'plate | curvature_radius | real | 2 | length | none | any | &
+      &Radius of lines along x and along y without stress, 0: straight; positive: the convex side is struck.', &
     'plate | imperfection | real | 1 | length | none | any | &
       &Amplitude of the initial, stress-free deflection.', &
     'plate | half_waves | integer | 2 | - | none | >= 1, <= 100 | &
@@ -45,6 +48,9 @@ module plate_deck
   character(len=*), parameter :: stiffness_keys(2) = [character(len=23) :: 'edge_stiffness', 'edge_rotation_stiffness']
   !> Largest ratio of the plate's sides: with one square element across, a thousand along; the most of a mesh are 1e6.
   real(wp), parameter :: max_aspect_ratio = 1.0e3_wp
+  !> Largest rise over span of a shallow shell (E. Reissner, J. Math. Phys. 25 (1946) 80-85); V. Z. Vlasov, General
+  !> Theory of Shells, 1949, takes 1/5.
+  real(wp), parameter :: max_rise = 0.125_wp
 
 contains
 
@@ -66,7 +72,10 @@ contains
       if (settings%is_given(plate_group, stiffness_keys(i))) &
         plate%edge_stiffness(i) = settings%real_of(plate_group, stiffness_keys(i))
     end do
-    plate%in_plane_fixed = lower_case(settings%text_of(plate_group, 'in_plane')) /= 'free'
+    plate%in_plane = code_of(settings%text_of(plate_group, 'in_plane'), 'fixed free tangential', &
+                             [in_plane_fixed, in_plane_free, in_plane_tangential])
+    if (settings%is_given(plate_group, key_curvature_radius)) &
+      plate%curvature_radius = settings%reals_of(plate_group, key_curvature_radius)
     if (settings%is_given(plate_group, key_imperfection)) &
       plate%imperfection = settings%real_of(plate_group, key_imperfection)
     if (settings%is_given(plate_group, key_half_waves)) &
@@ -105,6 +114,7 @@ contains
       slope = abs(plate%imperfection)*pi*maxval(plate%half_waves/plate%length)
     if (slope > max_slope) call remark(settings, problems, plate_group, key_imperfection, 'has a slope of '// &
                                       rounded_text(slope)//', but the strains assume at most '//to_text(max_slope)//'.')
+    call check_curvature(settings, plate, problems)
     ! A plate with point symmetry has equal opposite edges.
     halved = is_halved(plate%symmetry) .or. plate%symmetry == symmetry_point
     if (settings%is_known(plate_group, key_length) .and. maxval(plate%length) > max_aspect_ratio*minval(plate%length)) &
@@ -114,6 +124,32 @@ contains
       call report(settings, problems, plate_group, 'edges', 'symmetry = '''// &
                 lower_case(settings%text_of(plate_group, key_symmetry))//''' needs the same support at opposite edges.')
   end subroutine check_plate
+
+  !> Checks that the plate is as shallow as its strains assume.
+  subroutine check_curvature(settings, plate, problems)
+    type(settings_t), intent(in) :: settings
+    type(plate_t), intent(in) :: plate
+    type(problems_t), intent(inout) :: problems
+    character(len=*), parameter :: axes = 'xy'
+    real(wp) :: curvature(2), rise
+    integer :: i
+
+    if (.not. settings%is_known(plate_group, key_length)) return
+    curvature = curvatures(plate)
+    do i = 1, 2
+      rise = plate%length(i)*abs(curvature(i))/8
+      if (rise > max_rise) then
+        call report(settings, problems, plate_group, key_curvature_radius, 'the rise of the lines along '//axes(i:i)// &
+                    ' is '//rounded_text(rise)//' times their length, and theory of shallow shells holds up to '// &
+                    to_text(max_rise)//'; allowed: 0, or a radius of at least '// &
+                    to_text(plate%length(i)/(8*max_rise))//'.')
+      else if (4*rise > max_slope) then
+        call remark(settings, problems, plate_group, key_curvature_radius, 'gives the lines along '//axes(i:i)// &
+                    ' a slope of '//rounded_text(4*rise)//' at their ends, but the strains assume at most '// &
+                    to_text(max_slope)//'.')
+      end if
+    end do
+  end subroutine check_curvature
 
   !> Checks that edges support a plate without rigs; only a static analysis needs them.
   subroutine check_edges(settings, plate, problems)

@@ -1,7 +1,7 @@
 !> Fixed unknowns of the points: by supports, by symmetry, by ties between layers, or because they are always zero.
 module supports
   use kinds, only: wp
-  use mesh_parameters, only: plate_t, edge_free, edge_clamped, edge_elastic
+  use mesh_parameters, only: plate_t, edge_free, edge_clamped, edge_elastic, in_plane_fixed, in_plane_tangential
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: last_line
   implicit none
@@ -73,7 +73,8 @@ contains
     fixed(3) = edge /= edge_elastic .or. .not. plate%edge_stiffness(1) > 0
     fixed(3 + 3 - normal) = fixed(3)
     if (edge == edge_clamped) fixed(4:5) = .true.
-    if (plate%in_plane_fixed) fixed(1:2) = .true.
+    if (plate%in_plane == in_plane_fixed) fixed(1:2) = .true.
+    if (plate%in_plane == in_plane_tangential) fixed(3 - normal) = .true.
   end function fixed_by_edge
 
   !> Fixes the in-plane rigid-body motions that symmetry does not exclude: displacements at the struck node, and the

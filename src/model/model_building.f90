@@ -4,13 +4,14 @@ module model_building
   use errors, only: error_t
   use communicators, only: communicator_t
   use element_batches, only: lanes, lane_of, batch_of
-  use batch_strains, only: set_initial_shape
+  use batch_strains, only: set_initial_shape, set_surface
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
   use mean_stiffnesses, only: in_bending
   use ply_shear, only: shear_shares_of
   use stacking, only: section_t, stacked_plies, section_of, layer_stiffness, section_mass
-  use mesh_parameters, only: edge_free, initial_deflection, symmetry_quarter
+  use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
+                             initial_deflection, is_flat, plate_t, symmetry_quarter
   use cell_grids, only: cell_edges
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
@@ -97,6 +98,7 @@ contains
 
     idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
              .or. setup%has_thermal)
+    idle = idle .and. is_flat(setup%plate)
     if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)
     idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
   end function is_membrane_idle
@@ -129,11 +131,11 @@ contains
     integer :: i
 
     unrestrained = .not. setup%has_inertia() .and. setup%plate%symmetry /= symmetry_quarter .and. &
-             (.not. setup%plate%in_plane_fixed .or. all(setup%plate%edges == edge_free))
+                   .not. held_by_edges(setup%plate)
     if (allocated(setup%supports)) then
       do i = 1, size(setup%supports)
         if (allocated(setup%supports(i)%clamps) .and. .not. setup%supports(i)%clamp_force > 0) &
-          unrestrained = unrestrained .and. .not. setup%plate%in_plane_fixed
+          unrestrained = unrestrained .and. setup%plate%in_plane == in_plane_free
       end do
     end if
     if (.not. allocated(setup%lines)) return
@@ -145,6 +147,20 @@ contains
                                                         .and. (lines%component == 1 .eqv. lines%direction == along_y))
     end associate
   end function unrestrained
+
+  !> In-plane rigid-body motions that supported edges prevent: along x, along y, rotation. An edge that holds the
+  !> displacement along itself only does not prevent a rotation about one of its points, nor do two that meet about
+  !> their common corner.
+  pure function held_by_edges(plate) result(held)
+    type(plate_t), intent(in) :: plate
+    logical :: held(3)
+    logical :: supported(4)
+
+    supported = plate%edges /= edge_free
+    held = plate%in_plane == in_plane_fixed .and. any(supported)
+    if (plate%in_plane == in_plane_tangential) &
+      held = [any(supported(3:4)), any(supported(1:2)), all(supported(1:2)) .or. all(supported(3:4))]
+  end function held_by_edges
 
   !> Lines that constrain or displace the plate in its plane.
   pure function lines_in_plane(setup) result(in_plane)
@@ -162,16 +178,15 @@ contains
     type(model_t), intent(inout) :: self
     !> Set if an element is ill-shaped
     type(error_t), allocatable, intent(inout) :: error
-    integer :: element, first, last, point
+    integer :: element, first, last
     type(section_t) :: section
 
     associate (mesh => self%mesh, partition => self%distribution)
       call self%elements%create(mesh%node_coordinates(:, mesh%point_node(partition%points)), partition%connectivity, &
                                 self%setup%mesh%shear, error)
       if (allocated(error)) return
-      if (abs(self%setup%plate%imperfection) > 0) call set_initial_shape(self%elements, &
-        [(initial_deflection(self%setup%plate, mesh%node_coordinates(:, mesh%point_node(partition%points(point)))), &
-          point=1, size(partition%points))])
+      if (.not. is_flat(self%setup%plate)) call build_shape(self, mesh%node_coordinates(:, mesh%point_node( &
+                                                                                         partition%points)))
       if (self%setup%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
       do element = 1, size(partition%elements)
         first = mesh%element_plies(1, partition%elements(element))
@@ -189,6 +204,22 @@ contains
     end associate
     if (self%setup%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
   end subroutine build_elements
+
+  !> Shape of a plate that is not flat. Displacements are measured along its curved surface; an imperfection is too
+  !> small for a difference.
+  subroutine build_shape(self, places)
+    !> The model, with its elements
+    type(model_t), intent(inout) :: self
+    !> Coordinates of this rank's points from the plate's centre, (2, points)
+    real(wp), intent(in) :: places(:, :)
+    integer :: point
+
+    associate (plate => self%setup%plate)
+      call set_initial_shape(self%elements, [(initial_deflection(plate, places(:, point)), point=1, size(places, 2))])
+      if (any(abs(plate%curvature_radius) > 0)) &
+        call set_surface(self%elements, spread(curvatures(plate), 2, size(places, 2))*places)
+    end associate
+  end subroutine build_shape
 
   !> Lines on this rank's points.
   subroutine build_lines(self)

@@ -96,7 +96,7 @@ contains
         local(partition%points(i)) = i
       end do
       call self%communicator%sum(area)
-      self%nose = new_contact_area(self%setup%impactor%radius, area, &
+      self%nose = new_contact_area(self%setup%contact_radius(), area, &
                                    [(norm2(mesh%node_coordinates(:, mesh%point_node(i)) - struck), i=1, size(area))], &
                                    local)
     end associate

@@ -8,7 +8,7 @@ module rig_models
   use distributions, only: distribution_t
   use elastic_edges, only: edge_spring_t, edge_springs
   use layered_meshes, only: layered_mesh_t
-  use mesh_parameters, only: plate_t, edge_elastic
+  use mesh_parameters, only: plate_t, edge_elastic, in_plane_free
   use rigs, only: crossing_t, nodes_on_frame, circle_crossings, clamp_nodes, clamp_share
   use support_parameters, only: support_t
   implicit none
@@ -229,7 +229,7 @@ contains
     real(wp) :: springs(3)
 
     springs = support%clamp_stiffness*clamp_share(mesh)
-    if (.not. plate%in_plane_fixed) springs(1:2) = 0
+    if (plate%in_plane == in_plane_free) springs(1:2) = 0
   end function springs_of
 
   !> Adds the unknowns fixed by rigs to a table. Frames and clamps that fix w fix it at both faces, so that all layers
@@ -258,7 +258,7 @@ contains
       do k = 1, size(nodes)
         associate (first => mesh%first_point(nodes(k)), last => mesh%first_point(nodes(k) + 1) - 1)
           fixed(3, first:last) = .true.
-          if (plate%in_plane_fixed) fixed(1:2, first:last) = .true.
+          if (plate%in_plane /= in_plane_free) fixed(1:2, first:last) = .true.
         end associate
       end do
     end do

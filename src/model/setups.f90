@@ -1,7 +1,9 @@
 !> The setup of a deck as plain parameters: a plate and its load case.
 module setups
+  use hertz_contact, only: relative_radius
+  use kinds, only: wp
   use plate_options, only: kinematics_von_karman
-  use mesh_parameters, only: plate_t, mesh_t
+  use mesh_parameters, only: plate_t, mesh_t, curvatures
   use gauges, only: gauge_t
   use load_cases, only: load_case_t
   use material_parameters, only: material_t, modulus_differs
@@ -36,6 +38,7 @@ module setups
     procedure :: has_crack_bands
     procedure :: is_bimodular
     procedure :: has_variable_sections
+    procedure :: contact_radius
   end type setup_t
 
 contains
@@ -68,4 +71,11 @@ contains
 
     has_variable_sections = self%has_ply_damage .or. self%is_bimodular()
   end function has_variable_sections
+
+  !> Radius of the sphere that touches a flat plate as the nose touches this one; 0: the nose has no radius.
+  pure real(wp) function contact_radius(self)
+    class(setup_t), intent(in) :: self
+
+    contact_radius = relative_radius(self%impactor%radius, curvatures(self%plate))
+  end function contact_radius
 end module setups

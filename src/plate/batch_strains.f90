@@ -2,15 +2,15 @@
 !> operation.
 module batch_strains
   use kinds, only: wp
-  use plate_options, only: kinematics_von_karman, shear_assumed
+  use plate_options, only: kinematics_linear, kinematics_von_karman, shear_assumed
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather, reference_gradient, add_gradient_forces
   use assumed_shear, only: assumed_shear_strains, add_assumed_shear_forces
   use integrated_shear, only: integrated_shear_strains, add_integrated_shear_forces
   implicit none
   private
-  public :: set_initial_shape, strains_of_batch, in_plane_strains, add_in_plane_forces, plane_strains, &
-            add_plane_forces, shear_strains, add_shear_forces
+  public :: set_initial_shape, set_surface, depends_on_slopes, turn_into_plan, turn_into_surface, strains_of_batch, &
+            in_plane_strains, add_in_plane_forces, plane_strains, add_plane_forces, shear_strains, add_shear_forces
 
 contains
 
@@ -32,8 +32,63 @@ contains
     end do
   end subroutine set_initial_shape
 
+  !> Measures u and v along a surface and w normal to it.
+  subroutine set_surface(batches, slopes)
+    type(element_batches_t), intent(inout) :: batches
+    !> Slopes of the surface at each point along x and y (2, points)
+    real(wp), intent(in) :: slopes(:, :)
+    integer :: b, node
+
+    allocate (batches%surface_slopes(lanes, 9, 2, batches%batches))
+    do b = 1, batches%batches
+      do node = 1, 9
+        batches%surface_slopes(:, node, :, b) = transpose(slopes(:, batches%points(:, node, b)))
+      end do
+    end do
+  end subroutine set_surface
+
+  !> Turns displacements along a surface into those along the plan, to first order of its slopes.
+  pure subroutine turn_into_plan(batches, b, r)
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Unknowns of the nodes
+    real(wp), intent(inout) :: r(lanes, 9, 5)
+
+    if (.not. allocated(batches%surface_slopes)) return
+    associate (slopes => batches%surface_slopes(:, :, :, b))
+      r(:, :, 1) = r(:, :, 1) - slopes(:, :, 1)*r(:, :, 3)
+      r(:, :, 2) = r(:, :, 2) - slopes(:, :, 2)*r(:, :, 3)
+    end associate
+  end subroutine turn_into_plan
+
+  !> Transpose of `turn_into_plan` for forces.
+  pure subroutine turn_into_surface(batches, b, f)
+    type(element_batches_t), intent(in) :: batches
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Nodal forces
+    real(wp), intent(inout) :: f(lanes, 9, 5)
+
+    if (.not. allocated(batches%surface_slopes)) return
+    associate (slopes => batches%surface_slopes(:, :, :, b))
+      f(:, :, 3) = f(:, :, 3) - slopes(:, :, 1)*f(:, :, 1) - slopes(:, :, 2)*f(:, :, 2)
+    end associate
+  end subroutine turn_into_surface
+
+  !> True if membrane strains depend on the slopes of the deflection: with von Karman's strains, or on a plate that is
+  !> not flat.
+  pure logical function depends_on_slopes(batches, kinematics)
+    type(element_batches_t), intent(in) :: batches
+    !> One of the kinematics_* choices
+    integer, intent(in) :: kinematics
+
+    depends_on_slopes = kinematics == kinematics_von_karman .or. allocated(batches%initial_slopes)
+  end function depends_on_slopes
+
   !> Membrane strains and curvatures at the Gauss points of a batch, relative to the stress-free shape w0 (K. Marguerre,
-  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101; theory (P10)): e = (grad(w0 + w)**2 - grad(w0)**2)/2.
+  !> Proc. 5th Int. Congress of Applied Mechanics, 1938, 93-101; theory (P10)): e = (grad(w0 + w)**2 - grad(w0)**2)/2,
+  !> or grad(w0) grad(w) with linear strains.
   pure subroutine strains_of_batch(batches, b, kinematics, r, strains, slopes)
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
@@ -44,15 +99,25 @@ contains
     real(wp), intent(in) :: r(lanes, 9, 5)
     !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(out) :: strains(lanes, 9, 6)
-    !> Slopes of w0 + w (lane, point, direction), set for von Karman's strains only
+    !> Slopes by which the membrane strains change with those of w (lane, point, direction): of w0 + w, or of w0 with
+    !> linear strains; not set where the strains do not depend on slopes
     real(wp), intent(out) :: slopes(lanes, 9, 2)
+    real(wp) :: plan(lanes, 9, 5)
 
-    call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
-    if (kinematics /= kinematics_von_karman .or. .not. allocated(batches%initial_slopes)) return
+    if (allocated(batches%surface_slopes)) then
+      plan = r
+      call turn_into_plan(batches, b, plan)
+      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, plan, strains, slopes)
+    else
+      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics, r, strains, slopes)
+    end if
+    if (.not. allocated(batches%initial_slopes)) return
+    if (kinematics == kinematics_linear) call gradient(batches%inverse_jacobian(:, :, :, b), r(:, :, 3), slopes)
     associate (initial => batches%initial_slopes(:, :, :, b))
       strains(:, :, 1) = strains(:, :, 1) + slopes(:, :, 1)*initial(:, :, 1)
       strains(:, :, 2) = strains(:, :, 2) + slopes(:, :, 2)*initial(:, :, 2)
       strains(:, :, 3) = strains(:, :, 3) + slopes(:, :, 1)*initial(:, :, 2) + slopes(:, :, 2)*initial(:, :, 1)
+      if (kinematics == kinematics_linear) slopes = 0
       slopes = slopes + initial
     end associate
   end subroutine strains_of_batch
@@ -87,15 +152,30 @@ contains
     end do
   end subroutine in_plane_strains
 
-  !> Adds the nodal forces of membrane forces and moments at the Gauss points.
-  pure subroutine add_in_plane_forces(inverse, kinematics, resultants, slopes, f)
+  !> Derivatives of a field with respect to x and y at the Gauss points.
+  pure subroutine gradient(inverse, field, slopes)
     !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
     real(wp), intent(in) :: inverse(lanes, 9, 4)
-    !> One of the kinematics_* choices
-    integer, intent(in) :: kinematics
+    !> Values at the nodes
+    real(wp), intent(in) :: field(lanes, 9)
+    !> (lane, point, direction)
+    real(wp), intent(out) :: slopes(lanes, 9, 2)
+    real(wp) :: along(lanes, 9, 2)
+
+    call reference_gradient(field, along)
+    slopes(:, :, 1) = inverse(:, :, 1)*along(:, :, 1) + inverse(:, :, 2)*along(:, :, 2)
+    slopes(:, :, 2) = inverse(:, :, 3)*along(:, :, 1) + inverse(:, :, 4)*along(:, :, 2)
+  end subroutine gradient
+
+  !> Adds the nodal forces of membrane forces and moments at the Gauss points.
+  pure subroutine add_in_plane_forces(inverse, sloped, resultants, slopes, f)
+    !> Derivatives xi,x eta,x xi,y eta,y at the Gauss points
+    real(wp), intent(in) :: inverse(lanes, 9, 4)
+    !> True: membrane strains depend on the slopes of w
+    logical, intent(in) :: sloped
     !> Forces Nxx, Nyy, Nxy and moments Mxx, Myy, Mxy, times the areas of the points
     real(wp), intent(in) :: resultants(lanes, 9, 6)
-    !> Slopes w,x and w,y, used for von Karman's strains only
+    !> Slopes by which they change, used in this case only
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> Nodal forces
     real(wp), intent(inout) :: f(lanes, 9, 5)
@@ -104,7 +184,7 @@ contains
 
     call add_plane_forces(inverse, resultants(:, :, 1:3), f(:, :, 1), f(:, :, 2))
     call add_plane_forces(inverse, resultants(:, :, 4:6), f(:, :, 4), f(:, :, 5))
-    if (kinematics /= kinematics_von_karman) return
+    if (.not. sloped) return
     do g = 1, 9
       do lane = 1, lanes
         x_force = resultants(lane, g, 1)*slopes(lane, g, 1) + resultants(lane, g, 3)*slopes(lane, g, 2)

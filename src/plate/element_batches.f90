@@ -52,6 +52,9 @@ module element_batches
     real(wp), allocatable :: mass(:, :, :)
     !> Slopes w0,x and w0,y of the stress-free shape (lanes, 9, 2, batches); unallocated: the plate is flat
     real(wp), allocatable :: initial_slopes(:, :, :, :)
+    !> Slopes along x and y at the nodes of a surface along which u and v are measured (lanes, 9, 2, batches);
+    !> unallocated: they are measured along the plan
+    real(wp), allocatable :: surface_slopes(:, :, :, :)
   contains
     procedure :: create
     procedure :: set_section

@@ -2,10 +2,10 @@
 module element_tangents
   use kinds, only: wp
   use lagrange9, only: gauss_shapes
-  use plate_options, only: kinematics_von_karman
+  use plate_options, only: kinematics_linear
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather
-  use batch_strains, only: strains_of_batch
+  use batch_strains, only: depends_on_slopes, strains_of_batch
   use batch_resultants, only: in_plane_resultants, take_free_resultants
   use slope_operators, only: slopes_and_values
   use geometric_tangents, only: add_geometric_tangent
@@ -25,7 +25,7 @@ contains
     real(wp), intent(in) :: stiffness(:, :)
     !> One of the kinematics_* choices
     integer, intent(in) :: kinematics
-    !> Unknowns (5, points), used for von Karman's strains only
+    !> Unknowns (5, points), used where strains depend on slopes only
     real(wp), contiguous, intent(in) :: u(:, :)
     !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
@@ -35,28 +35,63 @@ contains
     real(wp), intent(in), optional :: free(lanes, 7)
     real(wp) :: c(lanes, 21), x_slopes(lanes, 9, 9), y_slopes(lanes, 9, 9), values(9, 9)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes)
-    integer :: row, column
 
     k = 0.0_wp
     c = stiffness_factor*stiffness
     call slopes_and_values(9, batches%inverse_jacobian(:, :, :, b), x_slopes, y_slopes, values)
     call add_linear_tangent(c, batches%weight(:, :, b), x_slopes, y_slopes, k)
     call add_shear_tangent(batches, b, c, k)
-    if (kinematics == kinematics_von_karman) then
+    if (depends_on_slopes(batches, kinematics)) then
       energies = 0.0_wp
       call gather(batches%points(:, :, b), u, r)
       call strains_of_batch(batches, b, kinematics, r, strains, slopes)
       call in_plane_resultants(c, batches%weight(:, :, b), strains, energies)
       if (present(free)) call take_free_resultants(stiffness_factor*free, batches%weight(:, :, b), strains)
+      if (kinematics == kinematics_linear) strains = 0
       call add_geometric_tangent(c, batches%weight(:, :, b), x_slopes, y_slopes, slopes, strains, k)
     end if
+    if (allocated(batches%surface_slopes)) call turn_matrix(batches%surface_slopes(:, :, :, b), k)
     if (abs(mass_factor) > 0.0_wp) call add_mass(mass_factor*batches%mass(:, :, b), batches%weight(:, :, b), k)
+    call copy_upper_triangle(k)
+  end subroutine tangent
+
+  !> Makes a matrix symmetric, of which the blocks of node pairs a <= b are known.
+  pure subroutine copy_upper_triangle(k)
+    !> Matrix (lane, row, column)
+    real(wp), intent(inout) :: k(lanes, 45, 45)
+    integer :: row, column
+
     do column = 1, 45
       do row = 1, column - 1
         k(:, column, row) = k(:, row, column)
       end do
     end do
-  end subroutine tangent
+  end subroutine copy_upper_triangle
+
+  !> Turns the stiffness for displacements along the plan into that for displacements along a surface.
+  pure subroutine turn_matrix(slopes, k)
+    !> Slopes of the surface at the nodes (lane, node, direction)
+    real(wp), intent(in) :: slopes(lanes, 9, 2)
+    !> Stiffness (lane, row, column)
+    real(wp), intent(inout) :: k(lanes, 45, 45)
+    integer :: node, i
+
+    call copy_upper_triangle(k)
+    do node = 1, 9
+      associate (u => 5*node - 4, v => 5*node - 3, w => 5*node - 2)
+        do i = 1, 45
+          k(:, i, w) = k(:, i, w) - slopes(:, node, 1)*k(:, i, u) - slopes(:, node, 2)*k(:, i, v)
+        end do
+      end associate
+    end do
+    do node = 1, 9
+      associate (u => 5*node - 4, v => 5*node - 3, w => 5*node - 2)
+        do i = 1, 45
+          k(:, w, i) = k(:, w, i) - slopes(:, node, 1)*k(:, u, i) - slopes(:, node, 2)*k(:, v, i)
+        end do
+      end associate
+    end do
+  end subroutine turn_matrix
 
   !> Adds the linear membrane, bending and coupling stiffness to the blocks of node pairs a <= b.
   subroutine add_linear_tangent(c, weight, x_slopes, y_slopes, k)

@@ -4,7 +4,8 @@ module internal_forces
   use plate_options, only: kinematics_linear, shear_assumed
   use element_batches, only: element_batches_t, lanes, shear_size
   use reference_fields, only: gather, scatter
-  use batch_strains, only: in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, add_shear_forces
+  use batch_strains, only: depends_on_slopes, in_plane_strains, strains_of_batch, add_in_plane_forces, shear_strains, &
+                           add_shear_forces, turn_into_surface
   use batch_resultants, only: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
   use section_laws, only: section_law_t
   implicit none
@@ -34,8 +35,10 @@ contains
     real(wp), contiguous, intent(out), optional :: energies(:, :)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), stored(lanes)
     real(wp) :: resultants(lanes, 7)
+    logical :: sloped
     integer :: b
 
+    sloped = depends_on_slopes(batches, kinematics)
     if (present(law)) call share_strains(batches, kinematics, u, law)
     stored = 0.0_wp
     do b = 1, batches%batches
@@ -46,15 +49,15 @@ contains
         if (present(free)) then
           resultants = free(:, :, b)
           call law%soften(b, batches%weight(:, :, b), strains, c, resultants)
-          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, stored, resultants)
+          call turn_into_forces(batches, b, c, sloped, slopes, strains, r, stored, resultants)
         else
           call law%soften(b, batches%weight(:, :, b), strains, c)
-          call turn_into_forces(batches, b, c, kinematics, slopes, strains, r, stored)
+          call turn_into_forces(batches, b, c, sloped, slopes, strains, r, stored)
         end if
       else if (present(free)) then
-        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, stored, free(:, :, b))
+        call turn_into_forces(batches, b, stiffness(:, :, b), sloped, slopes, strains, r, stored, free(:, :, b))
       else
-        call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, stored)
+        call turn_into_forces(batches, b, stiffness(:, :, b), sloped, slopes, strains, r, stored)
       end if
       call scatter(batches%targets(:, :, b), r, f)
       if (.not. present(energies)) cycle
@@ -85,7 +88,8 @@ contains
     call law%exchange()
   end subroutine share_strains
 
-  !> Replaces the unknowns of a batch by its nodal forces, for linear strains.
+  !> Replaces the unknowns of a batch by its nodal forces, for linear strains. Stress-free shapes count only if u and v
+  !> are measured along their surface.
   pure subroutine batch_force(batches, b, c, r)
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
@@ -97,21 +101,25 @@ contains
     real(wp) :: strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes)
 
     energies = 0
-    call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics_linear, r, strains, slopes)
-    call turn_into_forces(batches, b, c, kinematics_linear, slopes, strains, r, energies)
+    if (allocated(batches%surface_slopes)) then
+      call strains_of_batch(batches, b, kinematics_linear, r, strains, slopes)
+    else
+      call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics_linear, r, strains, slopes)
+    end if
+    call turn_into_forces(batches, b, c, allocated(batches%surface_slopes), slopes, strains, r, energies)
   end subroutine batch_force
 
   !> Computes the nodal forces of a batch from its unknowns and in-plane strains, or from a motion and the change of the
   !> strains by it.
-  pure subroutine turn_into_forces(batches, b, c, kinematics, slopes, strains, r, energies, free)
+  pure subroutine turn_into_forces(batches, b, c, sloped, slopes, strains, r, energies, free)
     type(element_batches_t), intent(in) :: batches
     !> Number of the batch
     integer, intent(in) :: b
     !> Section stiffness
     real(wp), intent(in) :: c(lanes, 21)
-    !> One of the kinematics_* choices
-    integer, intent(in) :: kinematics
-    !> Slopes w,x and w,y (lane, point, direction)
+    !> True: membrane strains depend on the slopes of w
+    logical, intent(in) :: sloped
+    !> Slopes by which they change (lane, point, direction), used in this case only
     real(wp), intent(in) :: slopes(lanes, 9, 2)
     !> In-plane strains on entry, their resultants on return (lane, point, component)
     real(wp), intent(inout) :: strains(lanes, 9, 6)
@@ -133,7 +141,8 @@ contains
       call shear_resultants(batches%shear_points, c, batches%shear_weight(:, :, b), shear, energies)
     end if
     r = 0.0_wp
-    call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), kinematics, strains, slopes, r)
+    call add_in_plane_forces(batches%inverse_jacobian(:, :, :, b), sloped, strains, slopes, r)
+    call turn_into_surface(batches, b, r)
     call add_shear_forces(batches, b, shear, r)
   end subroutine turn_into_forces
 end module internal_forces

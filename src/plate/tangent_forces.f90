@@ -6,7 +6,7 @@ module tangent_forces
   use element_batches, only: element_batches_t, lanes
   use internal_forces, only: turn_into_forces
   use reference_fields, only: gather, scatter, add_gradient_forces
-  use batch_strains, only: in_plane_strains, strains_of_batch
+  use batch_strains, only: depends_on_slopes, in_plane_strains, strains_of_batch, turn_into_plan
   use batch_resultants, only: in_plane_resultants, take_free_resultants, element_means, mean_resultants
   implicit none
   private
@@ -31,8 +31,10 @@ contains
     real(wp), contiguous, intent(in), optional :: mean_change(:, :, :)
     real(wp) :: at(lanes, 9, 5), r(lanes, 9, 5), forces(lanes, 9, 6), strains(lanes, 9, 6)
     real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes), means(lanes, 7)
+    logical :: sloped
     integer :: b
 
+    sloped = depends_on_slopes(batches, kinematics)
     unused = 0
     slopes = 0
     do b = 1, batches%batches
@@ -43,19 +45,20 @@ contains
           call strains_of_batch(batches, b, kinematics, at, forces, slopes)
           call in_plane_resultants(stiffness(:, :, b), weight, forces, unused)
           if (present(free)) call take_free_resultants(free(:, :, b), weight, forces)
+          call turn_into_plan(batches, b, r)
           call in_plane_strains(inverse, kinematics, r, strains, change)
           ! The strains of the motion contain half the square of its slopes. In the derivative these terms are replaced
           ! by the following ones.
           call change_strains(slopes, change, strains)
         else
-          call in_plane_strains(inverse, kinematics_linear, r, strains, change)
+          call strains_of_batch(batches, b, kinematics_linear, r, strains, slopes)
         end if
         if (present(mean_change)) then
           means(:, :6) = mean_resultants(mean_change(:, :18, b), element_means(weight, strains))
           means(:, 7) = 0
-          call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, unused, -means)
+          call turn_into_forces(batches, b, stiffness(:, :, b), sloped, slopes, strains, r, unused, -means)
         else
-          call turn_into_forces(batches, b, stiffness(:, :, b), kinematics, slopes, strains, r, unused)
+          call turn_into_forces(batches, b, stiffness(:, :, b), sloped, slopes, strains, r, unused)
         end if
         if (kinematics == kinematics_von_karman) call add_turned_forces(inverse, forces, change, r(:, :, 3))
         call scatter(batches%targets(:, :, b), r, f)

@@ -4,7 +4,7 @@
 module contact_durations
   use kinds, only: wp
   use mathematical_constants, only: pi
-  use mesh_parameters, only: edge_clamped, edge_free
+  use mesh_parameters, only: edge_clamped, edge_free, in_plane_fixed
   use modal_plates, only: shortened_clamped
   use plate_options, only: kinematics_von_karman
   use setup_scales, only: setup_scales_t, bending_section, free_edges, free_span
@@ -59,9 +59,12 @@ contains
 
     stiffened = duration
     if (duration < quasi_static*pi*sqrt(setup%impactor%mass*scales%compliance)) return
+    ! The compliance of a curved plate includes its membrane forces, and its stiffness decreases at first.
+    if (any(abs(setup%plate%curvature_radius) > 0)) return
     share = clamped_share(setup, scales)
     if (setup%kinematics == kinematics_von_karman) &
-      spring%membrane = membrane(merge(1, 2, setup%plate%in_plane_fixed .and. any(setup%plate%edges /= edge_free)), &
+      spring%membrane = membrane(merge(1, 2, setup%plate%in_plane == in_plane_fixed .and. &
+                                       any(setup%plate%edges /= edge_free)), &
                                  merge(1, 2, all(free_edges(setup) == edge_clamped)))
     if (scales%threshold > 0) spring%limit = scales%threshold*share*scales%compliance/scales%thickness
     linear = sqrt(share)*deflection/scales%thickness

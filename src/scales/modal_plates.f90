@@ -2,8 +2,10 @@
 !>
 !> The modes are Navier's modes of a simply supported orthotropic Mindlin plate with rotary inertia, with the rotations
 !> condensed out. Other supports are approximated: a plate with clamped edges is replaced by a shorter one with the same
-!> first frequency, and free opposite edges have cosines, with the rigid-body motion.
+!> first frequency, and free opposite edges have cosines, with the rigid-body motion. A curved plate has the additional
+!> stiffness of its membrane forces.
 module modal_plates
+  use curved_modes, only: membrane_mode, shallow_shape_t
   use kinds, only: wp
   use mathematical_constants, only: pi
   use mesh_parameters, only: edge_free, edge_simple, edge_clamped
@@ -39,7 +41,7 @@ module modal_plates
 contains
 
   !> Modes of a plate up to a frequency, and the static compliance of all higher modes.
-  pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff) result(plate)
+  pure function modal_plate_of(length, edges, stiffness, mass, patch, cutoff, shape) result(plate)
     !> Lengths of the full plate along x and y
     real(wp), intent(in) :: length(2)
     !> Supports at x-min, x-max, y-min, y-max
@@ -52,20 +54,25 @@ contains
     real(wp), intent(in) :: patch
     !> Circular frequency up to which modes are listed
     real(wp), intent(in) :: cutoff
+    !> Shape without stress; flat if absent
+    type(shallow_shape_t), intent(in), optional :: shape
     !> The modes
     type(modal_plate_t) :: plate
     real(wp), allocatable :: x(:, :), y(:, :)
     real(wp), allocatable :: frequency(:), weight(:), wave_number(:, :)
-    real(wp) :: condensed(2), this
+    real(wp) :: condensed(2), extent(2), this
     integer :: i, j, found
 
     x = modes_along(length(1), edges(1:2), patch)
     y = modes_along(length(2), edges(3:4), patch)
     allocate (frequency(size(x, 2)*size(y, 2)), weight(size(x, 2)*size(y, 2)), wave_number(2, size(x, 2)*size(y, 2)))
+    extent = length*[length_factor(edges(1:2)), length_factor(edges(3:4))]
     found = 0
     do j = 1, size(y, 2)
       do i = 1, size(x, 2)
         condensed = condensed_mode(x(1, i), y(1, j), stiffness, mass)
+        if (present(shape)) condensed = condensed + &
+          [1.0_wp, mass(1)]*membrane_mode(shape, stiffness(1:6), [x(1, i), y(1, j)], extent)
         this = x(2, i)*y(2, j)/condensed(2)
         if (condensed(1) > cutoff**2*condensed(2)) then
           plate%rest = plate%rest + this*condensed(2)/condensed(1)

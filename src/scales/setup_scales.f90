@@ -1,11 +1,12 @@
 !> Scales of a setup that its mesh and steps have to resolve, from its parameters alone.
 module setup_scales
+  use curved_modes, only: shallow_shape_t
   use delamination_parameters, only: toughnesses
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
   use kinds, only: wp
   use mathematical_constants, only: pi
-  use mesh_parameters, only: edge_simple
+  use mesh_parameters, only: curvatures, edge_free, edge_simple, in_plane_fixed
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
@@ -65,7 +66,7 @@ contains
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
     scales%plate_mass = section%mass(1)*product(setup%plate%length)
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
-                           loaded_side(setup), all_modes)
+                           loaded_side(setup), all_modes, shape_of(setup))
     bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
@@ -102,17 +103,31 @@ contains
     type(setup_t), intent(in) :: setup
     !> Circular frequency
     real(wp), intent(in) :: cutoff
-    !> Factor of rotary inertia, 1 if absent
+    !> Factor of rotary and in-plane inertia, 1 if absent
     real(wp), intent(in), optional :: scaling
     !> The modes
     type(modal_plate_t) :: plate
     type(section_t) :: section
+    type(shallow_shape_t) :: shape
 
     section = bending_section(setup)
+    shape = shape_of(setup)
     if (present(scaling)) section%mass(3) = scaling*section%mass(3)
+    if (present(scaling)) shape%scaling = scaling
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, section%mass, &
-                           loaded_side(setup), cutoff)
+                           loaded_side(setup), cutoff, shape)
   end function plate_modes
+
+  !> Curvature of the plate, and the lines that its edges hold at both ends. Frames hold no in-plane displacement.
+  !> An imperfection is not counted.
+  pure function shape_of(setup) result(shape)
+    type(setup_t), intent(in) :: setup
+    type(shallow_shape_t) :: shape
+
+    shape%curvature = curvatures(setup%plate)
+    shape%is_held = setup%plate%in_plane == in_plane_fixed .and. &
+                    [all(setup%plate%edges(1:2) /= edge_free), all(setup%plate%edges(3:4) /= edge_free)]
+  end function shape_of
 
   !> Lengths of the free span of the plate: the full plate, or the window of its frame. A circular window is replaced by
   !> the square with the same first frequency, both simply supported: 4.977/(radius)**2 for nu = .3 (A. W. Leissa,
@@ -161,7 +176,7 @@ contains
     real(wp), intent(in) :: indentation
     real(wp) :: radius
 
-    radius = setup%impactor%radius
+    radius = setup%contact_radius()
     ! If the radius is not given: the radius of a rigid sphere for which Sun's formula gives this k.
     if (.not. radius > 0) &
       radius = (0.75_wp*setup%indentation%k/setup%materials(setup%laminate%material(1))%e2)**2

@@ -4,7 +4,7 @@ module slow_impactors
   use kinds, only: wp
   use errors, only: error_t
   use impact_force, only: contact_step_t, solve_impact_force
-  use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of
+  use tan_sun_indentation, only: commit_indentation, indentation_force, indentation_of, indentation_stiffness
   use models, only: model_t
   use krylov_corrections, only: solve_load_tangent
   use states, only: state_t
@@ -56,6 +56,14 @@ contains
     if (allocated(error)) return
     compliance = new%contact%mean(model%communicator, response)
     mean = new%contact_deflection(model) + new%contact%mean(model%communicator, correction)
+    if (compliance < 0 .and. allocated(model%elements%initial_slopes)) then
+      force = force_beyond_limit(model, new, mean, compliance)
+      if (force >= 0) then
+        correction = correction + (force - new%force)*response
+        new%force = new%force + part*(force - new%force)
+        return
+      end if
+    end if
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
     step = contact_step_t(model%setup%indentation, new%indentation, start=new%indentation%alpha, &
                           free=new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, &
@@ -66,6 +74,29 @@ contains
     correction = correction + (force - new%force)*response
     new%force = new%force + part*(force - new%force)
   end subroutine find_force_change
+
+  !> Force beyond the limit load of a curved plate, which needs less force the further it deflects: the root of
+  !> the linearized difference between travel, deflection and indentation. The equilibrium is stable under a given
+  !> travel if the contact is stiffer than the plate; otherwise -1.
+  real(wp) function force_beyond_limit(model, new, mean, compliance) result(force)
+    type(model_t), intent(in) :: model
+    !> State before the correction
+    type(state_t), intent(in) :: new
+    !> Deflection of the patch after it, with the present force
+    real(wp), intent(in) :: mean
+    !> Deflection of the patch per force, < 0
+    real(wp), intent(in) :: compliance
+    real(wp) :: alpha, flexibility
+
+    force = -1
+    if (.not. new%force > 0) return
+    associate (law => model%setup%indentation)
+      alpha = indentation_of(law, new%indentation, new%force)
+      flexibility = compliance + 1/indentation_stiffness(law, new%indentation, alpha)
+    end associate
+    if (flexibility < 0) &
+      force = max(0.0_wp, new%force + (new%load_factor*model%setup%impactor%travel - mean - alpha)/flexibility)
+  end function force_beyond_limit
 
   !> Difference between the force and that of the indentation law, relative to the larger of them.
   real(wp) function force_mismatch(model, new) result(mismatch)

@@ -27,7 +27,7 @@ contains
       positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
   end function is_positive_definite
 
-  !> True if the tangent does not couple in-plane displacements with bending: an undeflected plate of a symmetric
+  !> True if the tangent does not couple in-plane displacements with bending: an undeflected, flat plate of a symmetric
   !> laminate. Both are then factorized separately, and the factors are half as large as one for both. Collective.
   logical function has_separate_membrane(model, stiffness, displacement) result(separate)
     type(model_t), intent(in) :: model
@@ -36,7 +36,8 @@ contains
     !> Displacement at which the tangent is taken, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
-    separate = .not. (model%membrane_idle .or. model%map%layered .or. size(model%lines) > 0)
+    separate = .not. (model%membrane_idle .or. model%map%layered .or. size(model%lines) > 0 .or. &
+                      allocated(model%elements%initial_slopes))
     if (model%setup%kinematics == kinematics_von_karman) separate = separate .and. all(abs(displacement(3, :)) <= 0)
     separate = model%communicator%all(separate .and. uncoupled(stiffness, model%elements%mass))
   end function has_separate_membrane

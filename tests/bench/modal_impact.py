@@ -1,6 +1,7 @@
 """Semi-analytic response of an elastic impact: a ball on a simply supported cross-ply plate, by Navier's modes.
 
-The plate is Mindlin's with rotary inertia, the force is spread over a square patch in the centre, and the indentation
+The plate is Mindlin's with rotary inertia; if it is curved, a shallow shell after Donnell with Navier's edges and with
+the inertia of its in-plane displacements, the force is spread over a square patch in the centre, and the indentation
 is measured from the patch's mean deflection. Modes and ball are integrated exactly under a force that
 is linear over a step; the force at the end of a step is the root of a scalar equation. Modes of frequencies far above
 those of the force are static.
@@ -28,6 +29,7 @@ class Model:
     alpha_cr: float = 80.3e-6
     q: float = 2.5
     beta: float = 0.094
+    curvature: tuple = (0.0, 0.0)  # of the lines along x and along y
     name: str = 'model'
 
     @property
@@ -68,11 +70,29 @@ def matrices(model, m, n):
     return (sx*a**2 + sy*b**2, sx*a, sy*b, d11*a**2 + d66*b**2 + sx, (d12 + d66)*a*b, d66*a**2 + d22*b**2 + sy)
 
 
+def membrane(model, m, n):
+    """Stiffness of deflection and in-plane displacements u, v of a curved plate: ww, wu, wv, uu, uv, vv."""
+    e1, e2, g12, _, _, nu12 = model.moduli
+    nu21 = nu12*e2/e1
+    along = np.array(model.angles) == 0
+    q11, q22, a12 = (e1/(1 - nu12*nu21), e2/(1 - nu12*nu21), nu12*e2/(1 - nu12*nu21)*model.thickness)
+    a11, a22 = sum(model.plies*np.where(along, q11, q22)), sum(model.plies*np.where(along, q22, q11))
+    a66 = g12*model.thickness
+    a, b = m*math.pi/model.length[0], n*math.pi/model.length[1]
+    x, y = model.curvature
+    return (a11*x**2 + 2*a12*x*y + a22*y**2 + 0*a*b, (a11*x + a12*y)*a, (a12*x + a22*y)*b, a11*a**2 + a66*b**2,
+            (a12 + a66)*a*b, a66*a**2 + a22*b**2)
+
+
 def condensed(model, m, n):
-    """Stiffness of the deflection with the rotations condensed out."""
+    """Stiffness of the deflection with the rotations, and in-plane displacements, condensed out."""
     k11, k12, k13, k22, k23, k33 = matrices(model, m, n)
     det = k22*k33 - k23**2
-    return k11 - (k12**2*k33 - 2*k12*k13*k23 + k13**2*k22)/det
+    bending = k11 - (k12**2*k33 - 2*k12*k13*k23 + k13**2*k22)/det
+    if not any(model.curvature):
+        return bending
+    k11, k12, k13, k22, k23, k33 = membrane(model, m, n)
+    return bending + k11 - (k12**2*k33 - 2*k12*k13*k23 + k13**2*k22)/(k22*k33 - k23**2)
 
 
 def patch_weight(model, patch, m, n):
@@ -93,7 +113,15 @@ def modes(model, patch, cutoff):
     m, n, weight = m[near], n[near], weight[near]
     k11, k12, k13, k22, k23, k33 = matrices(model, m, n)
     scale = np.array([mass, rotary, rotary])**-0.5
-    full = np.array([[k11, k12, k13], [k12, k22, k23], [k13, k23, k33]]).transpose(2, 0, 1)*scale[:, None]*scale
+    full = np.array([[k11, k12, k13], [k12, k22, k23], [k13, k23, k33]]).transpose(2, 0, 1)
+    if any(model.curvature):
+        ww, wu, wv, uu, uv, vv = membrane(model, m, n)
+        scale = np.append(scale, [mass**-0.5, mass**-0.5])
+        full = np.pad(full, ((0, 0), (0, 2), (0, 2)))
+        full[:, 0, 0] += ww
+        full[:, 0, 3:] = full[:, 3:, 0] = np.array([wu, wv]).T
+        full[:, 3:, 3:] = np.array([[uu, uv], [uv, vv]]).transpose(2, 0, 1)
+    full = full*scale[:, None]*scale
     squares, vectors = np.linalg.eigh(full)
     omega = np.sqrt(np.abs(squares)).ravel()
     weight = (weight[:, None]*vectors[:, 0, :]**2/mass).ravel()

@@ -43,8 +43,8 @@ from solver_runs import checkpoint_of, history_of, read_history, require, run_de
 
 EXPLICIT = "time%integrator='central_difference'"
 # Failing plies and an interface, adaptive layers, turned halves on a unilateral frame, plies that soften and fail in
-# the fibres, prescribed and loaded lines, residual stresses that deflect the plate before the impact, and interfaces
-# that grow by their energy release rate on long cells.
+# the fibres, a curved plate, prescribed and loaded lines, residual stresses that deflect the plate before the impact,
+# and interfaces that grow by their energy release rate on long cells.
 MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
@@ -52,6 +52,8 @@ MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
                                                      "material%shear_failure_strain=0.05"]),
           "long_cells": ("../which_interfaces.nml", [EXPLICIT, "time%end=800e-6", "mesh%elements=10,20",
                                                      "mesh%cell=4e-3"]),
+          "curved": ("../small/breaking_rounds.nml", [EXPLICIT, "plate%curvature_radius=0.2,0.15",
+                                                      "plate%in_plane='tangential'", "time%end=150e-6"]),
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT]),
           "cooled": ("../small/cohesive.nml", [EXPLICIT, "time%end=20e-6", "plate%edges='simple'",
                                                "plate%symmetry='point'", "laminate%angles=0, 45, 90",

@@ -4,6 +4,7 @@ Usage: rig_ranks.py IMPLAM FOLDER LAUNCHER...     (LAUNCHER takes the number of 
 rig      an eccentric impact with a spherical contact area on a unilateral circular frame with clamps of a given force,
          an initial deflection and two interfaces; damped to rest after the contact
 elastic  the same impactor on elastic edges of different kinds, with ply failure
+curved   a saddle with an initial deflection, interfaces and ply failure
 line     damped to rest under pressure on a circular frame, then loaded by lines"""
 
 import sys
@@ -33,6 +34,10 @@ DECKS = {
        edge_stiffness=1e8 edge_rotation_stiffness=500 /
 {PLATE.format(strengths=STRENGTHS)}{NOSE}&ply_damage criteria='hashin' /
 {DAMPED.format(settle='30e-6')}""",
+    "curved": f"""&plate length=80e-3,70e-3 edges='clamped','clamped','simple','simple' in_plane='tangential'
+       curvature_radius=0.2,-0.15 imperfection=0.1e-3 /
+{PLATE.format(strengths=STRENGTHS)}{NOSE}&ply_damage criteria='hashin' /
+{INTERFACES.format(zone="")}{DAMPED.format(settle='30e-6')}""",
     "line": f"""&plate length=80e-3,70e-3 edges='free' in_plane='free' imperfection=0.1e-3 /
 &support shape='circle' radius=30e-3 /
 {PLATE.format(strengths="")}{INTERFACES.format(zone="zone=30e-3,30e-3")}&pressure value=2e3 /

@@ -5,7 +5,7 @@ module laminated_plates
   use errors, only: error_t
   use kinds, only: wp
   use material_parameters, only: material_t
-  use mesh_parameters, only: edge_free
+  use mesh_parameters, only: edge_free, in_plane_free
   use model_building, only: create_model
   use models, only: model_t
   use plate_options, only: kinematics_linear, mass_lumped
@@ -37,7 +37,7 @@ contains
     setup%kinematics = kinematics_linear
     setup%plate%length = [0.04_wp, 0.03_wp]
     setup%plate%edges = edge_free
-    setup%plate%in_plane_fixed = .false.
+    setup%plate%in_plane = in_plane_free
     setup%mesh%elements = elements
     setup%mesh%mass = mass_lumped
     setup%materials = [material]

@@ -25,6 +25,9 @@ def summary(panel: Panel) -> Iterator[str]:
         yield f"uniform pressure on the struck face: {panel.pressure:g}"
     if panel.imperfection:
         yield f"initial deflection in the coordinates of the nodes, amplitude {panel.imperfection:g}"
+    if any(panel.curvature):
+        yield "curvature in the coordinates of the nodes, radii " + ", ".join(
+            f"{1 / curvature:g}" if curvature else "0" for curvature in panel.curvature)
     if panel.temperature is not None:
         yield (f"change of temperature: {panel.temperature:g}" if panel.expands else
                "note: the change of temperature is not written, as no material expands.")

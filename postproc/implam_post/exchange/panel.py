@@ -78,8 +78,8 @@ class Panel:
     """A rectangular panel, centred at the origin, in cells; `x` and `y` are the lines between cells, ascending.
 
     `temperature` is the change from the stress-free temperature; `unwritten` has notes on what the deck has beyond the
-    export. The stress-free panel has an initial deflection in half waves along x and y, with the amplitude
-    `imperfection`.
+    export. The lines of the stress-free panel along x and y have a `curvature`, and an initial deflection in half waves
+    with the amplitude `imperfection`. `in_plane` is `fixed`, `free` or `tangential`.
     """
 
     name: str
@@ -88,13 +88,14 @@ class Panel:
     y: np.ndarray
     stacks: dict[Cell, tuple[Stack, ...]]
     edges: Sequence[str]
-    in_plane_fixed: bool
+    in_plane: str
     degradation: Degradation
     pressure: float | None = None
     temperature: float | None = None
     unwritten: tuple[str, ...] = ()
     imperfection: float = 0.0
     half_waves: tuple[int, int] = (1, 1)
+    curvature: tuple[float, float] = (0.0, 0.0)
 
     @property
     def cells(self) -> tuple[int, int]:
@@ -102,10 +103,12 @@ class Panel:
         return len(self.x) - 1, len(self.y) - 1
 
     def initial_deflection(self, x: float, y: float) -> float:
-        """Return the stress-free initial deflection at a position, positive towards the back."""
+        """Return the height of the stress-free panel at a position, positive towards the back."""
         waves = [math.sin(count * math.pi * (place - lines[0]) / (lines[-1] - lines[0]))
                  for count, place, lines in zip(self.half_waves, (x, y), (self.x, self.y), strict=True)]
-        return _plain(self.imperfection * math.prod(waves), abs(self.imperfection))
+        height = sum(curvature * (place - (lines[0] + lines[-1]) / 2)**2 / 2
+                     for curvature, place, lines in zip(self.curvature, (x, y), (self.x, self.y), strict=True))
+        return _plain(self.imperfection * math.prod(waves) + height, abs(self.imperfection) or abs(height))
 
     def section(self, stack: Stack) -> Section:
         """Return the section of a stack."""

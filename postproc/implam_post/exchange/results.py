@@ -11,6 +11,7 @@ from implam_post.exchange.starters import starters_of
 from implam_post.io.deck import Deck, read_deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
+from implam_post.io.shapes import curvatures_of
 from implam_post.laminate.decks import plies_of
 from implam_post.laminate.sections import Ply
 
@@ -138,14 +139,13 @@ def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: d
         raise deck.error("plate", "edges = 'elastic' cannot be exported: give other edges, and add springs there.")
     if unknown := [edge for edge in deck.edges() if edge not in ("clamped", "simple", "free")]:
         raise deck.error("plate", f"edges = '{unknown[0]}' is not one of clamped, simple, free.")
-    fixed = deck.choice("plate", "in_plane", ("fixed", "free")) == "fixed"
+    in_plane = deck.choice("plate", "in_plane", ("fixed", "free", "tangential"))
     half_waves = deck.numbers("plate", "half_waves") or [1, 1]
     if len(half_waves) != 2 or min(half_waves) < 1 or any(count % 1 for count in half_waves):
         raise deck.error("plate", "half_waves must be two integers greater than zero.")
-    # Linear strains do not depend on the initial deflection.
-    is_deep = deck.choice("case", "kinematics", ("von_karman", "linear")) == "von_karman"
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
-    return Panel(deck.name, plies, x, y, stacks, deck.edges(), fixed, degradation_of(deck),
+    return Panel(deck.name, plies, x, y, stacks, deck.edges(), in_plane, degradation_of(deck),
                  deck.number("pressure", "value") if uniform else None,
                  deck.number("thermal", "delta_T") if deck.has("thermal") else None, (*_unwritten(deck), *notes),
-                 deck.number("plate", "imperfection", 0.0) if is_deep else 0.0, tuple(map(int, half_waves)))
+                 deck.number("plate", "imperfection", 0.0), (int(half_waves[0]), int(half_waves[1])),
+                 curvatures_of(deck))

@@ -104,9 +104,13 @@ def _supports(panel: Panel, numbers: dict[Place, dict[int, int]]) -> dict[str, l
             axis, far = divmod(number, 2)
             if place[axis] == (last[axis] if far else 0):
                 for grid in grids.values():
-                    held.setdefault(grid, set()).update(held_by_edge(edge, axis, panel.in_plane_fixed))
-    if not any("1" in components for components in held.values()):
-        held.setdefault(numbers[0, 0][1], set()).update("12")
+                    held.setdefault(grid, set()).update(held_by_edge(edge, axis, panel.in_plane))
+    # The in-plane rigid motions that the edges leave. Edges that hold the displacement along themselves only leave
+    # the rotation, unless opposite edges do.
+    held.setdefault(numbers[0, 0][1], set()).update({"1", "2"}.difference(*held.values()))
+    supported = [edge != "free" for edge in panel.edges]
+    opposite = all(supported[:2]) or all(supported[2:])
+    if not any(supported) or panel.in_plane == "free" or (panel.in_plane == "tangential" and not opposite):
         held.setdefault(numbers[last[0], 0][1], set()).add("2")
     supports: dict[str, list[int]] = {}
     for grid, components in sorted(held.items()):
@@ -115,7 +119,7 @@ def _supports(panel: Panel, numbers: dict[Place, dict[int, int]]) -> dict[str, l
     return supports
 
 
-def held_by_edge(edge: str, axis: int, in_plane_fixed: bool) -> str:
+def held_by_edge(edge: str, axis: int, in_plane: str) -> str:
     """Return the components constrained at an edge whose normal is x (`axis` 0) or y (1).
 
     A simple support constrains the rotation of the director along the edge, whose axis is the normal of the edge.
@@ -123,4 +127,4 @@ def held_by_edge(edge: str, axis: int, in_plane_fixed: bool) -> str:
     if edge == "free":
         return ""
     turns = "45" if edge == "clamped" else "45"[axis]
-    return ("12" if in_plane_fixed else "") + "3" + turns
+    return {"fixed": "12", "free": "", "tangential": "21"[axis]}[in_plane] + "3" + turns

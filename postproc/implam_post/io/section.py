@@ -6,7 +6,8 @@ import numpy as np
 
 from implam_post.io.contours import level_of
 from implam_post.io.errors import FileError
-from implam_post.io.fields import IMAGES, MODES, Fields, opened, struck_point
+from implam_post.io.fields import IMAGES, MODES, Fields, deck_in, opened, struck_point
+from implam_post.io.shapes import heights_of
 
 __all__ = ["Section", "section_at"]
 # Points at which a layer of an element is given along the line.
@@ -19,14 +20,16 @@ _TOUCHES = 1e-9
 class Section:
     """Layers of elements along a line, a row for each; `along` has distances from the struck point, (rows, points).
 
-    `deflection` is that of the layer, `share` the delaminated fraction of the interface on top of it, `opening` the gap
-    there (NaN: not written), and `levels` the fraction, by ply above, from which this interface counts as delaminated.
+    `height` is that of the stress-free plate, from the struck point along z, `deflection` that of the layer, `share` the
+    delaminated fraction of the interface on top of it, `opening` the gap there (NaN: not written), and `levels` the
+    fraction, by ply above, from which this interface counts as delaminated.
     `failures` has the sums of modes by ply and row, `crushed` whether the fibres failed in compression, if known.
     """
 
     angle: float
     time: float
     along: np.ndarray
+    height: np.ndarray
     deflection: np.ndarray
     opening: np.ndarray
     share: np.ndarray
@@ -73,7 +76,9 @@ def section_at(fields: Fields, angle: float, place: int = -1) -> Section:
     levels = {below: max(level_of(mesh.corners[own], snapshot.shares[own]), 1e-9) for below, own in owns.items()}
     failed, pressed = ({ply: flags[row] for ply, flags in given.items()} for given in (snapshot.failures,
                                                                                                snapshot.crushed))
-    return Section(angle, snapshot.time, along, _between(deflection[row], places), _between(opening[row], places),
+    deck = deck_in(fields.path)
+    height = heights_of(deck, middle + along[..., None] * direction) - heights_of(deck, middle)
+    return Section(angle, snapshot.time, along, height, _between(deflection[row], places), _between(opening[row], places),
                    _between(snapshot.shares[row], places), mesh.first_ply[row].astype(int),
                    mesh.last_ply[row].astype(int), levels, failed, pressed)
 

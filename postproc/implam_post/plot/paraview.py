@@ -13,6 +13,7 @@ from implam_post.io.fields import MODES, Fields, Snapshot, deck_in, read_fields
 from implam_post.io.files import write_text
 from implam_post.io.history import History
 from implam_post.io.run import open_run
+from implam_post.io.shapes import heights_of
 from implam_post.laminate.decks import plies_of
 
 _ROUND, _RINGS = 48, 24
@@ -70,7 +71,7 @@ def write_files(fields: Fields, history: History | None, base: Path) -> list[Pat
             grids["through"].append(_write_plan(file, f"{number:08d}", fields, snapshot, thickness / 2))
         if radius > 0 and history is not None:
             at = deck.numbers("impactor", "at") or [0.0, 0.0]
-            start = np.array([*at, -thickness / 2 - radius])
+            start = np.array([*at, heights_of(deck, np.array(at)) - thickness / 2 - radius])
             grids["impactor"] = _write_sphere(file, fields, history, radius, start)
     paths = [data]
     for name, of_times in grids.items():
@@ -85,12 +86,13 @@ def write_files(fields: Fields, history: History | None, base: Path) -> list[Pat
     return paths
 
 
-def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, height: float) -> str:
+def _write_plan(file: h5py.File, name: str, fields: Fields, snapshot: Snapshot, depth: float) -> str:
     """Write the damage through the thickness of the full plate at a time, on its back face; return the XDMF of it."""
     cells, values = plan_of(snapshot)
     cells_of_plate = fields.full_plate(cells)
     count = len(cells_of_plate)
-    file[f"{name}/points"] = np.column_stack([cells_of_plate.reshape(-1, 2), np.full(4 * count, height)])
+    corners = cells_of_plate.reshape(-1, 2)
+    file[f"{name}/points"] = np.column_stack([corners, heights_of(deck_in(fields.path), corners) + depth])
     file[f"{name}/cells"] = np.arange(4 * count).reshape(-1, 4)
     for field, value in values.items():
         file[f"{name}/{field}"] = np.tile(value, count // len(cells))

@@ -62,7 +62,7 @@ class Drawing:
     def __init__(self, section: Section, plate: Plate, half: float, dent: Dent | None) -> None:
         """Store the section within half a length of the struck point, and its deflection.
 
-        The deflection is counted from the ends of what is shown. The model has the total indentation only: it is drawn
+        The deflection of the curved or flat plate is counted from the ends of what is shown. The model has the total indentation only: it is drawn
         so that it decreases linearly to the back.
         """
         inside = np.flatnonzero(np.any(np.abs(section.along) <= half, axis=1))
@@ -73,16 +73,16 @@ class Drawing:
         self.range = float(np.ptp(shown))
         ends = [section.along[inside] == limit for limit in (section.along[inside].min(), section.along[inside].max())]
         reference = float(np.mean([np.mean(shown[end]) for end in ends]))
-        self.deflection, self.straight = section.deflection - reference, False
+        self.deflection, self.straight = section.height + section.deflection - reference, False
         self.dent, self.width = dent, 0.0
         self.dented = 0 * self.deflection if dent is None else dent.at(section.along)
 
     def straighten(self) -> None:
-        """Take the mean deflection of the layers off, so that bending does not hide the damage."""
-        self.deflection, self.straight = self.section.deflection - self.mean, True
+        """Take the mean height of the layers off, so that curvature and bending do not hide the damage."""
+        self.deflection, self.straight = self.section.height + self.section.deflection - self.mean, True
 
     def _mean(self) -> np.ndarray:
-        """Return the mean of the deflections of all layers at the points of each row, by thickness."""
+        """Return the mean of the deformed heights of all layers at the points of each row, by thickness."""
         along = self.section.along
         keys = np.round(along[:, [0, -1]] / (np.abs(along).max() or 1.0) * 1e7).astype(np.int64)
         _, column = np.unique(keys, axis=0, return_inverse=True)
@@ -90,7 +90,7 @@ class Drawing:
         weights = self.bottoms - self.tops
         total, sums = np.zeros(column.max() + 1), np.zeros((column.max() + 1, along.shape[1]))
         np.add.at(total, column, weights)
-        np.add.at(sums, column, weights[:, None] * self.section.deflection)
+        np.add.at(sums, column, weights[:, None] * (self.section.height + self.section.deflection))
         return np.asarray((sums / total[:, None])[column])
 
     def remark(self, style: PictureStyle) -> str:

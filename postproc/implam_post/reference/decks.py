@@ -6,6 +6,7 @@ import numpy as np
 
 from implam_post.io.deck import Deck
 from implam_post.io.errors import DeckError
+from implam_post.io.shapes import curvatures_of
 from implam_post.laminate.decks import plies_of
 from implam_post.reference.indentation import IndentationLaw
 
@@ -54,10 +55,14 @@ def indentation_law_of(deck: Deck) -> IndentationLaw:
 
 
 def _sun_stiffness(deck: Deck) -> float:
-    """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2] with E and nu of the impactor (without E: rigid), E2 of ply 1."""
+    """Return k = 4/3 sqrt(R) / [(1 - nu**2)/E + 1/E2] with E and nu of the impactor (without E: rigid), E2 of ply 1.
+
+    On a curved plate R is the radius of the relative curvature.
+    """
     radius = deck.number("impactor", "radius", 0.0)
     if radius <= 0:
         raise deck.error("indentation", "without k, the radius of the &impactor is required.")
+    radius /= np.sqrt(np.prod(1 + radius * np.array(curvatures_of(deck))))
     flexibility = 1 / plies_of(deck)[0].material.e2
     if deck.values("indentation", "impactor_E"):
         ratio = deck.number("indentation", "impactor_nu", 0.3)

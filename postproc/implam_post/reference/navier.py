@@ -1,6 +1,8 @@
 """Navier's series for simply supported (hard), specially orthotropic plates by first-order shear theory.
 
-w = W sin sin, theta_x = X cos sin, theta_y = Y sin cos, with rotatory inertia; each (m, n) has three modes.
+w = W sin sin, theta_x = X cos sin, theta_y = Y sin cos, with rotatory inertia; each (m, n) has three modes. A curved
+plate is a shallow shell after Donnell whose edges hold the displacement along themselves only; in-plane displacements
+are condensed out, without their inertia.
 """
 
 from dataclasses import dataclass
@@ -13,10 +15,11 @@ from implam_post.laminate.sections import Section
 
 @dataclass(frozen=True)
 class Plate:
-    """A simply supported plate: section, and sides along x and y."""
+    """A simply supported plate: section, sides along x and y, and curvatures of the lines along x and y."""
 
     section: Section
     lengths: tuple[float, float]
+    curvatures: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Refuse laminates with couplings that the series does not satisfy."""
@@ -28,10 +31,22 @@ class Plate:
         """Return the 3x3 stiffness of (W, X, Y) over area/4 for each pair of half-wave numbers."""
         d, s = self.section.d, self.section.s
         x, y = np.asarray(m) * np.pi / self.lengths[0], np.asarray(n) * np.pi / self.lengths[1]
-        rows = [[s[0, 0] * x**2 + s[1, 1] * y**2, s[0, 0] * x, s[1, 1] * y],
+        rows = [[s[0, 0] * x**2 + s[1, 1] * y**2 + self._membrane(x, y), s[0, 0] * x, s[1, 1] * y],
                 [s[0, 0] * x, d[0, 0] * x**2 + d[2, 2] * y**2 + s[0, 0], (d[0, 1] + d[2, 2]) * x * y],
                 [s[1, 1] * y, (d[0, 1] + d[2, 2]) * x * y, d[2, 2] * x**2 + d[1, 1] * y**2 + s[1, 1]]]
         return np.moveaxis(np.array(rows, dtype=float), (0, 1), (-2, -1))
+
+    def _membrane(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the stiffness of W by the membrane forces of a curved plate, with wave numbers along x and y."""
+        if not any(self.curvatures):
+            return np.zeros(np.broadcast(x, y).shape)
+        a = self.section.a
+        forces = a[:2, :2] @ np.array(self.curvatures)
+        along_x, along_y = forces[0] * x, forces[1] * y
+        k11, k22 = a[0, 0] * x**2 + a[2, 2] * y**2, a[2, 2] * x**2 + a[1, 1] * y**2
+        k12 = (a[0, 1] + a[2, 2]) * x * y
+        condensed = (along_x**2 * k22 - 2 * along_x * along_y * k12 + along_y**2 * k11) / (k11 * k22 - k12**2)
+        return np.asarray(forces @ np.array(self.curvatures) - condensed)
 
     def compliance(self, m: np.ndarray, n: np.ndarray) -> np.ndarray:
         """Return W of each (m, n) under a sinusoidal pressure of unit amplitude; rotations are condensed."""

@@ -13,6 +13,7 @@ from scipy.signal import fftconvolve
 
 from implam_post.io.deck import Deck
 from implam_post.io.history import History
+from implam_post.io.shapes import curvatures_of
 from implam_post.laminate.decks import section_of_deck
 from implam_post.reference.decks import Impactor, impactor_of, indentation_law_of
 from implam_post.reference.indentation import IndentationLaw
@@ -65,7 +66,10 @@ def impact_case(deck: Deck) -> ImpactCase:
                                  "deflection of a shear-deformable plate is infinite.")
     if end <= 0:
         raise deck.error("time", "end must be greater than zero.")
-    return ImpactCase(Plate(section_of_deck(deck), deck.lengths()), impactor, indentation_law_of(deck), patch, end)
+    curvatures = curvatures_of(deck)
+    if any(curvatures) and deck.choice("plate", "in_plane", ("fixed", "free", "tangential")) != "tangential":
+        raise deck.error("plate", "the semi-analytic solution of a curved plate needs in_plane = 'tangential'.")
+    return ImpactCase(Plate(section_of_deck(deck), deck.lengths(), curvatures), impactor, indentation_law_of(deck), patch, end)
 
 
 def semi_analytic(deck: Deck, modes: int | None = None, step: float | None = None) -> History:

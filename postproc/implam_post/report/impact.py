@@ -7,6 +7,7 @@ from typing import Any
 from implam_post.io.deck import Deck
 from implam_post.io.errors import ImplamError
 from implam_post.io.run import Run
+from implam_post.io.shapes import curvatures_of
 from implam_post.io.units import SYSTEMS
 from implam_post.plot.style import PictureStyle
 
@@ -24,7 +25,7 @@ def impact_rows(run: Run, style: PictureStyle) -> list[Row]:
         sides = " by ".join(style.shown("length", side) for side in deck.lengths())
         return [*_impactor(deck, run.summary, thickness, style),
                 ("panel", f"{sides}, {style.shown('length', thickness)} thick", f"{len(plies)} plies"),
-                *_supports(deck, style)]
+                *_curvature(deck, style), *_supports(deck, style)]
     except ImplamError:
         return []
 
@@ -59,6 +60,15 @@ def _per_thickness(energy: float, thickness: float, style: PictureStyle) -> str:
         return f"{energy / thickness:.4g}"
     length, mass, time = SYSTEMS[style.system]
     return f"{energy / thickness * mass * length / time**2 * 1e-3:.4g} J/mm"
+
+
+def _curvature(deck: Deck, style: PictureStyle) -> list[Row]:
+    """Return the row of the radii of a curved panel."""
+    curvatures = curvatures_of(deck)
+    if not any(curvatures):
+        return []
+    radii = ", ".join(style.shown("length", 1 / curvature) if curvature else "straight" for curvature in curvatures)
+    return [("radius of the lines along x and y", radii, "positive: struck on the convex side")]
 
 
 def _supports(deck: Deck, style: PictureStyle) -> list[Row]:

@@ -136,8 +136,8 @@ class PanelTest(ExportTest):
         self.keep_deck(DECK.replace("starter=2", "starter=6.1"))
         panel = read_panel(self.folder / "damaged.nml")
         self.assertEqual(sum(len(stacks) > 1 for stacks in panel.stacks.values()), 16)
-        self.assertEqual((panel.pressure, panel.in_plane_fixed, list(panel.edges)),
-                         (0.25, True, ["clamped", "clamped", "simple", "simple"]))
+        self.assertEqual((panel.pressure, panel.in_plane, list(panel.edges)),
+                         (0.25, "fixed", ["clamped", "clamped", "simple", "simple"]))
 
     def test_several_interfaces_of_a_deck(self) -> None:
         """Starters of different sizes have different stacks."""
@@ -255,7 +255,7 @@ class MeshTest(ExportTest):
         self.assertEqual({abs(y) for _, y, _ in shared}, {1.0})
 
     def test_imperfection(self) -> None:
-        """Grids have the initial deflection of the full plate, towards the back; not with linear strains."""
+        """Grids have the initial deflection of the full plate, towards the back."""
         deck = DECK.replace("symmetry='quarter'", "symmetry='quarter' imperfection=0.5 half_waves=1, 3")
         self.keep_deck(deck)
         x, y, z = self.mesh().coordinates.T
@@ -265,9 +265,22 @@ class MeshTest(ExportTest):
         nodes = (self.folder / "damaged_panel.inp").read_text().partition("*NODE")[2].splitlines()[1:]
         np.testing.assert_allclose([float(node.split(",")[3]) for node in nodes[:9]],
                                    self.mesh(False).coordinates[:9, 2])
-        self.keep_deck(deck.replace("name='damaged'", "name='damaged' kinematics='linear'"))
-        self.assertEqual(set(self.mesh().coordinates[:, 2]), {0.0})
         self.keep_deck(deck.replace("half_waves=1, 3", "half_waves=3"))
+        self.assertEqual(self.run_command(to_nastran, self.results)[0], 2)
+
+    def test_curvature(self) -> None:
+        """Grids lie on the cylinder or paraboloid, the convex side struck, with an imperfection added."""
+        deck = DECK.replace("symmetry='quarter'", "symmetry='quarter' curvature_radius=0, 20")
+        self.keep_deck(deck)
+        mesh = self.mesh()
+        _, y, z = mesh.coordinates.T
+        np.testing.assert_allclose(z, y**2 / 40, atol=1e-9)
+        self.assertIn("curvature in the coordinates of the nodes, radii 0, 20", self.run_command(to_abaqus, self.results)[1])
+        self.keep_deck(deck.replace("radius=0, 20", "radius=-40, 20 imperfection=0.5"))
+        x, y, z = self.mesh().coordinates.T
+        np.testing.assert_allclose(z, -x**2 / 80 + y**2 / 40 + 0.5 * np.cos(np.pi * x / 12) * np.cos(np.pi * y / 12),
+                                   atol=1e-9)
+        self.keep_deck(deck.replace("radius=0, 20", "radius=20"))
         self.assertEqual(self.run_command(to_nastran, self.results)[0], 2)
 
     def test_supports(self) -> None:

@@ -18,6 +18,7 @@ from tests.io.test_fields import TIMES, write_fields
 from tests.plot.test_pictures import DECK
 
 THICKNESS, RADIUS = 3e-3, 1e-2
+CURVED = DECK.replace("&plate ", "&plate curvature_radius=0, 20 ")
 
 
 class ParaviewTest(unittest.TestCase):
@@ -73,6 +74,17 @@ class ParaviewTest(unittest.TestCase):
         failed = dict(zip(map(tuple, cells[:, 0]), values["share_of_plies_failed"], strict=True))
         self.assertEqual({corner: round(3 * share) for corner, share in failed.items() if share},
                          {(0, 0): 1, (1, 0): 1, (3, 3): 1})
+
+    def test_curved_plate(self) -> None:
+        """The plan lies on the back face of the cylinder, and the impactor starts on its struck face."""
+        with h5py.File(self.path, "a") as file:
+            del file["provenance/deck"]
+            file["provenance/deck"] = np.bytes_(CURVED)
+        self.write()
+        with h5py.File(self.folder / "case_paraview.h5") as file:
+            points = file["00000001/points"][()]
+            np.testing.assert_allclose(points[:, 2], points[:, 1]**2 / 40 + THICKNESS / 2)
+            self.assertAlmostEqual(file["00000001/sphere"][()][:, 2].max(), 0.5e-3 - THICKNESS / 2)
 
     def test_files_belong_together(self) -> None:
         """The XDMF refers to existing data at the times of the fields; the state file is valid Python."""

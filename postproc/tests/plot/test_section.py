@@ -95,6 +95,15 @@ class SectionTest(unittest.TestCase):
         self.assertIn("delamination, open", names)
         self.assertNotIn("delamination, closed", names)
 
+    def test_curved_plate(self) -> None:
+        """A section has the height of the stress-free cylinder, from the struck point on, in its direction."""
+        with h5py.File(self.path, "a") as file:
+            del file["provenance/deck"]
+            file["provenance/deck"] = np.bytes_(DECK.replace("&plate ", "&plate curvature_radius=0, 20 "))
+        for angle, share in ((0, 0.0), (90, 1.0), (45, 0.5)):
+            section = section_at(read_fields(self.path), angle)
+            np.testing.assert_allclose(section.height, share * section.along**2 / 40, atol=1e-12)
+
     def test_closed_and_unknown_gaps(self) -> None:
         """Without an opening a delamination is closed; without the field its gap is not known."""
         self.write("quarter", 0.0)

@@ -41,6 +41,14 @@ class NavierTest(unittest.TestCase):
         for m, n, expected in ((1, 1, 0.93028), (1, 2, 2.21933), (2, 2, 3.40562)):
             self.assertAlmostEqual(frequencies(plate, m, n)[0] / np.sqrt(shear), expected, delta=6e-6)
 
+    def test_curved_frequencies(self) -> None:
+        """Cylindrical panels of Sun and Chen's laminate, thin: first frequencies in Hz computed independently, without rotary inertia."""
+        ply = Material(density=1580, e1=120e9, e2=7.9e9, g12=5.5e9, g13=5.5e14, g23=5.5e14, nu12=0.3)
+        section = section_of([Ply(ply, angle, 0.269e-3) for angle in [0, 90, 0, 90, 0, 0, 90, 0, 90, 0]])
+        for radius, expected in ((0.0, 302.46), (2.0, 332.14), (1.0, 408.45), (0.5, 626.82)):
+            plate = Plate(section, (0.2, 0.2), (0.0, 1 / radius if radius else 0.0))
+            self.assertAlmostEqual(frequencies(plate)[0] / (2 * np.pi), expected, delta=2e-4 * expected)
+
     def test_compliance_is_the_sum_over_the_modes(self) -> None:
         """The static solution of a pair is the sum over its three modes."""
         plate = square([0, 90, 0], 10)
