@@ -8,7 +8,7 @@ from sys import argv, exit
 
 from solver_runs import exit_code_of, require, run, write_deck
 
-# Forces of runs with and without damage by less than this fraction: the peak alone does not tell them apart.
+# Forces of runs with and without damage by less than this fraction: the peak alone does not distinguish them.
 SAME_PEAK = 0.1
 # The estimate has a safety factor against errors that cancel; in random elastic impacts it is exceeded by 1.35 at most.
 AT_MOST = 1.35
