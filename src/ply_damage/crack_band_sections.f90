@@ -4,8 +4,7 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
-  use band_energies, only: changed_by_signs, dissipated_in_trial, dissipated_so_far
-  use batch_resultants, only: element_means
+  use band_energies, only: dissipated_in_trial, dissipated_so_far
   use band_states, only: band_states_t, new_band_states
   use crack_closures, only: closing_resultants
   use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
@@ -24,6 +23,7 @@ module crack_band_sections
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
   use ply_strains, only: invariant_measure, moment_values, moments_from, strain_moments_t
   use section_laws, only: section_law_t
+  use signed_sections, only: signed_resultants
   use stacking, only: in_plane_section
   use strain_bounds, only: largest_strains, strain_moments
   use stressed_volumes, only: stressed_volumes_t, new_stressed_volumes
@@ -31,7 +31,8 @@ module crack_band_sections
   private
   public :: crack_band_sections_t, new_crack_band_sections
 
-  !> The plies of this rank's elements.
+  !> The plies of this rank's elements. It has many components because each effect that a deck may leave out has its
+  !> own.
   type, extends(section_law_t) :: crack_band_sections_t
     !> Damage and energies of the plies
     type(band_states_t) :: states
@@ -76,7 +77,6 @@ module crack_band_sections
     procedure :: elasticity
     procedure :: strained
     procedure, private :: free_resultants_of
-    procedure, private :: signed_resultants
     procedure :: visit
   end type crack_band_sections_t
 
@@ -109,7 +109,7 @@ contains
     self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
     if (model%setup%ply_damage%weibull_modulus > 0) then
       self%volumes = new_stressed_volumes(model, self%bands, size(self%states%trial))
-      self%onset = min(self%onset, self%volumes%least_strain(self%bands))
+      self%onset = min(self%onset, self%volumes%smallest_strain(self%bands))
     end if
     if (model%setup%has_rates()) self%rates = new_loading_rates(model, size(self%states%trial))
     if (model%setup%counts_rates()) self%onset = 0
@@ -205,41 +205,11 @@ contains
         free(lane, :) = self%free_resultants_of(element)
       end if
     end do
-    if (allocated(self%signs)) free = self%signed_resultants(b, weight, strains)
+    if (allocated(self%signs)) free = self%tensile(:, :, b) + &
+      signed_resultants(self%signs, self%plies, self%bands, self%states, self%joined, self%touched, b, weight, strains)
     if (present(free)) self%free(:, :, b) = free
     self%stiffness(:, :, b) = stiffness
   end subroutine soften
-
-  !> Resultants of stress-free strains of a batch in the trial, where plies have E1c.
-  function signed_resultants(self, b, weight, strains) result(resultants)
-    class(crack_band_sections_t), intent(inout) :: self
-    !> Number of the batch
-    integer, intent(in) :: b
-    !> Area of each Gauss point
-    real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
-    real(wp), intent(in) :: strains(lanes, 9, 6)
-    real(wp) :: resultants(lanes, 7)
-    real(wp) :: means(lanes, 6)
-    real(wp), allocatable :: common(:)
-    logical :: undamaged(lanes)
-    integer :: lane, element
-
-    means = element_means(weight, strains)
-    undamaged = .true.
-    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
-      element = first_element(b) + lane - 1
-      if (self%joined%shares(element)) then
-        common = self%joined%means_of(element)
-        means(lane, :) = common(:6)
-      end if
-      undamaged(lane) = .not. self%touched(element)
-      if (self%touched(element)) call self%signs%set_element(element, &
-        changed_by_signs(self%plies, self%bands, self%states, element, means(lane, :)))
-    end do
-    call self%signs%update(b, means, undamaged)
-    resultants = self%tensile(:, :, b) + self%signs%resultants(b, means)
-  end function signed_resultants
 
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness)

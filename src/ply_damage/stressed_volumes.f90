@@ -40,7 +40,7 @@ module stressed_volumes
     !> 1: fibres of the block have failed, and its volume is constant, otherwise 0
     real(wp), allocatable, private :: failed(:)
   contains
-    procedure :: least_strain
+    procedure :: smallest_strain
     procedure :: factor
     procedure :: strengths
     procedure, private :: smallest_share
@@ -82,7 +82,7 @@ contains
   end function smallest_share
 
   !> A strain below which no ply contributes to the volume of a block, in the measure of `onset_strain`.
-  pure real(wp) function least_strain(self, bands) result(strain)
+  pure real(wp) function smallest_strain(self, bands) result(strain)
     class(stressed_volumes_t), intent(in) :: self
     !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
@@ -91,7 +91,7 @@ contains
 
     share = self%smallest_share()*min(1.0_wp, (self%reference/self%plate)**(1/self%modulus))
     strain = minval([(strain_of_stress(bands(i), share*self%xt(i)), i=1, size(bands))])
-  end function least_strain
+  end function smallest_strain
 
   !> Tensile strengths of the plies.
   pure function strengths(self)

@@ -47,8 +47,8 @@ def conditions(along, across, major, transverse, strength):
     linear = ((strength / (2 * shear))**2 - 1) * (1 + ratio) / strength
     hashin = (linear + sqrt(linear**2 + 4 * square)) / (2 * square)
     planes = [radians(degrees / 10) for degrees in range(1, 900)]
-    steepest = max((1 - ratio) * sin(x) * cos(x) - friction * (cos(x)**2 + ratio * sin(x)**2) for x in planes)
-    return modulus, {"Hashin": hashin, "Tresca": strength / (1 - ratio), "friction": shear / max(steepest, 1e-9),
+    largest = max((1 - ratio) * sin(x) * cos(x) - friction * (cos(x)**2 + ratio * sin(x)**2) for x in planes)
+    return modulus, {"Hashin": hashin, "Tresca": strength / (1 - ratio), "friction": shear / max(largest, 1e-9),
                      "Hashin, fully plastic": hashin * 2.8 / 1.6}
 
 
