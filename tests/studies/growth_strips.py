@@ -139,7 +139,7 @@ class Strip:
         pairs = [self.ratios(row) for row in used]
         share = max((row["energy_kinetic"]/row["work_external"] for row in used or rows[len(rows)//2:]))
         if last < 2:
-            # The load that is borne without growth: the median of the last twentieth, since the load oscillates.
+            # The load carried without growth: the median of the last twentieth, since the load oscillates.
             ending = sorted(self.ratios(row)[1] for row in rows[-len(rows)//20:])
             means, bounds = ["", ""], ["", f"{ending[len(ending)//2]:.3f}"]
         else:

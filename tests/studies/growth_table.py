@@ -71,7 +71,7 @@ def by_strength(rows, row, names, value):
 
 
 def load_of(row):
-    """Return the mean load of a strip, or the load that it bears without growth."""
+    """Return the mean load of a strip, or the load that it carries without growth."""
     return row["load_by_displacement"] or f"> {float(row['largest']):.1f}"
 
 
