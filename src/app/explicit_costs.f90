@@ -20,10 +20,6 @@ module explicit_costs
   private
   public :: explicit_sentence, duration_text, untaken_step
 
-  !> Ratio of the times of a step in the mean over an impact, with rows of the history, and of an undamaged plate:
-  !> without and with softening plies (doc/performance.md).
-  real(wp), parameter :: of_impact = 1.1_wp, of_breaking = 1.7_wp
-
 contains
 
   !> Sentence on the steps and the time of a run.
@@ -46,13 +42,13 @@ contains
     lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
-    seconds = merge(of_breaking, of_impact, deck%has_crack_bands())*measured_element_time(deck)
+    seconds = measured_element_time(deck)
     sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
                in_usual_unit(step, time_kind, deck%units)//' for '// &
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
                time_bound//duration_text(seconds*steps*model_size%elements)//' of one processor'
-    if (lengthened) &
-      sentence = sentence//', up to a third fewer or more where damage lengthens the contact'
+    if (deck%has_crack_bands()) sentence = sentence//' as long as plies do not soften'
+    if (lengthened) sentence = sentence//'; damage may change the number of steps by a third'
     sentence = sentence//'.'
   end function explicit_sentence
 
