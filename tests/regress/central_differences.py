@@ -43,9 +43,9 @@ from solver_runs import checkpoint_of, history_of, read_history, require, run_de
 
 EXPLICIT = "time%integrator='central_difference'"
 # Failing plies and an interface, adaptive layers, turned halves on a unilateral frame, plies that soften and fail in
-# the fibres, with strengths by their stressed volume and by the strain rate, a curved plate, prescribed and loaded lines,
-# residual stresses that deflect the plate before the impact, and interfaces that grow by their energy release rate on
-# long cells.
+# the fibres, with strengths by their stressed volume and by the strain rate, a curved plate, prescribed and loaded
+# lines, residual stresses that deflect the plate before the impact, and interfaces that grow by their energy release
+# rate on long cells.
 MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),

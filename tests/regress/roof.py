@@ -1,4 +1,4 @@
-"""CalculiX: the hinged cylindrical roof of Sabir and Lock (Int. J. Mech. Sci. 14 (1972)) pressed through its limit load.
+"""CalculiX: the hinged cylindrical roof of Sabir and Lock (Int. J. Mech. Sci. 14, 1972) pressed through its limit load.
 Usage: roof.py IMPLAM FOLDER     (ends with 77 where ccx is not installed)
 
 CalculiX has the circle and finite rotations, Implam the parabola of shallow shells. Measured: limit load within .3 %,

@@ -1,9 +1,10 @@
-"""Matrix strengths by the strain rate: a beam under a growing pressure cracks at a larger deflection by the closed form.
+"""Matrix strengths by the strain rate: a beam under a growing pressure cracks later, by the closed form.
 Usage: strain_rate.py IMPLAM FOLDER
 
-Without strengthening its outer ply cracks at the strain YT/E2 and a deflection d; strains grow with the deflection, so that with
-strengthening it cracks at F d with F = 1 + r log10(rate/reference rate) (theory (M31)). The rate is that of (M32), from the
-history of the deflection. Central differences and implicit steps. Below the reference rate nothing changes, to the last bit."""
+Without strengthening its outer ply cracks at the strain YT/E2 and a deflection d; strains grow with the deflection,
+so that with strengthening it cracks at F d with F = 1 + r log10(rate/reference rate) (theory (M31)). The rate is that
+of (M32), from the history of the deflection. Central differences and implicit steps. Below the reference rate nothing
+changes, to the last bit."""
 
 import math
 import sys

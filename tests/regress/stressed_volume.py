@@ -1,8 +1,8 @@
 """Size of the stressed volume: a beam in three-point bending fails at the force of the closed form.
 Usage: stressed_volume.py IMPLAM FOLDER
 
-Its outer fibres have the strength XT (2 (m + 1)^2 V0/V)^(1/m), V between the supports (theory (M30)); the force is 2 b h^2/(3 L)
-times that. In load steps and by central differences, where the load is so slow that inertia adds little."""
+Its outer fibres have the strength XT (2 (m + 1)^2 V0/V)^(1/m), V between the supports (theory (M30)); the force is 2
+b h^2/(3 L) times that. In load steps and by central differences, where the load is so slow that inertia adds little."""
 
 import sys
 from pathlib import Path

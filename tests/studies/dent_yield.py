@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Which yield pressure the measured dents ask for, and which the conditions for a crushed matrix give.
 
-Thornton's law (doc/theory/impact.md, F7) leaves a dent that depends on the largest force, the nose, the modulus through the
-thickness and the yield pressure. Forces are those measured or, for T800S/3900-2B, computed by its deck. Conditions, all
-with the in-plane strains held (F9): Hashin's (F10), which the program has; Tresca's; friction on the fracture plane after
-Davila et al. (2005), the matrix criterion of criteria='larc'; and Hashin's with the pressure of full plasticity, 2.8 over
-1.6 times that of first yield (K. L. Johnson, Contact Mechanics, 1985, section 6.3)."""
+Thornton's law (doc/theory/impact.md, F7) leaves a dent that depends on the largest force, the nose, the modulus
+through the thickness and the yield pressure. Forces are those measured or, for T800S/3900-2B, computed by its deck.
+Conditions, all with the in-plane strains held (F9): Hashin's (F10), which the program has; Tresca's; friction on the
+fracture plane after Davila et al. (2005), the matrix criterion of criteria='larc'; and Hashin's with the pressure of
+full plasticity, 2.8 over 1.6 times that of first yield (K. L. Johnson, Contact Mechanics, 1985, section 6.3)."""
 
 from math import cos, pi, radians, sin, sqrt, tan
 

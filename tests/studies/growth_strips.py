@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Loads at which delaminations grow in strips by central differences, on cells longer than the process zone.
-Usage: growth_strips.py run IMPLAM FOLDER KINDS ARMS CELLS [CONTROL] (lists with commas, mm; CONTROL: energy or strength)
+Usage: growth_strips.py run IMPLAM FOLDER KINDS ARMS CELLS [CONTROL] (lists with commas, mm; CONTROL: energy or
+strength)
 
 dcb  double cantilever beam: opening
 enf  end-notched flexure: shear
@@ -9,13 +10,12 @@ slb  single-leg bending, the support under the upper arm only: 43 % of shear
 `run` adds a row to growth/strips.csv for each strip that has none, so that a stopped command continues; growth_table.py
 writes the tables.
 
-Arms of IM7/8552 of equal thickness, two rows of cells, prescribed displacement with a smooth start in ten periods of the
-strip's slowest mode. The kinetic energy is that of the fronts' jumps, not of the loading: a slower motion does not change
-it, and longer cracks, which store more energy, jump farther. The closed forms are those of Timoshenko beams, with the
-rotation of the arms at the front: opening G = (P a)^2/D at the crack length a + t (E/(10 G13))^(1/2), shear G = 3 (P
-a)^2/(64 D) for the central force P per width.
-Loads are compared with those of the crack length by the displacement, and by the dissipated area, in the mean over all
-whole cells of growth after the first."""
+Arms of IM7/8552 of equal thickness, two rows of cells, prescribed displacement with a smooth start in ten periods of
+the strip's slowest mode. The kinetic energy is that of the fronts' jumps, not of the loading: a slower motion does
+not change it, and longer cracks, which store more energy, jump farther. The closed forms are those of Timoshenko
+beams, with the rotation of the arms at the front: opening G = (P a)^2/D at the crack length a + t (E/(10 G13))^(1/2),
+shear G = 3 (P a)^2/(64 D) for the central force P per width. Loads are compared with those of the crack length by the
+displacement, and by the dissipated area, in the mean over all whole cells of growth after the first."""
 
 import csv
 import math
@@ -137,7 +137,7 @@ class Strip:
         last = math.floor(grown[-1] + 1e-6)
         used = [row for row, cells in zip(rows, grown, strict=True) if 1 <= cells <= last]
         pairs = [self.ratios(row) for row in used]
-        share = max((row["energy_kinetic"]/row["work_external"] for row in used or rows[len(rows)//2:]))
+        share = max(row["energy_kinetic"]/row["work_external"] for row in used or rows[len(rows)//2:])
         if last < 2:
             # The load carried without growth: the median of the last twentieth, since the load oscillates.
             ending = sorted(self.ratios(row)[1] for row in rows[-len(rows)//20:])

@@ -3,8 +3,9 @@
 growth_errors` print, strips in doc/studies/interfaces.md, and impacts in doc/studies/accuracy.md.
 Usage: growth_table.py [--check] (without: writes them)
 
-Strips are counted with the number of cells in the process zone of their mode, of opening in mixed modes, since it is the
-shorter one; impacts with the fewest cells in a process zone of shear, and compared with the finest mesh of their deck."""
+Strips are counted with the number of cells in the process zone of their mode, of opening in mixed modes, since it is
+the shorter one; impacts with the fewest cells in a process zone of shear, and compared with the finest mesh of their
+deck."""
 
 import csv
 import math
@@ -84,24 +85,25 @@ def strip_lines(rows, others):
         strengths = by_strength(others, row, ("strip", "arm", "cell"), load_of)
         lines.append(f"| {NAMES[row['strip']]} | {row['arm']} | {row['cell']} | {row['cells_opening']}, "
                      f"{row['cells_shear']} | {row['cells_grown']} | {100*float(row['kinetic_share']):.1f} | "
-                     f"{load_of(row)} | {row['load_by_area'] or '-'} | {row['least']}, {row['largest']} | {strengths} |")
+                     f"{load_of(row)} | {row['load_by_area'] or '-'} | {row['least']}, {row['largest']} | "
+                     f"{strengths} |")
     return lines
 
 
 def impact_lines(rows, others):
     """Return the table of impacts; errors are those against the finest cells, times those over the coarsest."""
-    lines = ["| deck | cells, mm | fewest cells in a process zone of shear | peak force, kN | projected area, mm² | error of "
-             "the peak, % | error of the area, % | processor time over that of the coarsest | projected area by "
-             "strengths, mm² |", "|" + "---|"*9]
+    lines = ["| deck | cells, mm | fewest cells in a process zone of shear | peak force, kN | projected area, mm² | "
+             "error of the peak, % | error of the area, % | processor time over that of the coarsest | projected area "
+             "by strengths, mm² |", "|" + "---|"*9]
     for row in sorted(rows, key=lambda row: (row["deck"], -float(row["cell"]))):
         own = sorted((other for other in rows if other["deck"] == row["deck"]), key=lambda other: float(other["cell"]))
         errors = [f"{100*(float(row[name])/float(own[0][name]) - 1):+.1f}" for name in ("peak_force", "projected_area")]
         if row is own[0]:
             errors = ["0", "0"]
         area = by_strength(others, row, ("deck", "cell"), lambda other: f"{float(other['projected_area']):.0f}")
-        lines.append(f"| `{row['deck']}.nml` | {row['cell']} | {row['cells_shear']} | {float(row['peak_force'])/1e3:.2f} | "
-                     f"{float(row['projected_area']):.0f} | {errors[0]} | {errors[1]} | "
-                     f"{float(row['seconds'])/float(own[-1]['seconds']):.1f} | {area} |")
+        lines.append(f"| `{row['deck']}.nml` | {row['cell']} | {row['cells_shear']} | "
+                     f"{float(row['peak_force'])/1e3:.2f} | {float(row['projected_area']):.0f} | {errors[0]} | "
+                     f"{errors[1]} | {float(row['seconds'])/float(own[-1]['seconds']):.1f} | {area} |")
     return lines
 
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Measured panels of four materials: runs with drawn inputs, and the page doc/validation.md from their results.
 
-panels.py run IMPLAM [--panel NAME ...] [--variant NAME ...] [--seeds 1-10] [--jobs N] [--again] [--folder results/panels]
+panels.py run IMPLAM [--panel NAME ...] [--variant NAME ...] [--seeds 1-10] [--jobs N] [--again]
+           [--folder results/panels]
 panels.py table [--panel NAME ...]      measured and computed values, one table a panel
 panels.py page [--check]                writes doc/validation.md, or compares it with what would be written
 

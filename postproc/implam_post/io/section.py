@@ -20,11 +20,10 @@ _TOUCHES = 1e-9
 class Section:
     """Layers of elements along a line, a row for each; `along` has distances from the struck point, (rows, points).
 
-    `height` is that of the stress-free plate, from the struck point along z, `deflection` that of the layer, `share` the
-    delaminated fraction of the interface on top of it, `opening` the gap there (NaN: not written), and `levels` the
-    fraction, by ply above, from which this interface counts as delaminated.
-    `failures` has the sums of modes by ply and row, `crushed` whether the fibres failed in compression, if known.
-    """
+    `height` is that of the stress-free plate, from the struck point along z, `deflection` that of the layer, `share`
+    the delaminated fraction of the interface on top of it, `opening` the gap there (NaN: not written), and `levels`
+    the fraction, by ply above, from which this interface counts as delaminated. `failures` has the sums of modes by
+    ply and row, `crushed` whether the fibres failed in compression, if known."""
 
     angle: float
     time: float
@@ -78,9 +77,9 @@ def section_at(fields: Fields, angle: float, place: int = -1) -> Section:
                                                                                                snapshot.crushed))
     deck = deck_in(fields.path)
     height = heights_of(deck, middle + along[..., None] * direction) - heights_of(deck, middle)
-    return Section(angle, snapshot.time, along, height, _between(deflection[row], places), _between(opening[row], places),
-                   _between(snapshot.shares[row], places), mesh.first_ply[row].astype(int),
-                   mesh.last_ply[row].astype(int), levels, failed, pressed)
+    return Section(angle, snapshot.time, along, height, _between(deflection[row], places),
+                   _between(opening[row], places), _between(snapshot.shares[row], places),
+                   mesh.first_ply[row].astype(int), mesh.last_ply[row].astype(int), levels, failed, pressed)
 
 
 def _crossed(corners: np.ndarray, start: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, ...]:

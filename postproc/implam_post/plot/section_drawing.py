@@ -62,9 +62,8 @@ class Drawing:
     def __init__(self, section: Section, plate: Plate, half: float, dent: Dent | None) -> None:
         """Store the section within half a length of the struck point, and its deflection.
 
-        The deflection of the curved or flat plate is counted from the ends of what is shown. The model has the total indentation only: it is drawn
-        so that it decreases linearly to the back.
-        """
+        The deflection of the curved or flat plate is counted from the ends of what is shown. The model has the total
+        indentation only: it is drawn so that it decreases linearly to the back."""
         inside = np.flatnonzero(np.any(np.abs(section.along) <= half, axis=1))
         self.section, self.plate, self.half, self.rows = section, plate, half, inside
         self.tops, self.bottoms = plate.heights[section.first_ply - 1], plate.heights[section.last_ply]

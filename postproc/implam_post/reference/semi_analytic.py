@@ -69,7 +69,8 @@ def impact_case(deck: Deck) -> ImpactCase:
     curvatures = curvatures_of(deck)
     if any(curvatures) and deck.choice("plate", "in_plane", ("fixed", "free", "tangential")) != "tangential":
         raise deck.error("plate", "the semi-analytic solution of a curved plate needs in_plane = 'tangential'.")
-    return ImpactCase(Plate(section_of_deck(deck), deck.lengths(), curvatures), impactor, indentation_law_of(deck), patch, end)
+    plate = Plate(section_of_deck(deck), deck.lengths(), curvatures)
+    return ImpactCase(plate, impactor, indentation_law_of(deck), patch, end)
 
 
 def semi_analytic(deck: Deck, modes: int | None = None, step: float | None = None) -> History:

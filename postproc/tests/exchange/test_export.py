@@ -275,7 +275,8 @@ class MeshTest(ExportTest):
         mesh = self.mesh()
         _, y, z = mesh.coordinates.T
         np.testing.assert_allclose(z, y**2 / 40, atol=1e-9)
-        self.assertIn("curvature in the coordinates of the nodes, radii 0, 20", self.run_command(to_abaqus, self.results)[1])
+        self.assertIn("curvature in the coordinates of the nodes, radii 0, 20",
+                      self.run_command(to_abaqus, self.results)[1])
         self.keep_deck(deck.replace("radius=0, 20", "radius=-40, 20 imperfection=0.5"))
         x, y, z = self.mesh().coordinates.T
         np.testing.assert_allclose(z, -x**2 / 80 + y**2 / 40 + 0.5 * np.cos(np.pi * x / 12) * np.cos(np.pi * y / 12),

@@ -1,5 +1,5 @@
-"""Tests of the tables of growth on long cells: which rows count, with which number of cells, and whether errors are those
-of the rows."""
+"""Tests of the tables of growth on long cells: which rows count, with which cells, and whether errors are those of the
+rows."""
 
 import sys
 import unittest
@@ -18,7 +18,8 @@ def strip(kind, load, opening="0.2", shear="0.7"):
 
 def impact(cell, area, peak):
     """Return a row of impacts."""
-    return {"deck": "a", "cell": cell, "cells_shear": f"{2/float(cell):.2f}", "projected_area": area, "peak_force": peak}
+    return {"deck": "a", "cell": cell, "cells_shear": f"{2/float(cell):.2f}", "projected_area": area,
+            "peak_force": peak}
 
 
 class Errors(unittest.TestCase):
@@ -57,7 +58,8 @@ class Models(unittest.TestCase):
         model = Strip("dcb", 1e-3, 1e-3)
         crack, change = 30e-3, 1e-6
         energy = [model.load(crack)**2*(model.compliance(crack + step)) for step in (-change, change)]
-        # Two arms, each with the load: energy P times u; the small square of the root rotation is not in the compliance.
+        # Two arms, each with the load: energy P times u; the small square of the root rotation is not in the
+        # compliance.
         self.assertAlmostEqual((energy[1] - energy[0])/(2*change)/212, 1, delta=.005)
 
     def test_decks(self):
