@@ -10,8 +10,8 @@ import json
 import math
 import os
 import re
-import sys
 import shutil
+import sys
 import tempfile
 import unittest
 from collections.abc import Iterator, Mapping
