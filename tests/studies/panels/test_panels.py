@@ -58,7 +58,7 @@ class Jobs(unittest.TestCase):
         """A job with a row of the same inputs is not repeated; one of other inputs is."""
         panel = {"deck": "hs160_rem_0_90.nml", "energies": [1, 2]}
         row = {"panel": "p", "variant": "", "energy": "1", "seed": "1", "inputs": panels.digest(panel, "")}
-        options = SimpleNamespace(seeds=range(1, 2), panel=None, variant=None)
+        options = SimpleNamespace(seeds=range(1, 2), panel=None, variant=None, again=False)
         for rows, expected in ([row], [2]), ([row | {"inputs": "other"}], [1, 2]):
             with mock.patch.object(panels, "read_rows", return_value=rows):
                 self.assertEqual([job.energy for job in panels.jobs_of(options, {"p": panel})], expected)
@@ -67,7 +67,8 @@ class Jobs(unittest.TestCase):
     def test_earlier_decks(self):
         """Rows of earlier decks are used and marked while there are none of the present ones."""
         panel = {"deck": "hs160_rem_0_90.nml"}
-        old, older = ({"panel": "p", "variant": "", "inputs": inputs} for inputs in ("old", "older"))
+        old, older = ({"panel": "p", "variant": "", "energy": "1", "seed": "1", "inputs": inputs}
+                      for inputs in ("old", "older"))
         new = old | {"inputs": panels.digest(panel, "")}
         self.assertEqual(panels.usable([older, old], {"p": panel}), [old | {"earlier": "yes"}])
         self.assertEqual(panels.usable([old, new], {"p": panel}), [new])
