@@ -57,7 +57,8 @@ class Jobs(unittest.TestCase):
     def test_remaining(self):
         """A job with a row of the same inputs is not repeated; one of other inputs is."""
         panel = {"deck": "hs160_rem_0_90.nml", "energies": [1, 2]}
-        row = {"panel": "p", "variant": "", "energy": "1", "seed": "1", "version": "1", "inputs": panels.digest(panel, "")}
+        row = {"panel": "p", "variant": "", "energy": "1", "seed": "1", "version": "1",
+               "inputs": panels.digest(panel, "")}
         options = SimpleNamespace(seeds=range(1, 2), panel=None, variant=None, again=False)
         for rows, expected in ([row], [2]), ([row | {"inputs": "other"}], [1, 2]):
             with mock.patch.object(panels, "read_rows", return_value=rows):
