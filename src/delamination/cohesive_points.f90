@@ -115,7 +115,8 @@ contains
     real(wp) :: ratio
 
     may_grow = old%damage < 1
-    if (.not. may_grow) return
+    ! The energy of larger jumps could exceed the range of numbers.
+    if (.not. may_grow .or. any(abs(jumps) > sqrt(sqrt(huge(ratio))))) return
     associate (n => law%failure_ratio)
       ratio = n/(n - old%damage*(n - 1))
       may_grow = .not. n*undamaged_energy(law, jumps) &
