@@ -4,6 +4,7 @@
 module growth_errors
   use kinds, only: wp
   use text, only: append, line_t, to_text
+  use text_tables, only: table_row
   implicit none
   private
   public :: area_errors, cells_for_area, growth_error_lines, load_errors
@@ -102,11 +103,12 @@ contains
     type(line_t), allocatable, intent(out) :: lines(:)
     type(growth_errors_t) :: row
     type(line_t) :: words(6)
+    integer, parameter :: widths(6) = 18
     integer :: i
 
     allocate (lines(0))
-    call append(lines, row_of([line_t('cells, at least'), line_t('strips'), line_t('load at growth, %'), &
-                               line_t('impacts'), line_t('area, %'), line_t('peak force, %')]))
+    call append(lines, table_row([line_t('cells, at least'), line_t('strips'), line_t('load at growth, %'), &
+                                  line_t('impacts'), line_t('area, %'), line_t('peak force, %')], widths, markdown))
     if (markdown) call append(lines, '|---|---|---|---|---|---|')
     do i = 1, size(measured_errors)
       row = measured_errors(i)
@@ -116,7 +118,7 @@ contains
       words(4)%text = number_text(row%impacts)
       words(5)%text = range_text(row%impacts, row%area, '-')
       words(6)%text = range_text(row%impacts, row%peak, '-')
-      call append(lines, row_of(words))
+      call append(lines, table_row(words, widths, markdown))
     end do
 
   contains
@@ -130,26 +132,5 @@ contains
       words = '-'
       if (number > 0) words = to_text(number)
     end function number_text
-
-    !> One line of the table.
-    pure function row_of(words) result(line)
-      !> Its cells
-      type(line_t), intent(in) :: words(:)
-      !> The line
-      character(len=:), allocatable :: line
-      integer, parameter :: width = 18
-      integer :: i
-
-      line = merge('|', ' ', markdown)
-      do i = 1, size(words)
-        line = line//' '//words(i)%text
-        if (markdown) then
-          line = line//' |'
-        else
-          line = line//repeat(' ', max(1, width - len(words(i)%text)))
-        end if
-      end do
-      line = trim(line)
-    end function row_of
   end subroutine growth_error_lines
 end module growth_errors

@@ -3,6 +3,7 @@
 module fibre_toughnesses
   use kinds, only: wp
   use text, only: append, line_t, words_of
+  use text_tables, only: table_row
   implicit none
   private
   public :: fibre_toughness_lines, measured_toughness
@@ -41,42 +42,20 @@ contains
     logical, intent(in) :: markdown
     type(line_t), allocatable, intent(out) :: lines(:)
     type(line_t), allocatable :: cells(:)
+    integer, parameter :: widths(5) = 20
     integer :: row
 
     allocate (lines(0))
-    call append(lines, row_of([line_t('material'), line_t('key'), line_t('blocks of plies'), line_t('N/mm'), &
-                               line_t('source')]))
+    call append(lines, table_row([line_t('material'), line_t('key'), line_t('blocks of plies'), line_t('N/mm'), &
+                                  line_t('source')], widths, markdown))
     if (markdown) call append(lines, '|---|---|---|---|---|')
     do row = 1, size(rows)
-      call append(lines, row_of(words_of(trim(rows(row)), '|')))
+      call append(lines, table_row(words_of(trim(rows(row)), '|'), widths, markdown))
     end do
     call append(lines, '')
     do row = 1, size(sources)
       cells = words_of(trim(sources(row)), '|')
       call append(lines, merge('- ', '  ', markdown)//cells(1)%text//merge(': ', '  ', markdown)//cells(2)%text//'.')
     end do
-
-  contains
-
-    !> One line of the table.
-    pure function row_of(words) result(line)
-      !> Its cells
-      type(line_t), intent(in) :: words(:)
-      !> The line
-      character(len=:), allocatable :: line
-      integer, parameter :: width = 20
-      integer :: i
-
-      line = merge('|', ' ', markdown)
-      do i = 1, size(words)
-        line = line//' '//words(i)%text
-        if (markdown) then
-          line = line//' |'
-        else
-          line = line//repeat(' ', max(1, width - len(words(i)%text)))
-        end if
-      end do
-      line = trim(line)
-    end function row_of
   end subroutine fibre_toughness_lines
 end module fibre_toughnesses

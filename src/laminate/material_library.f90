@@ -1,6 +1,7 @@
 !> Published values of some materials, each with its source, by which `library` of &material fills in keys left out.
 module material_library
   use text, only: line_t, append, joined, lower_case, words_of
+  use text_tables, only: table_row
   implicit none
   private
   public :: library_value_t, library_values, library_lines
@@ -155,18 +156,12 @@ contains
     logical, intent(in) :: markdown
     !> The line
     character(len=:), allocatable :: line
-    integer, parameter :: width = 14
+    type(line_t) :: plain_cells(size(cells))
     integer :: i
 
-    line = merge('|', ' ', markdown)
     do i = 1, size(cells)
-      if (markdown) then
-        line = line//' '//plain(cells(i)%text)//' |'
-      else
-        line = line//' '//plain(cells(i)%text)// &
-               repeat(' ', max(1, merge(8, width, i < heads) - len(plain(cells(i)%text))))
-      end if
+      plain_cells(i)%text = plain(cells(i)%text)
     end do
-    line = trim(line)
+    line = table_row(plain_cells, [(merge(8, 14, i < heads), i=1, size(cells))], markdown)
   end function table_line
 end module material_library

@@ -251,8 +251,8 @@ contains
           normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
           call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
           if (allocated(self%rates)) &
-            call self%rates%find_factor(self%states%offset(element) + ply, self%plies(ply), self%bands(ply), moments, &
-                                        means, factor)
+            call self%rates%find_factor(self%states%offset(element) + ply, self%plies(ply), self%bands(ply), joined, &
+                                        factor)
           ! Mean width of the elements normal to a straight crack.
           call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
                                              dot_product(normal, self%sides([2, 1], element))], strains, old, new, &

@@ -8,7 +8,7 @@ module loading_rates
   use crack_bands, only: band_strains_t, crack_band_t
   use kinds, only: wp
   use models, only: model_t
-  use ply_strains, only: moment_values, moments_from, strain_moments_t, strains_of_ply
+  use ply_strains, only: strain_moments_t, strains_of_ply
   use plies, only: ply_t
   implicit none
   private
@@ -47,17 +47,15 @@ contains
   end function new_loading_rates
 
   !> Factor of the matrix strengths of a ply of an element in the trial.
-  pure subroutine find_factor(self, at, ply, band, moments, means, factor)
+  pure subroutine find_factor(self, at, ply, band, moments, factor)
     class(loading_rates_t), intent(inout) :: self
     !> Place of its state
     integer, intent(in) :: at
     type(ply_t), intent(in) :: ply
     !> Its law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the element
+    !> Strains of the element, or their means over those that share its state
     type(strain_moments_t), intent(in) :: moments
-    !> Means of it and those that share its state; absent: there are none
-    real(wp), intent(in), optional :: means(:)
     !> The factor, at least 1
     real(wp), intent(out) :: factor
     type(band_strains_t) :: strains
@@ -66,7 +64,6 @@ contains
     factor = 1
     if (.not. self%counts) return
     strains = strains_of_ply(ply, moments)
-    if (present(means)) strains = strains_of_ply(ply, moments_from(means(:moment_values)))
     associate (old => self%accepted(:, at), new => self%trial(:, at))
       strain = sqrt(max(0.0_wp, strains%square(2)) + strains%shear_square)
       new = old

@@ -29,8 +29,10 @@ module stressed_volumes
   type :: stressed_volumes_t
     !> Undamaged tensile stress along the fibres of each ply of each element in the trial, at the places of the states
     real(wp), allocatable :: stress(:)
-    !> Weibull modulus, the volume for which XT holds, and that of the plate
-    real(wp), private :: modulus = 0, reference = 0, plate = 0
+    !> Weibull modulus, and the volume for which XT holds
+    type(ply_damage_t), private :: damage
+    !> Volume of the plate
+    real(wp), private :: plate = 0
     !> Strength of each ply for that volume
     real(wp), allocatable, private :: xt(:)
     !> First ply of the block of each ply
@@ -62,8 +64,7 @@ contains
     type(stressed_volumes_t) :: self
     integer :: ply, range(2)
 
-    self%modulus = model%setup%ply_damage%weibull_modulus
-    self%reference = model%setup%ply_damage%reference_volume
+    self%damage = model%setup%ply_damage
     self%plate = product(model%setup%plate%length)*model%thickness
     self%xt = bands%along(1)
     allocate (self%stress(states), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
@@ -78,7 +79,7 @@ contains
   pure real(wp) function smallest_share(self) result(share)
     class(stressed_volumes_t), intent(in) :: self
 
-    share = neglected**(1/self%modulus)
+    share = neglected**(1/self%damage%weibull_modulus)
   end function smallest_share
 
   !> A strain below which no ply contributes to the volume of a block, in the measure of `onset_strain`.
@@ -89,7 +90,7 @@ contains
     real(wp) :: share
     integer :: i
 
-    share = self%smallest_share()*min(1.0_wp, (self%reference/self%plate)**(1/self%modulus))
+    share = self%smallest_share()*min(1.0_wp, factor_of(self%damage, self%plate))
     strain = minval([(strain_of_stress(bands(i), share*self%xt(i)), i=1, size(bands))])
   end function smallest_strain
 
@@ -111,7 +112,7 @@ contains
 
     factor = 1
     associate (volume => self%volume(self%block(ply)))
-      if (volume > 0) factor = (self%reference/volume)**(1/self%modulus)
+      if (volume > 0) factor = factor_of(self%damage, volume)
     end associate
   end function factor
 
@@ -217,7 +218,7 @@ contains
         associate (stress => self%stress(states%offset(element) + ply), block => self%block(ply))
           if (self%failed(block) > 0 .or. .not. stress > share*largest(block)) cycle
           call sums(block)%add(area(element)*(plies(ply)%z_bottom - plies(ply)%z_top) &
-                               *(stress/largest(block))**self%modulus)
+                               *(stress/largest(block))**self%damage%weibull_modulus)
         end associate
       end do
     end do

@@ -34,7 +34,7 @@ module contact_durations
     !> Membrane stiffness A
     real(wp) :: membrane = 0
     !> Deflection from which on the force by bending is constant
-    real(wp) :: limit = 1.0e6_wp
+    real(wp) :: limit = huge(1.0_wp)
   contains
     procedure :: energy_at
     procedure :: recovered
@@ -98,7 +98,7 @@ contains
     !> The deflection and the largest one before
     real(wp), intent(in) :: deflection, largest
 
-    energy = min(1.0_wp, self%limit/largest)*deflection**2/2 + self%membrane*deflection**4/4
+    energy = min(self%limit, largest)/largest*deflection**2/2 + self%membrane*deflection**4/4
   end function recovered
 
   !> Deflection at an energy, by bisection: the linear plate deflects by no less, the one at its limit by no more
@@ -111,7 +111,8 @@ contains
     integer :: i
 
     low = 0
-    high = max(sqrt(2*energy), energy/self%limit + self%limit/2)
+    high = sqrt(2*energy)
+    if (high > self%limit) high = energy/self%limit + self%limit/2
     do i = 1, digits(1.0_wp)
       deflection = (low + high)/2
       if (self%energy_at(deflection) < energy) then

@@ -23,7 +23,8 @@ module explicit_steppers
   private
   public :: explicit_stepper_t
 
-  !> Steps of central differences between two checks whether damage requires more layers.
+  !> Steps of central differences between two checks whether damage requires more layers. A crack grows by at most two
+  !> cells in eight steps (`explicit_steps`): by the cells that an extension adds (`layer_extents`).
   integer, parameter :: steps_between_zone_checks = 16
 
   !> A stepper by central differences.

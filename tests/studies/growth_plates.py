@@ -13,6 +13,8 @@ import re
 import sys
 from pathlib import Path
 
+from result_rows import append_row
+
 HERE = Path(__file__).resolve().parent
 INPUT = HERE.parents[1]/"input"
 ROWS = HERE/"growth"/"plates.csv"
@@ -69,12 +71,7 @@ def main(implam, folder, deck, cells, control="energy"):
 
 def add_row(values):
     """Append a row to the table, and print it."""
-    is_new = not ROWS.exists()
-    with open(ROWS, "a", encoding="utf-8", newline="") as table:
-        writer = csv.writer(table, lineterminator="\n")
-        if is_new:
-            writer.writerow(COLUMNS)
-        writer.writerow(values)
+    append_row(ROWS, COLUMNS, dict(zip(COLUMNS, values, strict=True)))
     print(*values, flush=True)
 
 

@@ -23,6 +23,8 @@ import sys
 from pathlib import Path
 from subprocess import run
 
+from result_rows import append_row
+
 HERE = Path(__file__).resolve().parent
 ROWS = HERE/"growth"/"strips.csv"
 COLUMNS = ["strip", "arm", "cell", "control", "cells_opening", "cells_shear", "cells_grown", "kinetic_share",
@@ -186,12 +188,7 @@ def run_strips(implam, folder, kinds, arms, cells, control="energy"):
 
 def add_row(values):
     """Append a row to the table, and print it."""
-    is_new = not ROWS.exists()
-    with open(ROWS, "a", encoding="utf-8", newline="") as table:
-        writer = csv.writer(table, lineterminator="\n")
-        if is_new:
-            writer.writerow(COLUMNS)
-        writer.writerow(values)
+    append_row(ROWS, COLUMNS, dict(zip(COLUMNS, values, strict=True)))
     print(*values, flush=True)
 
 

@@ -28,6 +28,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "panels"))
 from jobs import FIGURES, Job, run_job
+from result_rows import append_row
 from tables import page_of, panel_lines
 
 HERE = Path(__file__).resolve().parent
@@ -68,18 +69,6 @@ def usable(rows, panels):
             present = [row for row in own if row["inputs"] == digest(panel, variant)]
             found += present or [row | {"earlier": "yes"} for row in own if row["inputs"] == own[-1]["inputs"]]
     return found
-
-
-def append_row(row):
-    """Add a row to the file; a new file has the names of the columns."""
-    path = DATA / "rows.csv"
-    names = (*IDENTITY, *FIGURES)
-    is_new = not path.exists()
-    with path.open("a", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, names, lineterminator="\n")
-        if is_new:
-            writer.writeheader()
-        writer.writerow(row)
 
 
 def seeds_of(text):
@@ -129,8 +118,8 @@ def run(options):
             print(f"{label}: {error}", file=sys.stderr, flush=True)
             return
         with lock:
-            append_row(dict(zip(IDENTITY, (job.name, job.variant, job.energy, job.seed, job.inputs, version,
-                                           f"{seconds / 60:.2f}"), strict=True)) | figures)
+            identity = (job.name, job.variant, job.energy, job.seed, job.inputs, version, f"{seconds / 60:.2f}")
+            append_row(DATA / "rows.csv", (*IDENTITY, *FIGURES), dict(zip(IDENTITY, identity, strict=True)) | figures)
         print(f"{label}: {seconds / 60:.1f} min", flush=True)
 
     with ThreadPoolExecutor(options.jobs) as pool:
