@@ -183,6 +183,8 @@ def _run_part(folder: Path, start: Path, program: Sequence[str], stop: _Stop, lo
                 process.send_signal(signal.SIGUSR1)  # mpirun forwards this signal, and ends at others
                 signalled = True
             time.sleep(_PAUSE)
+    if signalled and code == -signal.SIGUSR1:  # while it was being loaded: the program itself holds the signal back
+        code = EXIT_STOPPED
     return Record(shell_code(code), before.cpu_time + _children_time() - cpu_before,
                   before.wall_time + time.monotonic() - began, before.parts + 1, before.inputs)
 

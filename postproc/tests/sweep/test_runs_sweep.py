@@ -21,6 +21,7 @@ import h5py
 from implam_post.io.history import read_history
 from implam_post.io.program import EXIT_STOPPED
 from implam_post.sweep import command as sweep
+from implam_post.sweep.case_run import FINAL, case_command, read_record
 from implam_post.sweep.table import FIGURES
 from tests.program import SMALL, implam, run, run_quietly, start, surroundings
 
@@ -242,6 +243,21 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(code, 0, text)
         self.assertGreater(self.called("restart"), 0)
         self.assertEqual({row["exit_code"] for row in self.table()}, {"0"})
+
+    def test_stopped_while_loading(self) -> None:
+        """A signal that ends the program before its first instruction has stopped the case as any other."""
+        self.assertEqual(run_quietly(sweep.main, *self.arguments(HARD), "--array")[0], 0)
+        case = next(iter(sorted((self.output / "cases").iterdir())))
+        loading = self.folder / "loading"
+        loading.write_text(f"#!/bin/sh\ntouch {case}/begun\nsleep 1\nexec {implam()} \"$@\"\n")
+        loading.chmod(0o755)
+        command = [*case_command(case, [str(loading)])]
+        with subprocess.Popen(command, env=surroundings(), stdout=subprocess.PIPE, text=True) as process:
+            self.wait_until((case / "begun").exists, process)
+            process.send_signal(signal.SIGTERM)
+            text, _ = process.communicate(timeout=PATIENCE)
+        self.assertEqual((process.returncode, read_record(case).exit_code), (EXIT_STOPPED, EXIT_STOPPED), text)
+        self.assertIn(subprocess.run(command, env=surroundings(), check=False).returncode, FINAL)
 
     def test_array(self) -> None:
         """A queue runs the commands of a file, one per deck; the sweep then writes the table without a run."""
