@@ -7,17 +7,17 @@ module deck_crack_bands
   use deck_contents, only: deck_t
   use deck_fibre_strengths, only: check_fibre_strengths, fibre_factors
   use deck_problems, only: problems_t
-  use deck_remarks, only: report, remark, remark_idle, are_clear
+  use deck_remarks, only: report, remark, are_clear
   use deck_strain_rates, only: check_strain_rates
   use in_situ_strengths, only: material_in_place
   use kinds, only: wp
   use larc_criteria, only: larc_objection
   use material_deck, only: material_group, key_shear_strain, toughness_keys
-  use material_parameters, only: first_alike, material_t
+  use material_parameters, only: first_alike
   use mesh_parameters, only: is_halved
   use plies, only: ply_t
   use ply_blocks, only: block_of
-  use ply_damage_deck, only: ply_damage_group, key_closure, key_in_situ, key_permanent, keys_of_sudden_failure
+  use ply_damage_deck, only: ply_damage_group, key_closure, key_in_situ, key_permanent
   use ply_damage_parameters, only: fibre_tension
   use short_numbers, only: short_text
   use scale_tables, only: length_text
@@ -50,10 +50,6 @@ contains
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
       if (deck%ply_damage%crack_closure) call report(deck%settings, problems, ply_damage_group, key_closure, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
-      do i = 1, size(deck%materials)
-        call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
-                         'has no effect without fracture energies.', i)
-      end do
       return
     end if
     do i = 1, size(deck%materials)
@@ -64,8 +60,6 @@ contains
     if (deck%ply_damage%crack_closure .and. .not. (deck%has_time .and. is_explicit(deck%stepping))) &
       call report(deck%settings, problems, ply_damage_group, key_closure, 'implicit steps and load steps do not '// &
                 'model crack closure; use integrator = ''central_difference'' of &time, or leave it out.')
-    call remark_idle(deck%settings, problems, ply_damage_group, keys_of_sudden_failure, &
-                     'has no effect on plies with fracture energies.')
     if (problems%errors() > 0) return
     if (deck%ply_damage%in_situ .and. all(block_of(stacked_plies(deck%laminate, deck%materials), 1) == &
                                           [1, size(deck%laminate%angle)])) &

@@ -1,37 +1,36 @@
 !> Checks of combinations of groups. Checks within a group are next to its rows, those of sizes in `deck_extents`. A
 !> check with invalid keys is omitted, so that an error is reported once.
 module deck_cross_checks
-  use adapt_deck, only: adapt_group, key_growth_step
+  use adapt_deck, only: adapt_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_integrators, only: softening_part
   use deck_line_supports, only: check_in_plane_balance, check_line_strains, check_line_supports, check_moved_lines
   use deck_symmetries, only: check_symmetry
-  use deck_remarks, only: report, remark, remark_idle, are_clear
+  use deck_remarks, only: report, remark, are_clear
   use interface_places, only: delamination_group, key_below_ply
-  use delamination_parameters, only: growth_one_per_step, interface_objection, law_cohesive, law_front
+  use delamination_parameters, only: interface_objection, law_front
   use failure_criteria, only: needed_strengths
   use larc_criteria, only: larc_objection
-  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_at, key_gravity, key_integrator, key_mass, &
-                           key_travel, impactor_key_rise => key_rise, keys_of_motion
+  use impactor_deck, only: impactor_group, key_velocity, key_radius, key_at, key_gravity, key_travel, &
+                           impactor_key_rise => key_rise, keys_of_motion
   use impact_parameters, only: law_hertz
   use indentation_deck, only: indentation_group, key_k, key_alpha_critical
   use kinds, only: wp
   use laminate_deck, only: laminate_group
-  use line_deck, only: line_group, key_rise
+  use line_deck, only: line_group
   use line_loads, only: line_load_t
   use material_deck, only: key_compressive, material_group, require_densities
   use mesh_deck, only: mesh_group, key_patch
   use output_deck, only: check_intervals, remark_idle_fields
-  use plies, only: ply_t, material_objection
   use plate_deck, only: plate_group, check_edges, key_curvature_radius
-  use pressure_deck, only: pressure_group, key_history
+  use pressure_deck, only: pressure_group
   use stepping_parameters, only: is_explicit
   use support_deck, only: check_static_rigs, support_group
   use short_numbers, only: short_text
-  use static_deck, only: static_group, key_dissipation
+  use static_deck, only: static_group
   use text, only: line_t, append, joined, words_of
-  use time_deck, only: key_settle, time_group
+  use time_deck, only: time_group
   implicit none
   private
   public :: check_across_groups
@@ -95,8 +94,6 @@ contains
                   'no other load is possible with a travel in a static analysis; leave out &pressure and lines '// &
                   'that move or load the plate.')
     end if
-    call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
-                     keys_of_motion(deck%settings), 'has no effect on a static analysis.')
   end subroutine check_travel
 
   !> Checks an impactor with a travel prescribed in time.
@@ -111,10 +108,6 @@ contains
     else if (deck%impactor%rise > deck%stepping%time%end .and. .not. problems%concern(time_group)) then
       call report(deck%settings, problems, impactor_group, impactor_key_rise, 'the rise lasts longer than the run.')
     end if
-    call remark_idle(deck%settings, problems, impactor_group, key_mass//' '//key_gravity//' '//key_integrator//' '// &
-                     keys_of_motion(deck%settings), 'has no effect where the travel is given.')
-    call remark_idle(deck%settings, problems, time_group, key_settle, &
-                     'has no effect where the travel is given: the impactor does not leave the plate.')
   end subroutine check_travel_in_time
 
   !> True if a line moves or loads the plate.
@@ -128,7 +121,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
-    integer :: line
 
     if (size(deck%supports) > 0) then
       call check_static_rigs(deck%settings, deck%plate%symmetry, &
@@ -142,18 +134,11 @@ contains
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     if (deck%settings%has_group(adapt_group)) &
       call remark(deck%settings, problems, adapt_group, '', 'has no effect on a static analysis.')
-    call remark_idle(deck%settings, problems, pressure_group, key_history, 'has no effect on a static analysis.')
-    do line = 1, size(deck%lines)
-      call remark_idle(deck%settings, problems, line_group, key_rise, 'has no effect on a static analysis.', line)
-    end do
     if (.not. problems%concern(static_group)) &
       call check_intervals(deck%settings, 1.0_wp/deck%static%steps, 1.0_wp, problems)
     if (any(deck%delaminations%law == law_front)) &
       call remark(deck%settings, problems, delamination_group, '', &
                   'in a static analysis the starter of a front does not grow.')
-    if (deck%static%dissipation > 0 .and. .not. any(deck%delaminations%law == law_cohesive)) &
-      call remark(deck%settings, problems, static_group, key_dissipation, &
-                  'has no effect without a cohesive interface.')
   end subroutine check_static
 
   !> Keys that a run in time needs, and keys without effect in it.
@@ -169,10 +154,6 @@ contains
     if (.not. deck%has_time) return
     if (.not. problems%concern(time_group)) &
       call check_intervals(deck%settings, deck%stepping%time%step, deck%stepping%time%end, problems)
-    if (is_explicit(deck%stepping)) return
-    if (size(deck%delaminations) > 0 .and. all(deck%delaminations%growth == growth_one_per_step)) return
-    call remark_idle(deck%settings, problems, adapt_group, key_growth_step, &
-                     'has no effect without growth = ''one_per_step''.')
   end subroutine check_transient
 
   !> Keys of &time to be given: central differences, the default where plies or interfaces soften, choose the step, and

@@ -4,16 +4,13 @@ module deck_explicit_checks
   use adapt_deck, only: adapt_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, remark, remark_idle, report
+  use deck_remarks, only: are_clear, remark, report
   use delamination_deck, only: key_law
   use delamination_parameters, only: law_front
   use solver_deck, only: solver_group
-  use impact_parameters, only: integrator_central
-  use impactor_deck, only: impactor_group, key_integrator
   use interface_places, only: delamination_group
   use element_deck, only: key_mass
   use mesh_deck, only: mesh_group
-  use time_deck, only: time_group
   implicit none
   private
   public :: check_central_differences
@@ -38,8 +35,6 @@ contains
       ! Equilibrium with residual stresses or fixed lines is found before the first step.
       if (s%has_group(solver_group) .and. .not. (deck%has_thermal .or. any(deck%lines%precedes()))) &
         call remark(s, problems, solver_group, '', no_effect)
-      if (deck%impactor%integrator /= integrator_central) &
-        call remark_idle(s, problems, impactor_group, key_integrator, no_effect)
     end associate
   end subroutine check_central_differences
 

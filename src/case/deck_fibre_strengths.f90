@@ -3,7 +3,7 @@ module deck_fibre_strengths
   use cell_grids, only: cell_edges
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, remark, remark_idle, report
+  use deck_remarks, only: are_clear, remark, report
   use kinds, only: wp
   use mesh_parameters, only: parts_of
   use plies, only: ply_t
@@ -31,9 +31,8 @@ contains
     type(problems_t), intent(inout) :: problems
 
     associate (s => deck%settings, damage => deck%ply_damage)
-      if (.not. damage%weibull_modulus > 0) then
-        call remark_idle(s, problems, ply_damage_group, key_volume, 'has no effect without '//key_weibull//'.')
-      else if (.not. softens) then
+      if (.not. damage%weibull_modulus > 0) return
+      if (.not. softens) then
         call report(s, problems, ply_damage_group, key_weibull, 'belongs to plies with fracture energies; give '// &
                     'G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
       else if (.not. damage%reference_volume > 0) then

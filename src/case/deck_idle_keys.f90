@@ -1,23 +1,18 @@
 !> Reports keys without effect because the group that uses them is missing.
 module deck_idle_keys
-  use adapt_deck, only: adapt_group, keys_of_lengths
   use case_deck, only: case_group, key_name, stem_of
   use controls_deck, only: controls_group
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark, remark_idle
+  use deck_remarks, only: remark, remark_idle, remark_unused
+  use deck_table, only: load_deck_table
+  use deck_vocabulary, only: vocabulary_t
   use interface_places, only: interfaces_between
   use impact_parameters, only: law_thornton
-  use impactor_deck, only: impactor_group, key_rise, key_travel
   use indentation_deck, only: takes_laminate
-  use material_deck, only: material_group, key_expansion, key_fibre_shear, key_shear_23, key_shear_strain, &
-                           of_interfaces, strength_keys, toughness_keys
-  use output_deck, only: output_group, key_force_filter
+  use material_deck, only: material_group, key_fibre_shear, key_shear_23, of_interfaces, strength_keys, toughness_keys
   use ply_damage_deck, only: ply_damage_group
   use ply_damage_parameters, only: criteria_hou, criteria_puck, criteria_larc
-  use stepping_parameters, only: is_explicit
-  use thermal_deck, only: thermal_group
-  use time_deck, only: time_group, key_longest_step
   implicit none
   private
   public :: check_idle_keys
@@ -28,8 +23,11 @@ contains
   subroutine check_idle_keys(deck, problems)
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
+    type(vocabulary_t) :: vocabulary
     integer :: place
 
+    call load_deck_table(vocabulary)
+    call remark_unused(deck%settings, vocabulary, problems)
     do place = 1, size(deck%materials)
       call check_material(deck, place, problems)
     end do
@@ -39,19 +37,6 @@ contains
                     'name of the deck has other characters than letters, digits, . _ and -; give a name, so that '// &
                     'decks do not share results.')
       if (s%has_group(controls_group)) call remark(s, problems, controls_group, '', 'is for studies of the iteration.')
-      if (.not. (deck%stepping%adapt%on .or. deck%is_static() .or. is_explicit(deck%stepping)) .and. deck%has_time) &
-        call remark_idle(s, problems, time_group, key_longest_step, 'has no effect without &'//adapt_group// &
-                         ', as every step has the length of step.')
-      if (s%has_group(adapt_group) .and. .not. deck%stepping%adapt%on) &
-        call remark_idle(s, problems, adapt_group, keys_of_lengths, 'has no effect with on = .false.')
-      if (deck%is_static()) then
-        call remark_idle(s, problems, impactor_group, key_rise, 'has no effect on a static analysis.')
-        call remark_idle(s, problems, output_group, key_force_filter, 'has no effect on a static analysis.')
-      else if (.not. s%is_given(impactor_group, key_travel)) then
-        call remark_idle(s, problems, impactor_group, key_rise, 'has no effect without travel.')
-      end if
-      if (.not. deck%has_impactor) &
-        call remark_idle(s, problems, output_group, key_force_filter, 'has no effect without &'//impactor_group//'.')
     end associate
   end subroutine check_idle_keys
 
@@ -68,15 +53,11 @@ contains
         return
       end if
     end if
-    if (.not. deck%has_thermal) call remark_idle(deck%settings, problems, material_group, key_expansion, &
-                                                 'has no effect without &'//thermal_group//'.', place)
     if (problems%concern(ply_damage_group)) return
     if (deck%has_ply_damage) then
       call remark_strengths(deck, place, problems)
       return
     end if
-    call remark_idle(deck%settings, problems, material_group, key_shear_strain, &
-                     'has no effect without &'//ply_damage_group//': shear is linear.', place)
     call remark_first(deck, place, pack(strength_keys, .not. ((of_interfaces .and. has_interfaces(deck)) .or. &
       (has_yield_pressure(deck) .and. (strength_keys == 'YC' .or. strength_keys == key_shear_23)))), 'strengths', &
                       problems)

@@ -6,7 +6,7 @@ module deck_process_zones
   use deck_remarks, only: remark, remark_idle
   use delaminated_regions, only: cells_within
   use interface_places, only: delamination_group
-  use delamination_deck, only: key_flaws, key_growth_control, key_shear_cracks
+  use delamination_deck, only: key_flaws, key_shear_cracks
   use delamination_parameters, only: delamination_t, growth_by_energy, law_cohesive, toughnesses
   use in_situ_strengths, only: crack_strengths
   use kinds, only: wp
@@ -40,9 +40,6 @@ contains
     fewest = fewest_cells(deck)
     do i = 1, size(deck%delaminations)
       if (deck%delaminations(i)%law /= law_cohesive) cycle
-      if (deck%delaminations(i)%growth_control == growth_by_energy .and. .not. is_explicit(deck%stepping)) &
-        call remark_idle(deck%settings, problems, delamination_group, key_growth_control, 'has no effect without '// &
-                         '&time integrator = ''central_difference''.', deck%delaminations(i)%group)
       warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply, &
                                      fewest, length_unit(deck), length_unit_size(deck))
       if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
@@ -79,10 +76,7 @@ contains
         if (d%shear_cracks) call remark_shear_cracks(deck, d, problems)
         if (.not. d%cracks_as_flaws) cycle
         d%flaw_strength = resolved_part(process_zone(deck, d))
-        if (.not. deck%has_ply_damage) then
-          call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect without '// &
-                           '&ply_damage.', d%group)
-        else if (.not. d%flaw_strength < 1) then
+        if (deck%has_ply_damage .and. .not. d%flaw_strength < 1) then
           call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect below ply '// &
                            to_text(d%below_ply)//', where the cells resolve the strengths.', d%group)
         end if
@@ -108,9 +102,6 @@ contains
       call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, &
         'has no effect below ply '//to_text(delamination%below_ply)//', where the shear strength of the plies '// &
         'exceeds that of the interface.', delamination%group)
-    else
-      call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, 'has no effect without '// &
-                       '&ply_damage.', delamination%group)
     end if
   end subroutine remark_shear_cracks
 

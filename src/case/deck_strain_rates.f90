@@ -2,7 +2,7 @@
 module deck_strain_rates
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, remark, remark_idle, report
+  use deck_remarks, only: are_clear, remark, report
   use material_deck, only: key_gain, key_rate, material_group
   implicit none
   private
@@ -21,9 +21,8 @@ contains
 
     do place = 1, size(deck%materials)
       associate (s => deck%settings, material => deck%materials(place))
-        if (.not. material%rate_gain > 0) then
-          call remark_idle(s, problems, material_group, key_rate, 'has no effect without '//key_gain//'.', place)
-        else if (.not. softens) then
+        if (.not. material%rate_gain > 0) cycle
+        if (.not. softens) then
           call report(s, problems, material_group, key_gain, 'belongs to plies with fracture energies; give G_ft, '// &
                       'G_fc, G_mt and G_mc of every material, or leave it out.', place)
         else if (.not. material%reference_rate > 0) then

@@ -3,6 +3,7 @@ module deck_explain
   use allowed_values, only: allowed_sentence
   use deck_vocabulary, only: vocabulary_t, key_entry_t, group_entry_t
   use errors, only: error_t, fail, exit_usage
+  use key_conditions, only: conditions_in_words
   use text, only: line_t, append, ended, joined, lower_case, nearest_name, words_of
   implicit none
   private
@@ -140,7 +141,7 @@ contains
     end if
   end subroutine require_group
 
-  !> Two lines on a key.
+  !> Two lines on a key, and one on its conditions.
   subroutine explain_key(key, lines)
     type(key_entry_t), intent(in) :: key
     !> Lines are added
@@ -151,6 +152,7 @@ contains
     if (key%unit /= '-') unit = '; unit: '//key%unit
     call append(lines, '  '//key%name//repeat(' ', max(1, 18 - len(key%name)))//key%meaning)
     call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//ended(default_in_words(key)))
+    if (key%used_with /= '') call append(lines, repeat(' ', 20)//conditions_in_words(key%used_with, '')//'.')
   end subroutine explain_key
 
   !> Whether a group is required and repeatable, in words.
@@ -220,7 +222,7 @@ contains
     type(key_entry_t), intent(in) :: key
     !> The row
     character(len=:), allocatable :: row
-    character(len=:), allocatable :: default, allowed
+    character(len=:), allocatable :: default, allowed, conditions
     type(line_t), allocatable :: choices(:)
 
     default = key%default
@@ -235,7 +237,9 @@ contains
       choices = words_of(allowed(:index(allowed, ',') - 1), ' ')
       allowed = '`'''//joined(choices, '''`, `''')//'''`'//allowed(index(allowed, ','):)
     end if
+    conditions = ''
+    if (key%used_with /= '') conditions = ' ('//conditions_in_words(key%used_with, '`')//')'
     row = '| `'//key%name//'` | '//key%kind//' | '//key%values//' | '//key%unit//' | '//default//' | '//allowed// &
-          ' | '//key%meaning//' |'
+          ' | '//key%meaning(:len(key%meaning) - 1)//conditions//'. |'
   end function table_row
 end module deck_explain

@@ -3,10 +3,12 @@ module deck_remarks
   use deck_entries, only: value_t, shown_values
   use deck_problems, only: problems_t
   use deck_settings, only: settings_t
+  use deck_vocabulary, only: vocabulary_t
+  use key_conditions, only: missing_condition
   use text, only: line_t, words_of
   implicit none
   private
-  public :: report, remark, remark_idle, are_clear
+  public :: report, remark, remark_idle, remark_unused, are_clear
 
 contains
 
@@ -62,6 +64,26 @@ contains
         call remark(settings, problems, group, names(i)%text, message, place)
     end do
   end subroutine remark_idle
+
+  !> Adds a warning for each given key whose conditions do not hold.
+  subroutine remark_unused(settings, vocabulary, problems)
+    type(settings_t), intent(in) :: settings
+    type(vocabulary_t), intent(in) :: vocabulary
+    type(problems_t), intent(inout) :: problems
+    character(len=:), allocatable :: reason
+    integer :: i, place
+
+    do i = 1, size(vocabulary%keys)
+      associate (key => vocabulary%keys(i))
+        if (key%used_with == '') cycle
+        do place = 1, settings%groups_named(key%group)
+          reason = missing_condition(settings, key%used_with, key%group, place)
+          if (reason /= '') &
+            call remark_idle(settings, problems, key%group, key%name, 'has no effect '//reason//'.', place)
+        end do
+      end associate
+    end do
+  end subroutine remark_unused
 
   !> True: some keys are valid or absent. A check that calls this first does not report errors caused by other errors.
   pure logical function are_clear(settings, problems, group, keys, place)

@@ -6,7 +6,7 @@ module deck_vocabulary
   public :: group_entry_t, key_entry_t, vocabulary_t, load_vocabulary
 
   !> Characters of a row of a group and of a key, sufficient for the longest.
-  integer, parameter, public :: group_row_length = 220, key_row_length = 240
+  integer, parameter, public :: group_row_length = 220, key_row_length = 300
 
   !> A group of the deck.
   type :: group_entry_t
@@ -36,6 +36,8 @@ module deck_vocabulary
     character(len=:), allocatable :: allowed
     !> One sentence
     character(len=:), allocatable :: meaning
+    !> Conditions under which it has an effect (key_conditions); empty: always
+    character(len=:), allocatable :: used_with
   contains
     procedure :: has_literal_default
   end type key_entry_t
@@ -60,7 +62,8 @@ contains
   pure subroutine load_vocabulary(group_rows, key_rows, vocabulary)
     !> Rows of groups: name, presence and meaning, separated by bars
     character(len=*), intent(in) :: group_rows(:)
-    !> Rows of keys: group, key, type, number of values, unit, default, allowed and meaning, separated by bars
+    !> Rows of keys: group, key, type, number of values, unit, default, allowed, meaning and, if there are any, the
+    !> conditions under which it has an effect, separated by bars
     character(len=*), intent(in) :: key_rows(:)
     !> The table as data
     type(vocabulary_t), intent(out) :: vocabulary
@@ -83,7 +86,7 @@ contains
   !> Sets a key from the columns of its row, one by one: gfortran 12 corrupts memory if a constructor does it.
   pure subroutine set_key(column, key)
     !> Columns of the row
-    type(line_t), intent(in) :: column(8)
+    type(line_t), intent(in) :: column(:)
     type(key_entry_t), intent(out) :: key
 
     key%group = column(1)%text
@@ -94,6 +97,8 @@ contains
     key%default = column(6)%text
     key%allowed = column(7)%text
     key%meaning = column(8)%text
+    key%used_with = ''
+    if (size(column) > 8) key%used_with = column(9)%text
   end subroutine set_key
 
   !> True: the default is a value that may be written in the deck.

@@ -6,7 +6,6 @@ module delamination_deck
   use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use delamination_idle_keys, only: fronts_only, remark_idle_keys
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
                                      growth_one_per_step, growth_by_strength, &
@@ -40,49 +39,57 @@ module delamination_deck
     'delamination | G_Ic | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure opening.', &
     'delamination | G_IIc | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure shear.', &
     'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
-      &Exponent of Benzeggagh and Kenane''s mixed-mode law.', &
+      &Exponent of Benzeggagh and Kenane''s mixed-mode law. | not G_c', &
     'delamination | zone | real | 2 | length | = adaptive, with law = cohesive | > 0 | &
       &Full extents along x and y of the rectangle with separate layers, centred on the struck point.', &
     'delamination | starter | real | 1 | length | = square of 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, or diameter of the round one.', &
     'delamination | starter_shape | choice | 1 | - | ''square'' | square round | &
-      &Outline of the starter, in whole cells.', &
+      &Outline of the starter, in whole cells. | starter', &
     'delamination | starter_at | real | 2 | length | = the struck point | any | &
-      &Centre of the starter, from the struck point.', &
+      &Centre of the starter, from the struck point. | starter', &
     'delamination | starter_strip | real | 2 | length | none | any | &
       &First and last x of a starter across the whole width of the zone, from the struck point; instead of starter.', &
     'delamination | law | choice | 1 | - | = cohesive; front with a starter or without strengths | front cohesive | &
       &front: ties are released by the energy release rate; cohesive: tractions soften with the separation.', &
     'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
-      &Strength of the cohesive law in pure opening.', &
+      &Strength of the cohesive law in pure opening. | law = cohesive', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
-      &Strength of the cohesive law in pure shear.', &
+      &Strength of the cohesive law in pure shear. | law = cohesive', &
     'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner side | > 0 | &
-      &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the thinner side.', &
+      &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the thinner side. | &
+      &law = cohesive', &
     'delamination | friction | real | 1 | - | 0 | >= 0, <= 10 | &
-      &Coulomb''s coefficient of friction of damaged surfaces that are closed.', &
+      &Coulomb''s coefficient of friction of damaged surfaces that are closed. | law = cohesive, not contact = none', &
     'delamination | cracks_as_flaws | logical | 1 | - | .false. | .true. .false. | &
-      &Beside matrix cracks of adjacent plies damage starts at the strengths whose process zone the cells resolve.', &
+      &Beside matrix cracks of adjacent plies damage starts at the strengths whose process zone the cells resolve. | &
+      &law = cohesive, &ply_damage', &
     'delamination | shear_cracks | logical | 1 | - | .false. | .true. .false. | &
-      &Beside transverse shear cracks of adjacent plies damage starts at the shear strength of these plies.', &
+      &Beside transverse shear cracks of adjacent plies damage starts at the shear strength of these plies. | &
+      &law = cohesive, &ply_damage', &
     'delamination | growth_control | choice | 1 | - | ''energy'' | energy strength | &
-      &Damage beside delaminated points starts by the energy release rate or the strengths, or by strengths alone.', &
+      &Damage beside delaminated points starts by the energy release rate or the strengths, or by strengths alone. | &
+      &law = cohesive, &time integrator = central_difference', &
     'delamination | energy_release | choice | 1 | - | ''vcct'' | two_state vcct | &
-      &Energy release rate: Eq. 11 of Li et al. with its sign corrected, or virtual crack closure.', &
+      &Energy release rate: Eq. 11 of Li et al. with its sign corrected, or virtual crack closure. | law = front', &
     'delamination | growth | choice | 1 | - | ''equilibrium'' | equilibrium one_per_step | &
-      &equilibrium: growth at fixed time until G <= G_c on all fronts; one_per_step: one cell per step.', &
+      &equilibrium: growth at fixed time until G <= G_c on all fronts; one_per_step: one cell per step. | &
+      &law = front', &
     'delamination | tie | choice | 1 | - | ''eliminate'' | eliminate penalty | &
-      &Connection of intact surfaces: exact elimination, or penalty springs as by Li et al.', &
+      &Connection of intact surfaces: exact elimination, or penalty springs as by Li et al. | law = front', &
     'delamination | penalty | real | 1 | pressure/length | = from E2 | > 0 | &
-      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner side.', &
+      &Stiffness of penalty ties; left out: a million times E2 over the thickness of the thinner side. | &
+      &law = front, tie = penalty', &
     'delamination | contact | choice | 1 | - | ''augmented_lagrangian'' | &
       &augmented_lagrangian continuous_penalty none | Contact of separated surfaces.', &
     'delamination | contact_exponent | real | 1 | - | 1 | >= 1, <= 2 | &
-      &Exponent q of the continuous penalty (Li et al., Eq. 12).', &
+      &Exponent q of the continuous penalty (Li et al., Eq. 12). | law = front, contact = continuous_penalty', &
     'delamination | unloading | choice | 1 | - | ''contact'' | contact glued | &
-      &During rebound: contact, or relative displacements of separated surfaces held constant (Li et al., Eq. 13b).', &
+      &During rebound: contact, or relative displacements of separated surfaces held constant (Li et al., Eq. 13b). | &
+      &law = front', &
     'delamination | smoothing | real | 1 | length | = 5 cells of the zone, at least the thickness | > 0 | &
-      &Distance along a front over which tie forces and openings are averaged for the energy release rate.']
+      &Distance along a front over which tie forces and openings are averaged for the energy release rate. | &
+      &law = front, energy_release = vcct or growth = equilibrium']
 
 contains
 
@@ -207,7 +214,7 @@ contains
     type(line_t), allocatable :: names(:)
     integer :: i
 
-    names = words_of(key_starter//' '//fronts_only, ' ')
+    names = words_of(key_starter//' energy_release growth tie penalty unloading smoothing contact_exponent', ' ')
     needs_front = any([(settings%is_given(group, names(i)%text, place), i=1, size(names))])
   end function needs_front
 
@@ -246,7 +253,6 @@ contains
       call check_strengths(settings, delaminations(i), place, problems)
       if (place == before) cycle
       call check_toughness(settings, delaminations(i), place, problems)
-      call remark_idle_keys(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
       if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &

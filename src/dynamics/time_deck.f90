@@ -3,7 +3,7 @@ module time_deck
   use central_difference_parameters, only: central_difference_parameters_t
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: report, remark_idle, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -30,25 +30,28 @@ module time_deck
     'time | step | real | 1 | time | = by &case accuracy, central differences: the stable one | > 0 | &
       &Initial time step, constant unless steps are adaptive; central differences limit it to the stable step.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
-      &Smallest step tried before giving up.', &
+      &Smallest step tried before giving up. | not integrator = central_difference', &
     'time | step_max | real | 1 | time | = step, end with &adapt rule=''local_error'' | > 0 | &
-      &Largest step taken with &adapt.', &
+      &Largest step taken with &adapt. | not integrator = central_difference, &adapt on = .true.', &
     'time | wall_limit | real | 1 | s | none | > 0 | &
       &Wall-clock seconds by which the run ends with a checkpoint; --wall-limit overrides it.', &
     'time | integrator | choice | 1 | - | = by the deck | newmark generalized_alpha central_difference | &
       &Time integrator of the plate; left out, central_difference where plies or interfaces soften.', &
     'time | beta | real | 1 | - | 0.25 | > 0, <= 1 | &
-      &Newmark''s beta; 2 beta >= gamma keeps every step stable.', &
+      &Newmark''s beta; 2 beta >= gamma keeps every step stable. | integrator = newmark', &
     'time | gamma | real | 1 | - | 0.5 | >= 0.5, <= 1 | &
-      &Newmark''s gamma; above 0.5 it adds numerical damping.', &
+      &Newmark''s gamma; above 0.5 it adds numerical damping. | integrator = newmark', &
     'time | rho_inf | real | 1 | - | = 1, with &delamination 0.5, with a front 0 | >= 0, <= 1 | &
-      &Spectral radius of generalised-alpha at infinite frequency: 1 no damping, 0 most.', &
+      &Spectral radius of generalised-alpha at infinite frequency: 1 no damping, 0 most. | &
+      &integrator = generalized_alpha', &
     'time | step_factor | real | 1 | - | 0.9 | > 0, <= 1 | &
-      &Step of central differences over the stable step.', &
+      &Step of central differences over the stable step. | integrator = central_difference', &
     'time | mass_scaling | real | 1 | - | = up to 10, limited by its effect on bending waves | >= 1, <= 1000 | &
-      &Mean factor of rotary inertia for central differences, larger in short elements; w is not scaled. 1: none.', &
+      &Mean factor of rotary inertia for central differences, larger in short elements; w is not scaled. 1: none. | &
+      &integrator = central_difference', &
     'time | settle | real | 1 | time | 0 | >= 0 | &
-    &Time in which a plate is damped to rest: before lines begin to load it, or after an impact.']
+    &Time in which a plate is damped to rest: before lines begin to load it, or after an impact. | &
+      &integrator = central_difference, not &impactor travel']
 
   !> Largest number of steps of a run: with twenty iterations each, the number of iterations still fits a default
   !> integer, up to 2.1e9.
@@ -118,13 +121,7 @@ contains
                   'allowed: from '//text_at_least(time%end/max_steps)//'.')
       end if
     end if
-    if (time%integrator == integrator_central_difference) then
-      call remark_idle(settings, problems, time_group, 'step_min step_max beta gamma rho_inf', &
-                       'has no effect with integrator = ''central_difference''.')
-      return
-    end if
-    call remark_idle(settings, problems, time_group, 'step_factor '//key_mass_scaling//' '//key_settle, &
-                     'has no effect without integrator = ''central_difference''.')
+    if (time%integrator == integrator_central_difference) return
     if (time%step_min > time%step .and. clear('step step_min')) call report(settings, problems, time_group, &
                                                                             'step_min', &
       'is larger than the first step; allowed: up to step = '//to_text(time%step)//'.')
@@ -132,7 +129,9 @@ contains
                                                                             'step_max', &
       'is smaller than the first step; allowed: from step = '//to_text(time%step)//'.')
     if (.not. clear(key_integrator)) return
-    call check_parameters(settings, time, problems)
+    if (time%integrator == integrator_newmark .and. 2*time%beta < time%gamma .and. clear('beta gamma')) &
+      call report(settings, problems, time_group, 'beta', &
+                  'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')
 
   contains
 
@@ -144,22 +143,4 @@ contains
       clear = are_clear(settings, problems, time_group, keys)
     end function clear
   end subroutine check_time
-
-  !> Checks the parameters of the integrator, and warns of parameters of other integrators.
-  subroutine check_parameters(settings, time, problems)
-    type(settings_t), intent(in) :: settings
-    !> Time integration
-    type(time_t), intent(in) :: time
-    type(problems_t), intent(inout) :: problems
-
-    if (time%integrator == integrator_newmark) then
-      if (2*time%beta < time%gamma .and. are_clear(settings, problems, time_group, 'beta gamma')) &
-        call report(settings, problems, time_group, 'beta', &
-                    'the plate''s motion would be unstable; allowed: from gamma/2 = '//to_text(time%gamma/2)//'.')
-      call remark_idle(settings, problems, time_group, 'rho_inf', 'has no effect with integrator = ''newmark''.')
-    else if (time%integrator == integrator_generalized_alpha) then
-      call remark_idle(settings, problems, time_group, 'beta gamma', &
-                       'has no effect with integrator = ''generalized_alpha''.')
-    end if
-  end subroutine check_parameters
 end module time_deck

@@ -24,25 +24,26 @@ module impactor_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
     'impactor | mass | real | 1 | mass | none | > 0 | &
-      &Mass of the full impactor, also under symmetry; needed unless travel is given.', &
+      &Mass of the full impactor, also under symmetry; needed unless travel is given. | not travel', &
     'impactor | velocity | real | 1 | length/time | = sqrt(2 energy/mass) | >= 0 | &
-      &Speed towards the plate at first contact.', &
+      &Speed towards the plate at first contact. | not travel', &
     'impactor | at | real | 2 | length | none | any | &
       &The struck point, from the plate''s centre (default); patch, core, zones and starters are centred on it.', &
     'impactor | energy | real | 1 | energy | none | >= 0 | &
-      &Kinetic energy of the full impactor at first contact, instead of velocity.', &
+      &Kinetic energy of the full impactor at first contact, instead of velocity. | not travel', &
     'impactor | travel | real | 1 | length | none | > 0 | &
       &Prescribed displacement of the impactor after first contact, at the end of load steps or of an explicit run.', &
     'impactor | rise | real | 1 | time | = end/4 | >= 0 | &
-      &Time in which the prescribed velocity of the impactor rises smoothly to its constant value.', &
+      &Time in which the prescribed velocity of the impactor rises smoothly to its constant value. | &
+      &travel, not &static', &
     'impactor | radius | real | 1 | length | none | > 0 | &
       &Radius of the nose; needed if the contact stiffness k is not given.', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
       &Area on which the contact force acts: the patch, or that in contact with a spherical nose, point by point.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &
-      &Acceleration of gravity along the impact, positive towards the plate.', &
+      &Acceleration of gravity along the impact, positive towards the plate. | not travel', &
     'impactor | integrator | choice | 1 | - | ''gear4'' | gear4 trapezoidal central conserving | &
-      &Time integrator of the impactor.']
+      &Time integrator of the impactor. | not travel, not &time integrator = central_difference']
 
 contains
 

@@ -2,7 +2,7 @@
 module indentation_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: report, remark_idle, are_clear
+  use deck_remarks, only: report, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use impact_parameters, only: indentation_law_t, law_tan_sun, law_hertz, law_thornton, dent_tan_sun, dent_yang_sun
@@ -28,25 +28,27 @@ module indentation_deck
     'indentation | k | real | 1 | force/length^1.5 | = Sun''s formula | > 0 | &
       &Contact stiffness in F = k alpha^1.5.', &
     'indentation | impactor_E | real | 1 | pressure | = rigid | > 0 | &
-      &Young''s modulus of the impactor in Sun''s formula for k.', &
+      &Young''s modulus of the impactor in Sun''s formula for k. | not k', &
     'indentation | impactor_nu | real | 1 | - | 0.3 | > -1, < 0.5 | &
-      &Poisson''s ratio of the impactor in Sun''s formula for k.', &
+      &Poisson''s ratio of the impactor in Sun''s formula for k. | not k, impactor_E', &
     'indentation | face | choice | 1 | - | ''ply'' | ply laminate | &
       &Struck face: stiffness of a free ply, or stiffness and strength with held strains in its plane.', &
     'indentation | E3 | real | 1 | pressure | = E2, or by face | > 0 | &
-      &Modulus of the struck face through the thickness in Sun''s formula for k.', &
+      &Modulus of the struck face through the thickness in Sun''s formula for k. | not k', &
     'indentation | yield_pressure | real | 1 | pressure | = by face | > 0 | &
-      &Largest contact pressure of law = ''thornton'', instead of alpha_cr.', &
+      &Largest contact pressure of law = ''thornton'', instead of alpha_cr. | law = thornton, not alpha_cr', &
     'indentation | q | real | 1 | - | 2.5 | >= 1.5, <= 10 | &
-      &Exponent of unloading.', &
+      &Exponent of unloading. | law = tan_sun', &
     'indentation | reload | real | 1 | - | 1.5 | >= 1.5, <= 10 | &
-      &Exponent of reloading after separation.', &
+      &Exponent of reloading after separation. | law = tan_sun', &
     'indentation | beta | real | 1 | - | 0.094 | >= 0, < 1 | &
-      &Slope of the permanent dent against the largest indentation, after Tan and Sun.', &
+      &Slope of the permanent dent against the largest indentation, after Tan and Sun. | &
+      &law = tan_sun, not dent = yang_sun', &
     'indentation | alpha_cr | real | 1 | length | none | > 0 | &
-      &Indentation above which a dent remains; needed except with law = ''hertz'' or a yield pressure.', &
+      &Indentation above which a dent remains; needed except with law = ''hertz'' or a yield pressure. | &
+      &not law = hertz', &
     'indentation | dent | choice | 1 | - | ''tan_sun'' | tan_sun yang_sun | &
-      &Formula of the permanent dent.']
+      &Formula of the permanent dent. | law = tan_sun']
 
   !> The struck face as the laminate has it; 0: not known.
   type :: struck_face_t
@@ -154,43 +156,14 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. settings%is_known(indentation_group, 'law')) return
-    if (law%law == law_hertz) then
-      call idle('q reload beta alpha_cr dent', 'has no effect with law = ''hertz''.')
-    else
-      if (.not. (law%alpha_critical > 0 .or. problems%concern(indentation_group, key_alpha_critical) .or. &
-                 problems%concern(indentation_group, key_face))) &
-        call report(settings, problems, indentation_group, key_alpha_critical, 'is missing; law = '''// &
+    if (law%law == law_hertz) return
+    if (.not. (law%alpha_critical > 0 .or. problems%concern(indentation_group, key_alpha_critical) .or. &
+               problems%concern(indentation_group, key_face))) &
+      call report(settings, problems, indentation_group, key_alpha_critical, 'is missing; law = '''// &
                   settings%text_of(indentation_group, 'law')//''' needs the indentation above which a dent remains'// &
                   trim(merge(', or a yield_pressure', '                     ', law%law == law_thornton))// &
                   ' (law = ''hertz'' leaves none).')
-      if (law%law == law_tan_sun) call check_exponents(settings, law, problems)
-    end if
-    if (law%law == law_thornton) then
-      call idle('q reload beta dent', 'has no effect with law = ''thornton''.')
-      if (settings%is_given(indentation_group, key_alpha_critical)) &
-        call idle('yield_pressure', 'has no effect as alpha_cr is given.')
-    else
-      call idle('yield_pressure', 'has an effect with law = ''thornton'' only.')
-    end if
-    if (law%law == law_tan_sun .and. law%dent == dent_yang_sun) &
-      call idle('beta', 'has no effect with dent = ''yang_sun''.')
-    if (settings%is_given(indentation_group, key_k)) then
-      call idle('impactor_E impactor_nu E3', 'has no effect as k is given.')
-    else if (.not. settings%is_given(indentation_group, 'impactor_E')) then
-      call idle('impactor_nu', 'has no effect without impactor_E.')
-    end if
-
-  contains
-
-    !> Remarks on keys of this group.
-    subroutine idle(keys, message)
-      !> Names of keys, separated by blanks
-      character(len=*), intent(in) :: keys
-      !> Reason why they have no effect
-      character(len=*), intent(in) :: message
-
-      call remark_idle(settings, problems, indentation_group, keys, message)
-    end subroutine idle
+    if (law%law == law_tan_sun) call check_exponents(settings, law, problems)
   end subroutine check_indentation
 
   !> Checks the exponents of a law that creates no energy: 1.5 <= reload <= q; the rows have the lower bound.

@@ -77,15 +77,15 @@ module material_deck
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
       &Fracture energy of the matrix in shear or transverse compression.', &
     'material | shear_failure_strain | real | 1 | - | none | > 0 | &
-      &In-plane shear strain at S12; left out: S12/G12, shear is linear.', &
+      &In-plane shear strain at S12; left out: S12/G12, shear is linear. | &ply_damage, G_ft', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &
-      &Thermal expansion along the fibres.', &
+      &Thermal expansion along the fibres. | &thermal', &
     'material | alpha2 | real | 1 | 1/temperature | 0 | any | &
-      &Transverse thermal expansion.', &
+      &Transverse thermal expansion. | &thermal', &
     'material | rate_strengthening | real | 1 | - | 0 | >= 0 | &
       &Gain of YT, YC, S12 and Sm23 of softening plies per decade of strain rate, as a fraction.', &
     'material | reference_rate | real | 1 | 1/time | none | > 0 | &
-      &Strain rate of the tests that these strengths are from; strengths do not change below it.']
+      &Strain rate of the tests that these strengths are from; strengths do not change below it. | rate_strengthening']
   !> Keys of the strengths.
   character(len=*), parameter, public :: strength_keys(7) = [character(len=4) :: 'XT', 'XC', 'YT', 'YC', 'S12', 'Sf', &
                                                              'Sm23']

@@ -25,13 +25,14 @@ module ply_damage_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: ply_damage_rows(*) = [character(len=key_row_length) :: &
     'ply_damage | d | real | 1 | - | 100 | >= 1 | &
-      &Divisor of the elastic constants affected by a mode of failure (Li et al., Table 2).', &
+      &Divisor of the elastic constants affected by a mode of failure (Li et al., Table 2). | not &material G_ft', &
     'ply_damage | e | real | 1 | - | 0.001 | > 0, <= 1 | &
       &Smallest value of an elastic constant, as a fraction of the undamaged one.', &
     'ply_damage | criteria | choice | 1 | - | ''hou'' | hou hashin puck larc | &
       &Set of failure criteria: of Hou et al. (2000), Hashin (1980), Puck (1998), or LaRC03 (Davila et al. 2005).', &
     'ply_damage | stress | choice | 1 | - | ''middle'' | middle faces | &
-      &Where in a ply stresses are evaluated: its mid-plane, or the face with the higher failure index.', &
+      &Where in a ply stresses are evaluated: its mid-plane, or the face with the higher failure index. | &
+      &not &material G_ft', &
     'ply_damage | in_situ | logical | 1 | - | .false. | .true. .false. | &
       &Whether YT and S12 are raised to in-situ strengths, by the thickness of each block of plies, G_mt and G_mc.', &
     'ply_damage | permanent_shear | logical | 1 | - | .false. | .true. .false. | &
@@ -43,7 +44,8 @@ module ply_damage_deck
     'ply_damage | weibull_modulus | real | 1 | - | none | >= 1 | &
       &Weibull modulus of the fibres in tension: in small stressed volumes XT is larger; left out: XT is constant.', &
     'ply_damage | reference_volume | real | 1 | volume | = 3750 mm3 | > 0 | &
-      &Stressed volume of the specimens that XT was measured on; 3750 mm3 is 250 mm by 15 mm by 1 mm.']
+      &Stressed volume of the specimens that XT was measured on; 3750 mm3 is 250 mm by 15 mm by 1 mm. | &
+      &weibull_modulus']
   !> Its default in cubic metres: the gauge length of a tension specimen after ASTM D3039, 250 x 15 x 1 mm.
   real(wp), parameter :: usual_volume = 3.75e-6_wp
 

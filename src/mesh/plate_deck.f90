@@ -2,7 +2,7 @@
 module plate_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: remark, remark_idle, report
+  use deck_remarks, only: remark, report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -30,9 +30,11 @@ module plate_deck
     'plate | edges | choice | 1 or 4 | - | required | clamped simple free elastic | &
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
     'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &
-      &Stiffness of an elastic edge against deflection, force per length and deflection; left out: rigid.', &
+      &Stiffness of an elastic edge against deflection, force per length and deflection; left out: rigid. | &
+      &edges = elastic', &
     'plate | edge_rotation_stiffness | real | 1 | force | none | > 0 | &
-      &Stiffness of an elastic edge against rotation, moment per length and angle; left out: free rotation.', &
+      &Stiffness of an elastic edge against rotation, moment per length and angle; left out: free rotation. | &
+      &edges = elastic', &
     'plate | in_plane | choice | 1 | - | ''fixed'' | fixed free tangential | &
       &In-plane displacements of supported edges: fixed, free, or fixed along the edge and free across it.', &
     'plate | curvature_radius | real | 2 | length | none | any | &
@@ -40,7 +42,7 @@ module plate_deck
     'plate | imperfection | real | 1 | length | none | any | &
       &Amplitude of the initial, stress-free deflection.', &
     'plate | half_waves | integer | 2 | - | none | >= 1, <= 100 | &
-      &Number of half waves of the initial deflection along x and y; left out: one along each.', &
+      &Number of half waves of the initial deflection along x and y; left out: one along each. | imperfection', &
     'plate | symmetry | choice | 1 | - | ''none'' | none quarter half_x half_y point | &
       &Part that is modelled: all, x >= 0 and y >= 0, x >= 0, y >= 0, or x >= 0 of a plate with point symmetry.']
 
@@ -91,24 +93,15 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: slope
     logical :: halved(2)
-    integer :: i
 
     if (any(plate%edges == edge_elastic) .and. all(plate%edge_stiffness <= 0)) &
       call report(settings, problems, plate_group, 'edges', 'an elastic edge needs edge_stiffness, '// &
                 'edge_rotation_stiffness or both.')
-    if (all(plate%edges /= edge_elastic)) then
-      do i = 1, size(stiffness_keys)
-        call remark_idle(settings, problems, plate_group, trim(stiffness_keys(i)), &
-                         'has no effect without an elastic edge.')
-      end do
-    end if
     if (.not. has_symmetric_imperfection(plate, plate%symmetry)) &
       call report(settings, problems, plate_group, key_half_waves, &
       'this shape is not that of the full plate with symmetry = '''// &
       lower_case(settings%text_of(plate_group, key_symmetry))//'''; give odd half waves along x for ''half_x'', '// &
       'along y for ''half_y'', along both for ''quarter'', an even sum for ''point'', or use ''none''.')
-    if (.not. abs(plate%imperfection) > 0) call remark_idle(settings, problems, plate_group, key_half_waves, &
-                                                            'has no effect without '//key_imperfection//'.')
     slope = 0
     if (settings%is_known(plate_group, key_length)) &
       slope = abs(plate%imperfection)*pi*maxval(plate%half_waves/plate%length)

@@ -29,21 +29,23 @@ module support_deck
     'support | shape | choice | 1 | - | ''rectangle'' | rectangle circle | &
       &Shape of the frame''s window, which is centred on the plate.', &
     'support | window | real | 2 | length | none | > 0 | &
-      &Lengths along x and y of a rectangular window; its edges become lines of the mesh.', &
+      &Lengths along x and y of a rectangular window; its edges become lines of the mesh. | shape = rectangle', &
     'support | radius | real | 1 | length | none | > 0 | &
-      &Radius of a circular window.', &
+      &Radius of a circular window. | shape = circle', &
     'support | unilateral | logical | 1 | - | .false. | .true. .false. | &
-      &Whether the plate may lift off the frame, which then supports it by pressure only.', &
+      &Whether the plate may lift off the frame, which then supports it by pressure only. | window or radius', &
     'support | bearing | choice | 1 | - | = face if unilateral, else edge | edge face | &
-      &Where a frame supports the plate: at the edge of its window, as a simple support, or over its face.', &
+      &Where a frame supports the plate: at the edge of its window, as a simple support, or over its face. | &
+      &window or radius', &
     'support | sides | choice | 1 | - | = as bearing | edge face | &
-      &Bearing of the sides parallel to x of a rectangular window, if it differs from that of the ends.', &
+      &Bearing of the sides parallel to x of a rectangular window, if it differs from that of the ends. | &
+      &shape = rectangle, window', &
     'support | clamps | real | 1 or more | length | none | any | &
       &Points from the plate''s centre, x and y in turn, at which clamps hold u, v and w, or with in_plane = free w.', &
     'support | clamp_stiffness | real | 1 | force/length | none | > 0 | &
-      &Stiffness of each clamp along u, v and w; left out: clamps are rigid.', &
+      &Stiffness of each clamp along u, v and w; left out: clamps are rigid. | clamps', &
     'support | clamp_force | real | 1 | force | none | > 0 | &
-      &Force of each clamp on the plate; a larger lifting force opens the clamp. Left out: no limit.']
+      &Force of each clamp on the plate; a larger lifting force opens the clamp. Left out: no limit. | clamps']
 
 contains
 
@@ -152,14 +154,6 @@ contains
       call report(settings, problems, group, 'bearing', &
                   'the plate can lift off an edge only along a line of the mesh, which '// &
                   'a circle is not; allowed with a circle and unilateral: ''face''.', place)
-    if (circle) call remark_idle(settings, problems, group, key_window//' sides', 'has no effect on a circle.', place)
-    if (.not. circle) call remark_idle(settings, problems, group, key_window_radius, 'has no effect on a rectangle.', &
-                                       place)
-    if (support%shape == window_none) &
-      call remark_idle(settings, problems, group, 'unilateral bearing sides', 'has no effect without a window.', place)
-    if (.not. allocated(support%clamps)) &
-      call remark_idle(settings, problems, group, 'clamp_stiffness clamp_force', 'has no effect without clamps.', &
-                       place)
     if (support%clamp_stiffness > 0 .and. support%clamp_force > 0) &
       call report(settings, problems, group, 'clamp_force', 'says that clamps press, and clamp_stiffness that they '// &
                 'are springs; give one of them.', place)

@@ -41,7 +41,7 @@ module line_deck
     'line | history | choice | 1 | - | ''ramp'' | ramp fixed | &
       &ramp: in proportion to the load factor, in time to time/end; fixed: full value from the start.', &
     'line | rise | real | 1 | time | 0 | >= 0 | &
-      &Smooth start: time in which the velocity of a ramp rises, or a fixed value is reached; 0: sudden.']
+      &Smooth start: time in which the velocity of a ramp rises, or a fixed value is reached; 0: sudden. | not &static']
 
 contains
 

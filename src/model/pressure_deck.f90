@@ -21,7 +21,7 @@ module pressure_deck
     'pressure | value | real | 1 | pressure | required | any | &
       &Force per area, positive along z, as the impact.', &
     'pressure | history | choice | 1 | - | ''step'' | step ramp | &
-      &step: constant from the start; ramp: in proportion to time up to the end.', &
+      &step: constant from the start; ramp: in proportion to time up to the end. | not &static', &
     'pressure | distribution | choice | 1 | - | ''uniform'' | uniform sine | &
       &Uniform, or one half-sine along each side.']
 

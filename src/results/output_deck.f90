@@ -33,7 +33,8 @@ module output_deck
     'output | checkpoint_at_end | logical | 1 | - | .true. | .true. .false. | &
       &Whether a checkpoint is written at the end, from which &initial_state of another deck can start.', &
     'output | force_filter | real | 1 | 1/time | none | > 0 | &
-      &Corner frequency of the low-pass filter of force_filtered, a Butterworth filter of 4th order.', &
+      &Corner frequency of the low-pass filter of force_filtered, a Butterworth filter of 4th order. | &
+      &&impactor, not &static', &
     'output | fields | choice | 1 or more | - | = all but stresses and onset | displacement rotation velocity gap &
       &contact_pressure delamination energy_release ply_damage stress face_stress onset | Fields, separated by commas.']
 

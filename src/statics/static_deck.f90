@@ -17,7 +17,8 @@ module static_deck
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
       &Number of equal load steps.', &
     'static | dissipation | real | 1 | energy | none | > 0 | &
-      &Energy dissipated by cohesive interfaces at the end of the run; it controls the steps as damage grows.']
+      &Energy dissipated by cohesive interfaces at the end of the run; it controls the steps as damage grows. | &
+      &&delamination law = cohesive']
 
 contains
 

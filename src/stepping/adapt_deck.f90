@@ -20,19 +20,21 @@ module adapt_deck
     'adapt | on | logical | 1 | - | .true. | .true. .false. | &
       &Whether the time step adapts; without the group: .false.', &
     'adapt | rule | choice | 1 | - | = ''local_error'', with stress_change ''stress_rate'' | stress_rate local_error | &
-      &Step control by the stress rate at the struck point, or by the error of each step.', &
+      &Step control by the stress rate at the struck point, or by the error of each step. | on = .true.', &
     'adapt | tolerance | real | 1 | - | 0.001 | > 0, <= 1 | &
-      &Permitted error of a step, as a fraction of the largest force and deflection (local_error).', &
+      &Permitted error of a step, as a fraction of the largest force and deflection (local_error). | on = .true.', &
     'adapt | refactor | choice | 1 | - | ''iterations'' | deflection iterations | &
       &When the stiffness is factorized again: as the deflection grows, or as iterations increase.', &
     'adapt | stiffness_update | real | 1 | - | 0.003 | > 0, <= 10 | &
       &Change of the deflection over the thickness, after which the stiffness is factorized again (deflection).', &
     'adapt | stress_change | real | 1 | - | 0.05 | > 0, <= 1 | &
-      &Change of the struck point''s stress intended in a step, as a fraction of its largest so far (stress_rate).', &
+      &Change of the struck point''s stress intended in a step, as a fraction of its largest so far (stress_rate). | &
+      &on = .true.', &
     'adapt | iterations | integer | 1 | - | 16 | >= 1, <= 1000 | &
       &Additional iterations with an old factorization after which a new one is computed.', &
     'adapt | growth_step | real | 1 | - | 0.25 | > 0, <= 1 | &
-      &Part of a step to which it is shortened after a front has grown, with growth = ''one_per_step''; 1: not at all.']
+      &Part of a step to which it is shortened after a front has grown; 1: not at all. | &
+      &&delamination growth = one_per_step']
 
 contains
 

@@ -50,6 +50,8 @@ OTHERS = (
 )
 # The counted noun, as in counted(to_text(n), 'step'), is no key.
 NOUN = re.compile(r"(\bcounted\([^']*), '[a-z ]+'\)")
+# Kinds of values; rows of the library of materials have a unit in that place.
+KIND = re.compile(r"(?:real|integer|logical|text|name|choice|choice or real)$")
 # Groups that `implam explain` lists only on request.
 HIDDEN = ("controls",)
 
@@ -97,7 +99,9 @@ def breaches(sources, groups, keys):
     rows, owners = {}, {}
     for path, line, text in quoted:
         cells = [cell.strip() for cell in text.split("|")]
-        named = {3: cells[:1], 8: cells[:2]}.get(len(cells))
+        named = {3: cells[:1], 8: cells[:2], 9: cells[:2]}.get(len(cells))
+        if len(cells) == 9 and not KIND.match(cells[2]):
+            continue
         # A row begins with a name; texts that begin with a bar are parts of other tables.
         if named and named[0]:
             rows.setdefault(tuple(named), []).append(f"{path}:{line}")

@@ -114,7 +114,8 @@ def statements(lines):
         if not code:
             documented = documented if current else False
             continue
-        text = code.strip().lstrip("&").lower()
+        # Of a line within a string only the sign of the next line is left.
+        text = code.strip() if code.strip() == "&" else code.strip().lstrip("&").lower()
         if current:
             current.text += " " + text.strip()
         else:

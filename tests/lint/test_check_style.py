@@ -20,7 +20,8 @@ module good
   !> Kinds of things, in a text that goes on & over
   character(len=*), parameter :: rows(*) = [character(len=20) :: &
     'one; save | &
-      &goto 1 ! stop', &
+      &goto 1 ! stop | &
+      &end', &
     'two']
 
   !> Thing
