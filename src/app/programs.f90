@@ -10,6 +10,7 @@ module programs
   use deck_problems, only: problems_t
   use scale_tables, only: scale_lines, strength_lines, volume_lines, toughness_lines
   use zone_tables, only: zone_lines
+  use deck_sizes, only: size_of_deck
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use deck_explain, only: explain, explain_table
@@ -27,8 +28,7 @@ module programs
   use material_explain, only: explain_materials, is_material_topic, material_topic_sentence
   use result_explain, only: explain_column, explain_results, is_result_topic, result_topics_sentence
   use run_costs, only: cost_lines
-  use model_sizes, only: model_size_t, size_of_model
-  use stepping_parameters, only: is_explicit
+  use model_sizes, only: model_size_t
   use queue_scripts, only: queue_job_t, write_queue_script
   use shell_pages, only: completion, manual_page
   use starter_decks, only: starter_name, write_starter
@@ -244,7 +244,7 @@ contains
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
     call print_lines(communicator, [scale_lines(deck), zone_lines(deck), strength_lines(deck), volume_lines(deck), &
                                     toughness_lines(deck)])
-    model_size = size_of_model(deck%setup_t, is_explicit(deck%stepping))
+    model_size = size_of_deck(deck)
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check
 end module programs

@@ -4,11 +4,11 @@ module queue_scripts
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck
+  use deck_sizes, only: size_of_deck
   use errors, only: error_t, fail, exit_usage, exit_files
   use new_files, only: write_new_file
   use kinds, only: wp
-  use model_sizes, only: model_size_t, size_of_model
-  use stepping_parameters, only: is_explicit
+  use model_sizes, only: model_size_t
   use text, only: line_t, append, counted, to_text
   implicit none
   private
@@ -101,7 +101,7 @@ contains
 
     call read_valid_deck(job%target, deck, error)
     if (allocated(error)) return
-    found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
+    found = size_of_deck(deck)
     job%name = deck%name
     if (allocated(job%output)) deck%output%directory = job%output
     job%checkpoint = deck%output%directory//'/'//deck%name//'_restart.h5'
@@ -129,7 +129,7 @@ contains
       job%tasks = job%tasks + 1
       call read_valid_deck(trim(path), deck, error)
       if (allocated(error)) exit
-      found = size_of_model(deck%setup_t, is_explicit(deck%stepping))
+      found = size_of_deck(deck)
       ! Ranks are those of `--program` of the sweep, by default one.
       if (job%ranks == 0) job%ranks = 1
       job%megabytes = max(job%megabytes, ceiling(spare_memory*found%megabytes_a_rank(job%ranks)))

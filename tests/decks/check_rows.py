@@ -19,7 +19,7 @@ OTHERS = (
     ("app/material_explain.f90", "materials", "the list of materials that `implam explain` is asked for"),
     ("app/result_explain.f90", "history", "tables of results that `implam explain` is asked for"),
     ("app/result_rows.f90", "contact_area stress", "columns of the history"),
-    ("app/usual_units.f90", "length time force pressure energy", "kinds of units"),
+    ("scales/usual_units.f90", "length time force pressure energy", "kinds of units"),
     ("app/interface_summary.f90", "at energy force", "names in NAME_summary.json"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
