@@ -24,8 +24,6 @@ module mesh_transfers
     type(layered_mesh_t), private :: old, new
     !> Origin of the new mesh in the coordinates of the old one
     real(wp) :: origin(2) = 0
-    !> Plies of the laminate
-    integer, private :: plies = 0
     !> Overlaps of nodes and cells of the new mesh with those of the old one along x and y
     type(line_overlap_t), allocatable, private :: nodes_x(:), nodes_y(:), cells_x(:), cells_y(:)
   contains
@@ -45,7 +43,6 @@ contains
     self%loading = .true.
     self%old = old
     self%new = new
-    self%plies = maxval(new%element_plies)
     allocate (self%point_origin(new%points()), source=1)
     allocate (self%element_origin(new%elements()), source=1)
     allocate (self%is_split(new%elements()), source=.true.)
@@ -225,9 +222,9 @@ contains
 
     cell = self%new%place_of(self%new%element_cell(element))
     rows = size(values)
-    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%plies
+    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%new%plies
     associate (x => self%cells_x(cell(1)), y => self%cells_y(cell(2)), old => self%old, &
-               range => self%new%element_plies(:, element))
+               range => self%new%plies_of(element))
       allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))
       n = 0
       do j = 1, size(y%length)

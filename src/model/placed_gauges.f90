@@ -89,7 +89,7 @@ contains
     direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
     columns = cells_at(model%mesh%x_edges, at(1))
     rows = cells_at(model%mesh%y_edges, at(2))
-    ply = merge(size(model%plies), 1, gauge%face == face_back)
+    ply = merge(model%mesh%plies, 1, gauge%face == face_back)
     do j = 1, size(rows)
       do i = 1, size(columns)
         element = model%mesh%element_at(columns(i) + (rows(j) - 1)*model%mesh%cells(1), ply)
@@ -120,7 +120,9 @@ contains
     call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
     shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
     mean = matmul(shape, all(lane_of(element), corners, :6))
-    z = merge(model%plies(size(model%plies))%z_bottom, model%plies(1)%z_top, gauge%face == face_back)
+    associate (plies => model%stacks(model%stack(element))%plies)
+      z = merge(plies(size(plies))%z_bottom, plies(1)%z_top, gauge%face == face_back)
+    end associate
     strain = mean(1:3) + z*mean(4:6)
   end function surface_strain
 
