@@ -87,7 +87,10 @@ contains
 
     self%stacks = stacks
     self%strengths = interlaminar_strengths(model%laminates(1)%plies, model%setup%materials, model%setup%delaminations)
-    self%whole = [(unit_stresses_of(model%laminates(i)%plies), i=1, size(model%laminates))]
+    allocate (self%whole(size(model%laminates)))
+    do i = 1, size(self%whole)
+      self%whole(i) = unit_stresses_of(model%laminates(i)%plies)
+    end do
   end function new_onset
 
   !> Indices of the interfaces below a range of plies of an element's stack.

@@ -310,9 +310,18 @@ contains
     integer, intent(in) :: zone
 
     associate (range => self%zones(zone))
-      area = (self%x_edges(range%columns(2) + 1) - self%x_edges(range%columns(1))) &
-             *(self%y_edges(range%rows(2) + 1) - self%y_edges(range%rows(1)))
+      area = length(self%along(1)%span(range%columns))*length(self%along(2)%span(range%rows))
     end associate
+
+  contains
+
+    !> Length between two ends.
+    pure real(wp) function length(ends)
+      !> Their coordinates
+      real(wp), intent(in) :: ends(2)
+
+      length = ends(2) - ends(1)
+    end function length
   end function zone_area
 
   !> Length of the mean cell of a zone: the root of its mean area.

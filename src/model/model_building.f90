@@ -13,10 +13,10 @@ module model_building
   use plies, only: ply_t
   use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
                              initial_deflection, is_flat, plate_t, symmetry_quarter
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
-  use delaminated_regions, only: cells_within
   use surface_contact, only: create_contact_law
   use cohesive_laws, only: create_cohesive_law
   use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
@@ -279,20 +279,21 @@ contains
     type(setup_t), intent(in) :: setup
     !> One zone an interface
     type(zone_t), allocatable :: zones(:)
+    type(cell_line_t) :: columns, rows
     integer :: i
 
     if (.not. allocated(setup%delaminations)) then
       allocate (zones(0))
       return
     end if
+    columns = cells_from_struck(setup%plate, setup%mesh, 1)
+    rows = cells_from_struck(setup%plate, setup%mesh, 2)
     allocate (zones(size(setup%delaminations)))
     do i = 1, size(zones)
       associate (interface => setup%delaminations(i))
         zones(i)%below_ply = interface%below_ply
-        zones(i)%columns = cells_within(cell_edges(setup%plate, setup%mesh, 1) - setup%mesh%struck(1), &
-                                        interface%zone(1))
-        zones(i)%rows = cells_within(cell_edges(setup%plate, setup%mesh, 2) - setup%mesh%struck(2), &
-                                        interface%zone(2))
+        zones(i)%columns = columns%within(interface%zone(1))
+        zones(i)%rows = rows%within(interface%zone(2))
       end associate
     end do
   end function zones_of
