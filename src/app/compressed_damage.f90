@@ -50,7 +50,7 @@ contains
     !> Axis of the load
     integer, intent(in) :: along
     type(compressed_damage_t) :: damage
-    type(collected_t) :: interfaces(size(model%mesh%zones)), plies(size(model%plies))
+    type(collected_t) :: interfaces(size(model%mesh%zones)), plies(model%mesh%plies)
     integer :: i
 
     do i = 1, size(interfaces)
@@ -156,9 +156,7 @@ contains
     integer, intent(in) :: place(2)
     real(wp) :: middle(2)
 
-    associate (x => model%mesh%x_edges, y => model%mesh%y_edges)
-      middle = [x(place(1)) + x(place(1) + 1), y(place(2)) + y(place(2) + 1)]/2
-    end associate
+    middle = [sum(model%mesh%along(1)%ends(place(1))), sum(model%mesh%along(2)%ends(place(2)))]/2
     call collected%add(model%mesh%cell_area(place), abs(middle(along)), place(3 - along))
   end subroutine add_cell
 
@@ -215,17 +213,8 @@ contains
     real(wp) :: widths(size(failed)), middles(size(failed))
     logical :: either(size(failed))
 
-    if (along == 1) then
-      associate (edges => model%mesh%y_edges)
-        widths = edges(2:) - edges(:size(edges) - 1)
-        middles = (edges(2:) + edges(:size(edges) - 1))/2
-      end associate
-    else
-      associate (edges => model%mesh%x_edges)
-        widths = edges(2:) - edges(:size(edges) - 1)
-        middles = (edges(2:) + edges(:size(edges) - 1))/2
-      end associate
-    end if
+    widths = model%mesh%along(3 - along)%sides()
+    middles = model%mesh%along(3 - along)%middles()
     either = failed
     ! With point symmetry failure in a row implies failure in its image.
     if (model%setup%plate%symmetry == symmetry_point .and. along == 1) either = failed .or. failed(size(failed):1:-1)

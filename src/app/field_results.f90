@@ -49,12 +49,12 @@ contains
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: coordinates(3, model%distribution%owned)
-    integer :: values(3, model%elements%elements)
+    integer :: values(3, model%elements%elements), i
 
     associate (mesh => model%mesh, partition => model%distribution)
       coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(partition%points(:partition%owned)))
       coordinates(3, :) = heights(model)
-      values(:2, :) = mesh%element_plies(:, partition%elements)
+      values(:2, :) = reshape([(mesh%plies_of(partition%elements(i)), i=1, size(values, 2))], [2, size(values, 2)])
       values(3, :) = starters_above(model)
       call fields%write_mesh(global_numbers_t(partition%points(:partition%owned), mesh%points()), &
                              global_numbers_t(partition%elements, mesh%elements()), coordinates, &
@@ -94,7 +94,7 @@ contains
         z(i) = -model%thickness/2
         if (model%zone(i) > 0) z(i) = model%map%height(i)
         if (point < last) then
-          z(i) = (z(i) + model%plies(mesh%zones(mesh%point_zone(point + 1))%below_ply)%z_bottom)/2
+          z(i) = (z(i) + model%map%height(model%distribution%local(point + 1)))/2
         else
           z(i) = (z(i) + model%thickness/2)/2
         end if

@@ -3,7 +3,8 @@
 module initial_states
   use archives, only: archive_t
   use checkpoints, only: checkpoint_archive_t, checkpoint_ending
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
   use deck_initial_states, only: inheritance_objection, is_mapped
@@ -16,10 +17,8 @@ module initial_states
   use initial_state_deck, only: initial_state_group
   use initial_state_parameters, only: motion_rest
   use adaptive_zones, only: visit_zones
-  use delaminated_regions, only: extent_of_cells
   use delamination_deck, only: key_zone
   use kinds, only: wp
-  use layer_extents, only: widened_extent
   use layer_transfers, only: layer_transfer_t
   use mapped_figures, only: after_mapping, before_cutting, before_mapping, mapped_figures_t
   use mapped_interfaces, only: put_fractions, set_damage, set_slips
@@ -173,17 +172,16 @@ contains
     integer, intent(in) :: zone
     !> Full extents along x and y
     real(wp) :: extents(2)
+    type(cell_line_t) :: line
     real(wp) :: distance(2)
     integer :: direction
 
     distance = moved_centre(deck, old)
     do direction = 1, 2
-      associate (before => cell_edges(old%plate, old%mesh, direction) - old%mesh%struck(direction))
-        extents(direction) = extent_of_cells(before, old%delaminations(zone)%zone(direction)) + &
-                             2*distance(direction)
-      end associate
-      extents(direction) = widened_extent(cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction), &
-                                          extents(direction), 1)
+      line = cells_from_struck(old%plate, old%mesh, direction)
+      extents(direction) = line%extent_of(old%delaminations(zone)%zone(direction)) + 2*distance(direction)
+      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      extents(direction) = line%widened(extents(direction), 1)
     end do
   end function covering_extents
 

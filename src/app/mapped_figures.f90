@@ -85,9 +85,9 @@ contains
     integer :: i, ply
 
     do i = 1, model%elements%elements
-      associate (mesh => model%mesh, element => model%distribution%elements(i), area => state%plies%bands%area(i))
-        do ply = mesh%element_plies(1, element), mesh%element_plies(2, element)
-          damage = state%plies%bands%states%accepted_damage(ply, i)
+      associate (stack => model%stacks(model%stack(i)), area => state%plies%bands%area(i))
+        do ply = 1, size(stack%number)
+          damage = state%plies%bands%states%accepted_damage(stack%number(ply), i)
           call fibres%add(area*damage(1))
           call matrix%add(area*damage(2))
         end do

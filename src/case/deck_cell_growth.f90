@@ -1,7 +1,8 @@
 !> Warns of elements outside of the core that grow too fast: a smaller cell in an unchanged number of elements refines
 !> the core only, and lengthens all others.
 module deck_cell_growth
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
@@ -50,25 +51,26 @@ contains
     real(wp), intent(out) :: longest
     !> Number of elements
     integer, intent(out) :: enough
-    real(wp), allocatable :: edges(:)
-    real(wp) :: half_core
+    type(cell_line_t) :: line
+    real(wp) :: half_core, reach(2)
     logical :: halved(2)
     integer :: side, outside
 
     associate (mesh => deck%mesh)
-      edges = cell_edges(deck%plate, mesh, direction) - mesh%struck(direction)
+      line = cells_from_struck(deck%plate, mesh, direction)
       half_core = max(mesh%core(direction), mesh%patch)/2
       halved = is_halved(deck%plate%symmetry)
       growth = 1
       enough = 0
-      longest = maxval(edges(2:) - edges(:size(edges) - 1))
+      longest = maxval(line%sides())
       do side = merge(2, 1, halved(direction)), 2
-        if (side == 1) edges = -edges(size(edges):1:-1)
-        outside = max(1, count(edges > half_core + mesh%cell/2))
-        growth = max(growth, ((edges(size(edges)) - edges(size(edges) - 1))/mesh%cell)**(1.0_wp/outside))
+        if (side == 1) line = line%turned()
+        outside = max(1, line%cells_beyond(half_core + mesh%cell/2))
+        growth = max(growth, (line%side(line%cells())/mesh%cell)**(1.0_wp/outside))
+        reach = line%span()
         enough = enough + sum(core_elements(mesh%patch/2, mesh%core(direction)/2, mesh%cell)) + &
-                 elements_for((edges(size(edges)) - half_core)/mesh%cell)
-        if (side == 1) edges = -edges(size(edges):1:-1)
+                 elements_for((reach(2) - half_core)/mesh%cell)
+        if (side == 1) line = line%turned()
       end do
       enough = max(enough, mesh%elements(direction))
     end associate

@@ -1,7 +1,8 @@
 !> Checks of softening plies: whether all fracture energies are given, which keys have no effect, and whether elements
 !> are short enough.
 module deck_crack_bands
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use crack_band_limits, only: longest_element
   use crack_bands, only: create_crack_band
   use deck_contents, only: deck_t
@@ -217,40 +218,29 @@ contains
     type(deck_t), intent(in) :: deck
     !> Smallest and largest
     real(wp) :: lengths(2)
-    real(wp), allocatable :: edges(:)
+    type(cell_line_t) :: line
     logical :: joined(2)
     integer :: direction
 
     lengths = [huge(1.0_wp), 0.0_wp]
     joined = is_halved(deck%plate%symmetry) .or. deck%has_impactor
     do direction = 1, 2
-      edges = cell_edges(deck%plate, deck%mesh, direction)
-      lengths = extremes(edges, lengths)
-      if (joined(direction)) lengths(2) = max(lengths(2), longest_pair(edges - deck%mesh%struck(direction)))
+      line = cells_along(deck%plate, deck%mesh, direction)
+      lengths = [min(lengths(1), minval(line%sides())), max(lengths(2), maxval(line%sides()))]
+      line = line%from(deck%mesh%struck(direction))
+      if (joined(direction)) lengths(2) = max(lengths(2), longest_pair(line))
     end do
   end function element_lengths
 
   !> Twice the longest side that ends at the struck point; 0: none does.
-  pure real(wp) function longest_pair(edges) result(length)
-    !> Ascending coordinates from there
-    real(wp), intent(in) :: edges(:)
+  pure real(wp) function longest_pair(line) result(length)
+    !> The cells, with coordinates from there
+    type(cell_line_t), intent(in) :: line
+    integer :: cell
 
-    associate (sides => edges(2:) - edges(:size(edges) - 1))
-      length = 2*maxval([0.0_wp, pack(sides, min(abs(edges(2:)), abs(edges(:size(edges) - 1))) < 1e-6_wp*sides)])
-    end associate
+    length = 0
+    do cell = 1, line%cells()
+      if (minval(abs(line%ends(cell))) < 1e-6_wp*line%side(cell)) length = max(length, 2*line%side(cell))
+    end do
   end function longest_pair
-
-  !> Smallest and largest distance of adjacent edges, and the previous values.
-  pure function extremes(edges, before) result(lengths)
-    !> Ascending coordinates
-    real(wp), intent(in) :: edges(:)
-    !> Smallest and largest so far
-    real(wp), intent(in) :: before(2)
-    !> Smallest and largest
-    real(wp) :: lengths(2)
-
-    associate (sides => edges(2:) - edges(:size(edges) - 1))
-      lengths = [min(before(1), minval(sides)), max(before(2), maxval(sides))]
-    end associate
-  end function extremes
 end module deck_crack_bands

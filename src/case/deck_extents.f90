@@ -1,21 +1,20 @@
 !> Checks of sizes of plate, laminate and interfaces. Zones and starters consist of entire cells, so that their
 !> sizes may differ from those of the deck.
 module deck_extents
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along, cells_from_struck
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_line_conflicts, only: check_line_conflicts
   use deck_mesh_lines, only: check_window_lines
   use deck_patches, only: check_core, check_patch
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, are_clear
-  use delaminated_regions, only: cells_within, extent_of_cells
   use delamination_deck, only: key_smoothing, key_starter, key_zone
   use interface_places, only: delamination_group
   use delamination_parameters, only: delamination_t, law_front, release_vcct, default_smoothing, min_smoothed_cells
   use kinds, only: wp
   use line_deck, only: line_group, line_key_at => key_at
   use line_loads, only: along_x
-  use nodal_lines, only: node_line, place_of_node
   use laminate_deck, only: laminate_group, key_thicknesses
   use mesh_parameters, only: is_mirrored
   use plate_deck, only: plate_group, key_length, key_symmetry
@@ -91,13 +90,15 @@ contains
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
+    type(cell_line_t) :: cells
     real(wp) :: taken
     integer :: place, direction
 
     do place = 1, size(deck%lines)
       direction = merge(2, 1, deck%lines(place)%direction == along_x)
-      associate (edges => cell_edges(deck%plate, deck%mesh, direction), at => deck%lines(place)%at)
-        taken = place_of_node(edges, node_line(edges, at))
+      cells = cells_along(deck%plate, deck%mesh, direction)
+      associate (at => deck%lines(place)%at)
+        taken = cells%place_of_node(cells%nearest_node(at))
         if (abs(taken - at) > moved_line*deck%plate%length(direction)) &
           call remark(deck%settings, problems, line_group, line_key_at, 'lines lie on nodes; on this mesh the line '// &
                       'is at '//to_text(rounded(taken))//'.', place)
@@ -169,7 +170,7 @@ contains
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
-    real(wp), allocatable :: x_edges(:), y_edges(:)
+    type(cell_line_t) :: columns, rows
     real(wp) :: zone(2), starter(2)
     integer :: i
 
@@ -178,12 +179,12 @@ contains
     call check_line_nodes(deck, problems)
     call check_line_conflicts(deck, problems)
     if (size(deck%delaminations) == 0) return
-    x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
-    y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)
+    columns = cells_from_struck(deck%plate, deck%mesh, 1)
+    rows = cells_from_struck(deck%plate, deck%mesh, 2)
     do i = 1, size(deck%delaminations)
       if (repeats(deck, i)) cycle
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
-        call extents_of(x_edges, y_edges, d, zone, starter)
+        call extents_of(columns, rows, d, zone, starter)
         if (differs(zone, d%zone) .and. .not. d%is_adaptive) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'zones consist of entire cells; '// &
                       'on this mesh the zone is '//shown(zone)//'.', place)
@@ -191,7 +192,7 @@ contains
             differs(starter, [d%starter, d%starter])) &
           call remark(deck%settings, problems, delamination_group, key_starter, &
                       'starters consist of entire cells; on this mesh the starter is '//shown(starter)//'.', place)
-        call check_smoothing(deck, d, mean_cell(x_edges, y_edges, d%zone), minval(starter)/2, problems)
+        call check_smoothing(deck, d, mean_cell(columns, rows, d%zone), minval(starter)/2, problems)
       end associate
     end do
   end subroutine check_extents
@@ -228,17 +229,19 @@ contains
   end subroutine check_smoothing
 
   !> Length of the mean cell of a zone: the root of its mean area.
-  pure real(wp) function mean_cell(x_edges, y_edges, zone) result(length)
-    !> Edges of the cells along x and y, the struck point at 0
-    real(wp), intent(in) :: x_edges(:), y_edges(:)
+  pure real(wp) function mean_cell(columns, rows, zone) result(length)
+    !> Cells along x and y, from the struck point
+    type(cell_line_t), intent(in) :: columns, rows
     !> Extents of the zone
     real(wp), intent(in) :: zone(2)
-    integer :: columns(2), rows(2)
+    real(wp) :: x(2), y(2)
+    integer :: across(2), along(2)
 
-    columns = cells_within(x_edges, zone(1))
-    rows = cells_within(y_edges, zone(2))
-    length = sqrt((x_edges(columns(2) + 1) - x_edges(columns(1)))*(y_edges(rows(2) + 1) - y_edges(rows(1))) &
-                  /product([columns(2) - columns(1), rows(2) - rows(1)] + 1))
+    across = columns%within(zone(1))
+    along = rows%within(zone(2))
+    x = columns%span(across)
+    y = rows%span(along)
+    length = sqrt((x(2) - x(1))*(y(2) - y(1))/product([across(2) - across(1), along(2) - along(1)] + 1))
   end function mean_cell
 
   !> Zone and starter of each interface on the mesh, for the log.
@@ -246,16 +249,16 @@ contains
     type(deck_t), intent(in) :: deck
     !> One line per interface
     type(line_t), allocatable :: lines(:)
-    real(wp), allocatable :: x_edges(:), y_edges(:)
+    type(cell_line_t) :: columns, rows
     real(wp) :: zone(2), starter(2)
     character(len=:), allocatable :: text
     integer :: place
 
     allocate (lines(size(deck%delaminations)))
-    x_edges = cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1)
-    y_edges = cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2)
+    columns = cells_from_struck(deck%plate, deck%mesh, 1)
+    rows = cells_from_struck(deck%plate, deck%mesh, 2)
     do place = 1, size(lines)
-      call extents_of(x_edges, y_edges, deck%delaminations(place), zone, starter)
+      call extents_of(columns, rows, deck%delaminations(place), zone, starter)
       text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
              shown(zone)
       if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
@@ -265,19 +268,19 @@ contains
   end function extent_lines
 
   !> Sizes of zone and starter on the mesh.
-  pure subroutine extents_of(x_edges, y_edges, delamination, zone, starter)
-    !> Edges of the cells along x and y, the struck point at 0
-    real(wp), intent(in) :: x_edges(:), y_edges(:)
+  pure subroutine extents_of(columns, rows, delamination, zone, starter)
+    !> Cells along x and y, from the struck point
+    type(cell_line_t), intent(in) :: columns, rows
     !> The interface as the deck gives it
     type(delamination_t), intent(in) :: delamination
     !> Extents along x and y on the full plate
     real(wp), intent(out) :: zone(2), starter(2)
+    type(cell_line_t) :: x, y
 
-    zone = [extent_of_cells(x_edges, delamination%zone(1)), extent_of_cells(y_edges, delamination%zone(2))]
-    associate (at => delamination%starter_at)
-      starter = [extent_of_cells(x_edges - at(1), delamination%starter), &
-                 extent_of_cells(y_edges - at(2), delamination%starter)]
-    end associate
+    zone = [columns%extent_of(delamination%zone(1)), rows%extent_of(delamination%zone(2))]
+    x = columns%from(delamination%starter_at(1))
+    y = rows%from(delamination%starter_at(2))
+    starter = [x%extent_of(delamination%starter), y%extent_of(delamination%starter)]
     starter = min(starter, zone)
   end subroutine extents_of
 

@@ -1,6 +1,7 @@
 !> Tensile strength of fibres by their stressed volume: bounds of it in the plate of the deck, and checks of its keys.
 module deck_fibre_strengths
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, remark, report
@@ -58,7 +59,8 @@ contains
     !> Smallest and largest; 0: no ply is of this material
     real(wp) :: volumes(2)
     type(ply_t), allocatable :: plies(:)
-    real(wp), allocatable :: x(:), y(:), thicknesses(:)
+    type(cell_line_t) :: columns, rows
+    real(wp), allocatable :: thicknesses(:)
     integer :: ply
 
     plies = stacked_plies(deck%laminate, deck%materials)
@@ -66,10 +68,9 @@ contains
     thicknesses = pack(thicknesses, plies%material == place)
     volumes = 0
     if (size(thicknesses) == 0) return
-    x = cell_edges(deck%plate, deck%mesh, 1)
-    y = cell_edges(deck%plate, deck%mesh, 2)
-    volumes(1) = minval(thicknesses)*minval(x(2:) - x(:size(x) - 1))*minval(y(2:) - y(:size(y) - 1)) &
-                 *parts_of(deck%plate%symmetry)
+    columns = cells_along(deck%plate, deck%mesh, 1)
+    rows = cells_along(deck%plate, deck%mesh, 2)
+    volumes(1) = minval(thicknesses)*minval(columns%sides())*minval(rows%sides())*parts_of(deck%plate%symmetry)
     volumes(2) = maxval(thicknesses)*product(deck%plate%length)
   end function block_volumes
 

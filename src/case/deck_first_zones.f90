@@ -1,6 +1,7 @@
 !> Initial zones of adaptive layers: the loaded patch or the starter, and some cells around it.
 module deck_first_zones
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, report
@@ -10,7 +11,7 @@ module deck_first_zones
   use kinds, only: wp
   use laminate_parameters, only: shear_energy
   use line_deck, only: line_group, line_key_at => key_at
-  use layer_extents, only: cells_at_once, largest_extents, thicknesses_ahead, widened_extent
+  use layer_extents, only: cells_at_once, largest_extents, thicknesses_ahead
   use text, only: append
   implicit none
   private
@@ -67,6 +68,7 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Errors so far; if there are any, nothing is done
     type(problems_t), intent(in) :: problems
+    type(cell_line_t) :: line
     real(wp) :: least, thickness
     integer :: i, direction
 
@@ -74,19 +76,17 @@ contains
     if (deck%laminate%shear_correction == shear_energy) call set_permanent_zones(deck)
     thickness = thicknesses_ahead*sum(deck%laminate%thickness)
     do direction = 1, 2
-      associate (edges => cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction))
-        least = deck%mesh%patch
-        do i = 1, size(deck%delaminations)
-          associate (d => deck%delaminations(i))
-            if (d%is_adaptive) least = max(least, d%starter + 2*abs(d%starter_at(direction)))
-          end associate
-        end do
-        do i = 1, size(deck%delaminations)
-          if (deck%delaminations(i)%is_adaptive) &
-            deck%delaminations(i)%zone(direction) = widened_extent(edges, least, cells_at_once, &
-                                                                           thickness)
-        end do
-      end associate
+      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      least = deck%mesh%patch
+      do i = 1, size(deck%delaminations)
+        associate (d => deck%delaminations(i))
+          if (d%is_adaptive) least = max(least, d%starter + 2*abs(d%starter_at(direction)))
+        end associate
+      end do
+      do i = 1, size(deck%delaminations)
+        if (deck%delaminations(i)%is_adaptive) &
+          deck%delaminations(i)%zone(direction) = line%widened(least, cells_at_once, thickness)
+      end do
     end do
   end subroutine set_first_zones
 

@@ -1,6 +1,7 @@
 !> Checks of a deck that starts from the end of another run: whether it can, and whether the plate is the same.
 module deck_initial_states
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use deck_comparisons, only: both, differ, integer_list, short_list
   use deck_contents, only: deck_t
   use deck_plate_cuts, only: cut_objection, has_same_length, moved_centre
@@ -313,16 +314,15 @@ contains
     type(deck_t), intent(in) :: deck, old
     !> 1: along x, 2: along y
     integer, intent(in) :: direction
-    real(wp), allocatable :: here(:), there(:)
+    type(cell_line_t) :: here, there
     logical :: halved(2), halved_before(2)
 
-    here = cell_edges(deck%plate, deck%mesh, direction)
-    there = cell_edges(old%plate, old%mesh, direction)
+    here = cells_along(deck%plate, deck%mesh, direction)
+    there = cells_along(old%plate, old%mesh, direction)
     halved = is_halved(deck%plate%symmetry)
     halved_before = is_halved(old%plate%symmetry)
-    if (halved_before(direction) .and. .not. halved(direction)) there = [-there(size(there):2:-1), there]
-    same = size(here) == size(there)
-    if (same) same = all(abs(here - there) <= rounding*deck%plate%length(direction))
+    if (halved_before(direction) .and. .not. halved(direction)) there = there%with_image()
+    same = here%is_equal(there, rounding*deck%plate%length(direction))
   end function has_same_lines
 
   !> Name of a part of the plate.

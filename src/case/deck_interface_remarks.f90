@@ -1,11 +1,11 @@
 !> Remarks on interfaces that may be unintended: plies of one angle on both sides, and a zone beyond the fine core of
 !> the mesh.
 module deck_interface_remarks
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
-  use delaminated_regions, only: cells_within
   use delamination_deck, only: key_zone
   use interface_places, only: delamination_group, key_below_ply
   use kinds, only: wp
@@ -95,14 +95,13 @@ contains
     type(deck_t), intent(in) :: deck
     !> Full extents of the zone
     real(wp), intent(in) :: zone(2)
-    real(wp), allocatable :: edges(:)
-    integer :: direction, range(2)
+    type(cell_line_t) :: line
+    integer :: direction
 
     longest = 0
     do direction = 1, 2
-      edges = cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction)
-      range = cells_within(edges, zone(direction))
-      longest = max(longest, maxval(edges(range(1) + 1:range(2) + 1) - edges(range(1):range(2))))
+      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      longest = max(longest, line%longest_within(zone(direction)))
     end do
   end function longest_cell
 end module deck_interface_remarks

@@ -1,7 +1,8 @@
 !> Checks that each motion of a node is prescribed by one line only, and that lines act on motions that the edges do not
 !> constrain.
 module deck_line_conflicts
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: report
@@ -9,7 +10,6 @@ module deck_line_conflicts
   use line_deck, only: line_group, key_at, key_layer
   use line_loads, only: line_load_t, along_x, all_layers
   use mesh_parameters, only: is_halved
-  use nodal_lines, only: node_line
   use supports, only: fixed_by_edge
   use text, only: to_text
   implicit none
@@ -51,16 +51,18 @@ contains
   pure logical function acts_on_held_edge(deck, line) result(acts)
     type(deck_t), intent(in) :: deck
     type(line_load_t), intent(in) :: line
+    type(cell_line_t) :: cells
     logical :: held(5), halved(2)
     integer :: normal, node
 
     normal = merge(2, 1, line%direction == along_x)
+    cells = cells_along(deck%plate, deck%mesh, normal)
     node = node_of(deck, line)
     halved = is_halved(deck%plate%symmetry)
     held = .false.
     if (node == 0 .and. .not. halved(normal)) then
       held = fixed_by_edge(deck%plate%edges(2*normal - 1), normal, deck%plate)
-    else if (node == 2*(size(cell_edges(deck%plate, deck%mesh, normal)) - 1)) then
+    else if (node == 2*cells%cells()) then
       held = fixed_by_edge(deck%plate%edges(2*normal), normal, deck%plate)
     end if
     acts = held(line%component) .and. abs(line%value) > 0
@@ -70,8 +72,10 @@ contains
   pure integer function node_of(deck, line) result(node)
     type(deck_t), intent(in) :: deck
     type(line_load_t), intent(in) :: line
+    type(cell_line_t) :: cells
 
-    node = node_line(cell_edges(deck%plate, deck%mesh, merge(2, 1, line%direction == along_x)), line%at)
+    cells = cells_along(deck%plate, deck%mesh, merge(2, 1, line%direction == along_x))
+    node = cells%nearest_node(line%at)
   end function node_of
 
   !> True: two lines prescribe the same component of a layer.

@@ -1,7 +1,8 @@
 !> Lines required in the mesh, by rigs or by decks of later runs: those that nearly coincide are merged, those that the
 !> mesh cannot have are reported.
 module deck_mesh_lines
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use coincident_lines, only: merged_lines, merging_distance
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -184,14 +185,13 @@ contains
     real(wp), intent(in) :: lines(:)
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
+    type(cell_line_t) :: cells
     integer :: line
 
     misses = .false.
-    associate (edges => cell_edges(deck%plate, deck%mesh, direction))
-      do line = 1, size(lines)
-        misses = misses .or. lines(line) > edges(1) .and. &
-                 minval(abs(edges - lines(line))) > rounding*deck%plate%length(direction)
-      end do
-    end associate
+    cells = cells_along(deck%plate, deck%mesh, direction)
+    do line = 1, size(lines)
+      misses = misses .or. cells%distance_of(lines(line)) > rounding*deck%plate%length(direction)
+    end do
   end function misses
 end module deck_mesh_lines

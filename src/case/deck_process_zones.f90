@@ -1,10 +1,10 @@
 !> Resolution of the process zones of cohesive interfaces: warnings, and the strength beside cracks.
 module deck_process_zones
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, remark_idle
-  use delaminated_regions, only: cells_within
   use interface_places, only: delamination_group
   use delamination_deck, only: key_flaws, key_shear_cracks
   use delamination_parameters, only: delamination_t, growth_by_energy, law_cohesive, toughnesses
@@ -139,13 +139,17 @@ contains
     type(delamination_t), intent(in) :: delamination
     !> Modulus and thickness of the thinner layer, toughness, strengths and cells
     type(process_zone_t) :: zone
+    type(cell_line_t) :: line
     real(wp) :: cells(2), extents(2)
+    integer :: direction
 
     zone = zone_of_any_cells(deck, delamination)
     extents = delamination%zone
     if (delamination%is_adaptive) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
-    cells = [longest_cell(cell_edges(deck%plate, deck%mesh, 1) - deck%mesh%struck(1), extents(1)), &
-             longest_cell(cell_edges(deck%plate, deck%mesh, 2) - deck%mesh%struck(2), extents(2))]
+    do direction = 1, 2
+      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      cells(direction) = line%longest_within(extents(direction))
+    end do
     zone%cell = maxval(cells)
     if (has_strip(delamination)) zone%cell = cells(1)
   end function process_zone
@@ -224,16 +228,4 @@ contains
       largest = max(largest, dot_product(moduli, [c**4, 2*(c*s)**2, 4*c**3*s, s**4, 4*c*s**3, 4*(c*s)**2]))
     end do
   end function largest_modulus
-
-  !> Longest side of the cells within an extent.
-  pure real(wp) function longest_cell(edges, extent) result(longest)
-    !> Edges of the cells along one direction, the struck point at 0
-    real(wp), intent(in) :: edges(:)
-    !> Full extent
-    real(wp), intent(in) :: extent
-    integer :: range(2)
-
-    range = cells_within(edges, extent)
-    longest = maxval(edges(range(1) + 1:range(2) + 1) - edges(range(1):range(2)))
-  end function longest_cell
 end module deck_process_zones

@@ -1,7 +1,8 @@
 !> Scales that the setup must resolve, by preliminary elastic impacts, with warnings on mesh and step.
 module deck_scales
   use case_deck, only: case_group, key_accuracy
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use damped_motions, only: min_periods
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -122,20 +123,13 @@ contains
     type(deck_t), intent(in) :: deck
     !> The distance
     real(wp), intent(in) :: distance
-    real(wp), allocatable :: edges(:)
-    integer :: direction, first, last
+    type(cell_line_t) :: line
+    integer :: direction
 
     edge = 0
     do direction = 1, 2
-      edges = cell_edges(deck%plate, deck%mesh, direction) - deck%mesh%struck(direction)
-      first = count(edges < -distance) + 1
-      last = count(edges <= distance)
-      if (last <= first) then
-        ! No entire element is within the distance: the elements beside the struck point are used.
-        first = max(1, count(edges < 0))
-        last = min(size(edges), count(edges <= 0) + 1)
-      end if
-      edge = max(edge, (edges(last) - edges(first))/(last - first))
+      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      edge = max(edge, line%mean_side(distance))
     end do
   end function edge_near
 end module deck_scales

@@ -4,7 +4,8 @@
 !> With equal sections this element has the highest frequency; with scaled inertia the frequencies of longer ones are
 !> about the same. Before layers are inserted the step of a run is longer; contact stiffness reduces it.
 module element_steps
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
   use errors, only: error_t
@@ -108,9 +109,9 @@ contains
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    real(wp), allocatable :: edges(:)
+    type(cell_line_t) :: line
 
-    edges = [cell_edges(deck%plate, deck%mesh, direction)]
-    edge = minval(edges(2:) - edges(:size(edges) - 1))
+    line = cells_along(deck%plate, deck%mesh, direction)
+    edge = minval(line%sides())
   end function shortest_edge
 end module element_steps

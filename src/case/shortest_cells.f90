@@ -1,6 +1,7 @@
 !> The shortest cells of the mesh, which limit the stable step of central differences, and their cause.
 module shortest_cells
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
@@ -104,19 +105,20 @@ contains
   pure function shortest_row(deck) result(row)
     type(deck_t), intent(in) :: deck
     type(row_t) :: row
-    real(wp), allocatable :: edges(:), lengths(:), distances(:)
+    type(cell_line_t) :: line
+    real(wp), allocatable :: lengths(:), distances(:)
     real(wp) :: shortest
     integer :: direction, cell
 
     shortest = huge(shortest)
     do direction = 1, 2
-      edges = [cell_edges(deck%plate, deck%mesh, direction)]
-      lengths = edges(2:) - edges(:size(edges) - 1)
+      line = cells_along(deck%plate, deck%mesh, direction)
+      lengths = line%sides()
       if (minval(lengths) >= shortest*(1 - rounding)) cycle
       shortest = minval(lengths)
-      distances = abs((edges(2:) + edges(:size(edges) - 1))/2 - deck%mesh%struck(direction))
+      distances = abs(line%middles() - deck%mesh%struck(direction))
       cell = minloc(distances, dim=1, mask=lengths <= shortest*(1 + rounding))
-      row = row_t(direction, edges(cell:cell + 1))
+      row = row_t(direction, line%ends(cell))
     end do
   end function shortest_row
 

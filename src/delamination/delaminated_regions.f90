@@ -1,13 +1,14 @@
 !> Delaminated cells of one interface, and the released nodes.
 module delaminated_regions
   use archives, only: archive_t
+  use cell_lines, only: cell_line_t
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use nine_node_grids, only: nine_node_grid_t, cells_around
   use roundings, only: rounding
   implicit none
   private
-  public :: delaminated_region_t, create_region, cells_within, extent_of_cells
+  public :: delaminated_region_t, create_region
 
   !> Cells of a zone, intact or delaminated, within the grid of the model. Delaminated cells do not heal.
   type, extends(nine_node_grid_t) :: delaminated_region_t
@@ -42,6 +43,7 @@ contains
     !> Centre of the starter, from the struck point; left out: there
     real(wp), intent(in), optional :: at(2)
     type(delaminated_region_t) :: self
+    type(cell_line_t) :: line
     real(wp) :: centre(2)
     integer :: columns(2), rows(2)
 
@@ -49,12 +51,14 @@ contains
     self%columns = mesh%zones(zone)%columns
     self%rows = mesh%zones(zone)%rows
     allocate (self%delaminated(self%columns(1):self%columns(2), self%rows(1):self%rows(2)), source=.false.)
-    if (present(strip)) call delaminate_strip(self, mesh%x_edges - mesh%struck(1), strip)
+    if (present(strip)) call delaminate_strip(self, mesh%along(1)%from(mesh%struck(1)), strip)
     if (.not. starter > 0) return
     centre = mesh%struck
     if (present(at)) centre = centre + at
-    columns = cells_within(mesh%x_edges - centre(1), starter)
-    rows = cells_within(mesh%y_edges - centre(2), starter)
+    line = mesh%along(1)%from(centre(1))
+    columns = line%within(starter)
+    line = mesh%along(2)%from(centre(2))
+    rows = line%within(starter)
     columns = [max(columns(1), self%columns(1)), min(columns(2), self%columns(2))]
     rows = [max(rows(1), self%rows(1)), min(rows(2), self%rows(2))]
     self%delaminated(columns(1):columns(2), rows(1):rows(2)) = .true.
@@ -74,8 +78,8 @@ contains
 
     do row = self%rows(1), self%rows(2)
       do column = self%columns(1), self%columns(2)
-        x = mesh%x_edges(column:column + 1) - centre(1)
-        y = mesh%y_edges(row:row + 1) - centre(2)
+        x = mesh%along(1)%ends(column) - centre(1)
+        y = mesh%along(2)%ends(row) - centre(2)
         if (norm2([sum(x), sum(y)]) < diameter) cycle
         if (.not. touches(x) .or. .not. touches(y)) self%delaminated(column, row) = .false.
       end do
@@ -95,58 +99,20 @@ contains
   end subroutine keep_circle
 
   !> Delaminates the cells of a zone with the centre in a strip across it.
-  pure subroutine delaminate_strip(self, x_edges, strip)
+  pure subroutine delaminate_strip(self, line, strip)
     type(delaminated_region_t), intent(inout) :: self
-    !> Edges of all columns of cells, the struck point at 0
-    real(wp), intent(in) :: x_edges(:)
+    !> All columns of cells, from the struck point
+    type(cell_line_t), intent(in) :: line
     !> First and last x
     real(wp), intent(in) :: strip(2)
+    real(wp) :: middles(line%cells())
     integer :: column
 
+    middles = line%middles()
     do column = self%columns(1), self%columns(2)
-      associate (middle => (x_edges(column) + x_edges(column + 1))/2)
-        if (middle > strip(1) .and. middle < strip(2)) self%delaminated(column, :) = .true.
-      end associate
+      if (middles(column) > strip(1) .and. middles(column) < strip(2)) self%delaminated(column, :) = .true.
     end do
   end subroutine delaminate_strip
-
-  !> First and last cell whose centre is within an extent centred on the struck point; at least those that touch the
-  !> struck point.
-  pure function cells_within(edges, extent) result(range)
-    !> Edges of the cells along one direction, the struck point at 0
-    real(wp), intent(in) :: edges(:)
-    !> Full extent
-    real(wp), intent(in) :: extent
-    !> First and last cell
-    integer :: range(2)
-    logical :: taken(size(edges) - 1)
-    real(wp) :: distance
-    integer :: cells, cell
-
-    cells = size(edges) - 1
-    distance = rounding*(edges(cells + 1) - edges(1))
-    ! A centre exactly on the border counts as outside, by a tolerance that does not depend on units.
-    taken = abs(edges(:cells) + edges(2:)) < extent - distance .or. &
-            (edges(:cells) < distance .and. edges(2:) > -distance)
-    range = [findloc(taken, .true., dim=1), cells]
-    do cell = range(1), cells
-      if (taken(cell)) range(2) = cell
-    end do
-  end function cells_within
-
-  !> Extent of the entire cells within an extent, on the full plate.
-  pure real(wp) function extent_of_cells(edges, extent) result(taken)
-    !> Edges of the cells along one direction, the struck point at 0
-    real(wp), intent(in) :: edges(:)
-    !> Requested full extent
-    real(wp), intent(in) :: extent
-    integer :: range(2)
-
-    range = cells_within(edges, extent)
-    taken = edges(range(2) + 1) - edges(range(1))
-    ! A model that begins at the plate's centre and is struck there contains half of the extent.
-    if (edges(1) > -rounding*edges(size(edges))) taken = 2*taken
-  end function extent_of_cells
 
   !> True for a cell of the zone.
   pure logical function in_zone(self, column, row)

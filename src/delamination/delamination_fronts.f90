@@ -76,27 +76,8 @@ contains
       place = middle_line(inside) + step + (line - 2)*along
       segment%edge(line) = region%node_at(place(1), place(2))
     end do
-    segment%width = cell_length(mesh, inside, 3 - segment%direction)
-    segment%behind_length = cell_length(mesh, inside, segment%direction)
-    segment%ahead_length = cell_length(mesh, segment%outside, segment%direction)
+    segment%width = mesh%along(3 - segment%direction)%side(inside(3 - segment%direction))
+    segment%behind_length = mesh%along(segment%direction)%side(inside(segment%direction))
+    segment%ahead_length = mesh%along(segment%direction)%side(segment%outside(segment%direction))
   end function segment_between
-
-  !> Length of a cell along x (1) or y (2).
-  pure real(wp) function cell_length(mesh, cell, direction) result(length)
-    type(layered_mesh_t), intent(in) :: mesh
-    !> Column and row
-    integer, intent(in) :: cell(2)
-    !> Direction
-    integer, intent(in) :: direction
-    ! The lower bound of the edges need not be 0.
-    integer :: first
-
-    if (direction == 1) then
-      first = lbound(mesh%x_edges, 1) + cell(1) - 1
-      length = mesh%x_edges(first + 1) - mesh%x_edges(first)
-    else
-      first = lbound(mesh%y_edges, 1) + cell(2) - 1
-      length = mesh%y_edges(first + 1) - mesh%y_edges(first)
-    end if
-  end function cell_length
 end module delamination_fronts

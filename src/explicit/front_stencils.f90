@@ -146,11 +146,7 @@ contains
       !> Its number
       integer, intent(in) :: cell
 
-      if (along == 1) then
-        side = mesh%x_edges(cell + 1) - mesh%x_edges(cell)
-      else
-        side = mesh%y_edges(cell + 1) - mesh%y_edges(cell)
-      end if
+      side = mesh%along(along)%side(cell)
     end function side
   end function width_of
 end module front_stencils

@@ -8,7 +8,8 @@
 !> Hughes, M. Cohen, M. Haroun, Nuclear Engineering and Design 46 (1978) 203-222). The deck gives the mean factor of the
 !> laminate's rotary inertia, from which tau follows: waves much longer than elements are slowed according to this mean.
 module inertia_scaling
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_along
+  use cell_lines, only: cell_line_t
   use element_batches, only: batch_of, lane_of
   use kinds, only: wp
   use models, only: model_t
@@ -89,13 +90,12 @@ contains
     integer, intent(in) :: direction
     !> The sides
     real(wp), allocatable :: sides(:)
-    real(wp), allocatable :: edges(:), middles(:)
+    type(cell_line_t) :: line
 
-    edges = [cell_edges(setup%plate, setup%mesh, direction)]
-    sides = edges(2:) - edges(:size(edges) - 1)
+    line = cells_along(setup%plate, setup%mesh, direction)
+    sides = line%sides()
     if (.not. setup%mesh%cell > 0) return
-    middles = edges(2:) - sides/2
-    sides = pack(sides, abs(middles - setup%mesh%struck(direction)) &
+    sides = pack(sides, abs(line%middles() - setup%mesh%struck(direction)) &
                  < max(setup%mesh%core(direction), setup%mesh%patch)/2)
   end function core_sides
 

@@ -155,7 +155,7 @@ contains
       associate (mesh => model%mesh, element => model%distribution%elements(i))
         place = mesh%place_of(mesh%element_cell(element))
         do zone = 1, size(mesh%zones)
-          if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
+          if (.not. mesh%is_below(element, zone)) cycle
           if (model%setup%delaminations(zone)%law == law_cohesive) then
             delaminated(1, i) = dot_product(weights, dissipated_fractions(1, model%distribution%connectivity(:, i)))
           else if (interfaces%contact%regions(zone)%is_delaminated(place(1), place(2))) then
@@ -183,7 +183,7 @@ contains
         end associate
         do i = 1, size(starters)
           associate (element => model%distribution%elements(i))
-            if (mesh%zones(zone)%below_ply /= mesh%element_plies(1, element) - 1) cycle
+            if (.not. mesh%is_below(element, zone)) cycle
             place = mesh%place_of(mesh%element_cell(element))
             if (region%is_delaminated(place(1), place(2))) starters(i) = 1
           end associate

@@ -125,10 +125,10 @@ contains
     integer :: i, j
 
     bounds = empty_bound
-    associate (region => interfaces%contact%regions(zone), x => model%mesh%x_edges, y => model%mesh%y_edges)
+    associate (region => interfaces%contact%regions(zone), columns => model%mesh%along(1), rows => model%mesh%along(2))
       do j = region%rows(1), region%rows(2)
         do i = region%columns(1), region%columns(2)
-          if (region%is_delaminated(i, j)) bounds = max(bounds, [-x(i), x(i + 1), -y(j), y(j + 1)])
+          if (region%is_delaminated(i, j)) bounds = max(bounds, [[-1, 1]*columns%ends(i), [-1, 1]*rows%ends(j)])
         end do
       end do
     end associate

@@ -35,7 +35,7 @@ contains
       do cell = 1, size(cracked)
         if (.not. cracked(cell)) cycle
         associate (place => mesh%place_of(cell))
-          associate (x => mesh%x_edges(place(1):place(1) + 1), y => mesh%y_edges(place(2):place(2) + 1))
+          associate (x => mesh%along(1)%ends(place(1)), y => mesh%along(2)%ends(place(2)))
             call weaken_around(interfaces, model, zone, x, y, reach, part)
             if (mesh%halved(1) .and. .not. mesh%mirrored(1)) &
               call weaken_around(interfaces, model, zone, -x([2, 1]), -y([2, 1]), reach, part)
@@ -60,8 +60,8 @@ contains
     integer :: i, j, columns(2), rows(2), node, local
 
     associate (mesh => model%mesh)
-      columns = lines_within(mesh%x_edges, x, reach)
-      rows = lines_within(mesh%y_edges, y, reach)
+      columns = mesh%along(1)%nodes_near(x, (1 + rounding)*reach)
+      rows = mesh%along(2)%nodes_near(y, (1 + rounding)*reach)
       do j = rows(1), rows(2)
         do i = columns(1), columns(2)
           node = mesh%node_at(i, j)
@@ -79,21 +79,6 @@ contains
     end associate
   end subroutine weaken_around
 
-  !> Lines of nodes that may lie within a distance of an interval, from 0.
-  pure function lines_within(edges, ends, reach) result(lines)
-    !> Edges of the cells, ascending
-    real(wp), intent(in) :: edges(:)
-    !> The interval
-    real(wp), intent(in) :: ends(2)
-    !> The distance
-    real(wp), intent(in) :: reach
-    !> First and last
-    integer :: lines(2)
-
-    lines(1) = 2*max(0, count(edges <= ends(1) - (1 + rounding)*reach) - 1)
-    lines(2) = 2*min(size(edges) - 1, count(edges < ends(2) + (1 + rounding)*reach))
-  end function lines_within
-
   !> Cells of the mesh within the distance of a zone in which a crack affects its interface.
   pure function reachable_cells(mesh, zone, reach) result(reachable)
     type(layered_mesh_t), intent(in) :: mesh
@@ -103,22 +88,21 @@ contains
     real(wp), intent(in) :: reach
     !> (cells)
     logical :: reachable(product(mesh%cells))
-    logical :: near(mesh%cells(1)), beside_cut(mesh%cells(1))
-    real(wp) :: distance
-    integer :: row, first
+    real(wp) :: x(2), y(2), zone_x(2), zone_y(2), distance
+    integer :: cell, place(2)
 
     distance = (1 + rounding)*reach
-    associate (columns => mesh%zones(zone)%columns, rows => mesh%zones(zone)%rows, x => mesh%x_edges, y => mesh%y_edges)
-      near = x(2:) + distance >= x(columns(1)) .and. x(:size(near)) - distance <= x(columns(2) + 1)
+    zone_x = mesh%along(1)%span(mesh%zones(zone)%columns)
+    zone_y = mesh%along(2)%span(mesh%zones(zone)%rows)
+    do cell = 1, size(reachable)
+      place = mesh%place_of(cell)
+      x = mesh%along(1)%ends(place(1))
+      y = mesh%along(2)%ends(place(2))
+      reachable(cell) = x(2) + distance >= zone_x(1) .and. x(1) - distance <= zone_x(2) .and. &
+                        y(2) + distance >= zone_y(1) .and. y(1) - distance <= zone_y(2)
       ! With point symmetry only cells near the cut have an image within the distance.
-      beside_cut = mesh%halved(1) .and. .not. mesh%mirrored(1) .and. x(:size(near)) <= distance
-      do row = 1, mesh%cells(2)
-        first = (row - 1)*size(near)
-        reachable(first + 1:first + size(near)) = beside_cut
-        if (y(row + 1) + distance >= y(rows(1)) .and. y(row) - distance <= y(rows(2) + 1)) &
-          reachable(first + 1:first + size(near)) = near .or. beside_cut
-      end do
-    end associate
+      if (mesh%halved(1) .and. .not. mesh%mirrored(1)) reachable(cell) = reachable(cell) .or. x(1) <= distance
+    end do
   end function reachable_cells
 
   !> Distance of a coordinate from an interval.

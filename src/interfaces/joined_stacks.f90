@@ -32,7 +32,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     type(joined_stacks_t) :: self
     real(wp), allocatable :: layers(:, :)
-    integer :: cell, first, last
+    integer :: cell, first, last, range(4)
 
     layers = gathered(model, stiffness, delaminated, displacement)
     allocate (self%plies(2, size(layers, 2)), self%force(2, size(layers, 2)), self%gradient(2, 2, size(layers, 2)))
@@ -45,8 +45,8 @@ contains
             if (layers(7, last + 1) >= 0.5_wp) exit
             last = last + 1
           end do
-          self%plies(:, first:last) = spread([mesh%element_plies(1, first), mesh%element_plies(2, last)], 2, &
-                                             last - first + 1)
+          range = [mesh%plies_of(first), mesh%plies_of(last)]
+          self%plies(:, first:last) = spread(range([1, 4]), 2, last - first + 1)
           self%force(:, first:last) = spread(sum(layers(1:2, first:last), 2), 2, last - first + 1)
           self%gradient(:, :, first:last) = spread(reshape(sum(layers(3:6, first:last), 2), [2, 2]), 3, &
                                                    last - first + 1)

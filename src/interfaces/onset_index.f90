@@ -16,8 +16,8 @@ module onset_index
     type(joined_stacks_t) :: stacks
     !> Strengths in shear and opening of the interface below each ply, (2, plies - 1)
     real(wp), allocatable :: strengths(:, :)
-    !> Stresses of the full laminate
-    type(unit_stresses_t) :: whole
+    !> Stresses of the different laminates
+    type(unit_stresses_t), allocatable :: whole(:)
   contains
     procedure :: indices
   end type onset_t
@@ -39,7 +39,7 @@ contains
     do i = 1, size(onset, 2)
       associate (element => model%distribution%elements(i))
         ! From the interface on top of the element to the one above its last ply.
-        range = model%mesh%element_plies(:, element) - [1, 1]
+        range = model%mesh%plies_of(element) - [1, 1]
         range(1) = max(range(1), self%stacks%plies(1, element))
         if (range(2) < range(1)) cycle
         associate (found => self%indices(model, element, range))
@@ -64,7 +64,7 @@ contains
     associate (mesh => model%mesh)
       allocate (onset(product(mesh%cells), size(mesh%zones)), source=0.0_wp)
       do element = 1, mesh%elements()
-        range = mesh%element_plies(:, element) - [0, 1]
+        range = mesh%plies_of(element) - [0, 1]
         if (.not. any(mesh%zones%below_ply >= range(1) .and. mesh%zones%below_ply <= range(2))) cycle
         associate (found => self%indices(model, element, range))
           do zone = 1, size(mesh%zones)
@@ -83,10 +83,14 @@ contains
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     type(onset_t) :: self
+    integer :: i
 
     self%stacks = stacks
-    self%strengths = interlaminar_strengths(model%plies, model%setup%materials, model%setup%delaminations)
-    self%whole = unit_stresses_of(model%plies)
+    self%strengths = interlaminar_strengths(model%laminates(1)%plies, model%setup%materials, model%setup%delaminations)
+    allocate (self%whole(size(model%laminates)))
+    do i = 1, size(self%whole)
+      self%whole(i) = unit_stresses_of(model%laminates(i)%plies)
+    end do
   end function new_onset
 
   !> Indices of the interfaces below a range of plies of an element's stack.
@@ -103,11 +107,12 @@ contains
     type(unit_stresses_t) :: unit
 
     associate (first => self%stacks%plies(1, element), last => self%stacks%plies(2, element), &
-               force => self%stacks%force(:, element), gradient => self%stacks%gradient(:, :, element))
-      if (last - first + 1 == size(model%plies)) then
-        all = self%whole%onset_indices(self%strengths, force, gradient)
+               force => self%stacks%force(:, element), gradient => self%stacks%gradient(:, :, element), &
+               laminate => model%mesh%layers(model%mesh%element_layer(element))%laminate)
+      if (last - first + 1 == model%mesh%plies) then
+        all = self%whole(laminate)%onset_indices(self%strengths, force, gradient)
       else
-        unit = unit_stresses_of(model%plies(first:last))
+        unit = unit_stresses_of(model%laminates(laminate)%plies(first:last))
         all = unit%onset_indices(self%strengths(:, first:last - 1), force, gradient)
       end if
       indices = all(range(1) - first + 1:range(2) - first + 1)

@@ -113,7 +113,7 @@ contains
       integer :: place(2)
 
       associate (mesh => model%mesh, element => model%distribution%elements(i))
-        in_delaminated_cell = mesh%zones(zone)%below_ply == mesh%element_plies(1, element) - 1
+        in_delaminated_cell = mesh%is_below(element, zone)
         if (.not. in_delaminated_cell) return
         place = mesh%place_of(mesh%element_cell(element))
         in_delaminated_cell = interfaces%contact%regions(zone)%is_delaminated(place(1), place(2))

@@ -1,11 +1,12 @@
 !> Required extents of adaptive layers: some cells ahead of damage, all cells adjacent to these with an onset index of
 !> at least a half, and any cell with an index of 1.
 module required_zones
+  use cell_lines, only: cell_line_t
   use interface_fields, only: delaminated_above
   use interface_states, only: interface_state_t
   use joined_stacks, only: joined_stacks_of
   use kinds, only: wp
-  use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, thicknesses_ahead, widened_extent
+  use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, thicknesses_ahead
   use models, only: model_t
   use onset_index, only: onset_of_joined_cells
   use roundings, only: rounding
@@ -74,13 +75,15 @@ contains
     real(wp), intent(in) :: onset(:)
     !> Full extents along x and y
     real(wp), intent(inout) :: extents(2)
+    type(cell_line_t) :: columns, rows
     real(wp) :: before(2), near(2)
     integer :: cell
 
+    columns = model%mesh%along(1)%from(model%mesh%struck(1))
+    rows = model%mesh%along(2)%from(model%mesh%struck(2))
     do
       before = extents
-      near = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1), 1), &
-              widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2), 1)]*(1 + rounding)
+      near = [columns%widened(extents(1), 1), rows%widened(extents(2), 1)]*(1 + rounding)
       do cell = 1, size(onset)
         if (onset(cell) < onset_of_layers) cycle
         associate (reach => extents_to(model, cell))
@@ -100,8 +103,8 @@ contains
     real(wp) :: extents(2)
 
     associate (mesh => model%mesh, place => model%mesh%place_of(cell))
-      extents = 2*[maxval(abs(mesh%x_edges(place(1):place(1) + 1) - mesh%struck(1))), &
-                   maxval(abs(mesh%y_edges(place(2):place(2) + 1) - mesh%struck(2)))]
+      extents = 2*[maxval(abs(mesh%along(1)%ends(place(1)) - mesh%struck(1))), &
+                   maxval(abs(mesh%along(2)%ends(place(2)) - mesh%struck(2)))]
     end associate
   end function extents_to
 
@@ -138,13 +141,15 @@ contains
     real(wp), intent(in) :: least
     !> (2, zones)
     real(wp) :: wider(2, size(extents, 2))
+    type(cell_line_t) :: columns, rows
     integer :: zone
 
+    columns = model%mesh%along(1)%from(model%mesh%struck(1))
+    rows = model%mesh%along(2)%from(model%mesh%struck(2))
     wider = 0
     do zone = 1, size(extents, 2)
       if (.not. any(extents(:, zone) > 0)) cycle
-      wider(:, zone) = [widened_extent(model%mesh%x_edges - model%mesh%struck(1), extents(1, zone), cells, least), &
-                        widened_extent(model%mesh%y_edges - model%mesh%struck(2), extents(2, zone), cells, least)]
+      wider(:, zone) = [columns%widened(extents(1, zone), cells, least), rows%widened(extents(2, zone), cells, least)]
     end do
   end function with_margin
 end module required_zones

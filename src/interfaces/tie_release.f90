@@ -45,14 +45,19 @@ contains
     !> by up to 8 and 5 % of its peak (doc/studies/solution_controls.md).
     real(wp), parameter :: elements_crossed = 10
     real(wp) :: slowness
-    integer :: points, zones, zone
+    integer :: points, zones, zone, i
 
     zones = size(model%mesh%zones)
     allocate (self%set_free(zones), self%duration(zones), source=0.0_wp)
     if (.not. model%map%layered) return
     points = size(model%zone)
     allocate (self%force(3, points), self%remaining(points), source=0.0_wp)
-    slowness = sqrt(minval(model%plies%density/max(model%plies%elasticity%g13, model%plies%elasticity%g23)))
+    slowness = 0
+    do i = 1, size(model%laminates)
+      associate (plies => model%laminates(i)%plies)
+        slowness = max(slowness, sqrt(minval(plies%density/max(plies%elasticity%g13, plies%elasticity%g23))))
+      end associate
+    end do
     do zone = 1, zones
       self%duration(zone) = elements_crossed*model%mesh%mean_cell(zone)*slowness
     end do

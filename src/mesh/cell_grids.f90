@@ -1,17 +1,19 @@
 !> The grid of nine-node cells over the modelled part of the plate, a rectangle.
 module cell_grids
   use kinds, only: wp
+  use cell_lines, only: cell_line_t, cell_line
   use mesh_parameters, only: plate_t, mesh_t, parts_of, is_halved, is_mirrored
   use gradings, only: graded_half_line, graded_line, cored_half_line, off_centre_line, core_elements, move_to_lines
   use nine_node_grids, only: nine_node_grid_t, last_line
   implicit none
   private
-  public :: cell_grid_t, create_grid, cell_edges, has_enough_elements, fewest_elements, needs_even_elements
+  public :: cell_grid_t, create_grid, cell_edges, cells_along, cells_from_struck, has_enough_elements, fewest_elements
+  public :: needs_even_elements
 
   !> Cells and their nodes.
   type, extends(nine_node_grid_t) :: cell_grid_t
-    !> Edges of the cells along x and y, (cells + 1)
-    real(wp), allocatable :: x_edges(:), y_edges(:)
+    !> Columns of cells along x, and rows along y
+    type(cell_line_t) :: along(2)
     !> Coordinates of the nodes, (2, nodes), x fastest
     real(wp), allocatable :: node_coordinates(:, :)
     !> The struck point
@@ -41,16 +43,45 @@ contains
     !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     class(cell_grid_t), intent(inout) :: self
+    integer :: direction
 
     self%multiplicity = parts_of(plate%symmetry)
     self%halved = is_halved(plate%symmetry)
     self%mirrored = is_mirrored(plate%symmetry)
     self%struck = mesh%struck
     self%cells = mesh%elements
-    self%x_edges = cell_edges(plate, mesh, 1)
-    self%y_edges = cell_edges(plate, mesh, 2)
+    do direction = 1, 2
+      self%along(direction) = cells_along(plate, mesh, direction)
+    end do
     call place_nodes(self)
   end subroutine create_grid
+
+  !> Cells along x or y.
+  pure function cells_along(plate, mesh, direction) result(line)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    type(cell_line_t) :: line
+
+    line = cell_line(cell_edges(plate, mesh, direction))
+  end function cells_along
+
+  !> Cells along x or y, with coordinates from the struck point.
+  pure function cells_from_struck(plate, mesh, direction) result(line)
+    !> Plate and symmetry
+    type(plate_t), intent(in) :: plate
+    !> Elements, grading and patch
+    type(mesh_t), intent(in) :: mesh
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    type(cell_line_t) :: line
+
+    line = cells_along(plate, mesh, direction)
+    line = line%from(mesh%struck(direction))
+  end function cells_from_struck
 
   !> Edges of the cells along x or y.
   pure function cell_edges(plate, mesh, direction) result(edges)
@@ -164,8 +195,8 @@ contains
     real(wp) :: x(0:last_line(self%cells(1))), y(0:last_line(self%cells(2)))
     integer :: i, j
 
-    call edges_and_middles(self%x_edges, x)
-    call edges_and_middles(self%y_edges, y)
+    call edges_and_middles(self%along(1)%bounds(), x)
+    call edges_and_middles(self%along(2)%bounds(), y)
     allocate (self%node_coordinates(2, size(x)*size(y)))
     do j = 0, size(y) - 1
       do i = 0, size(x) - 1
@@ -201,7 +232,7 @@ contains
     !> Along x and y
     real(wp) :: sides(2)
 
-    sides = [self%x_edges(place(1) + 1) - self%x_edges(place(1)), self%y_edges(place(2) + 1) - self%y_edges(place(2))]
+    sides = [self%along(1)%side(place(1)), self%along(2)%side(place(2))]
   end function cell_sides
 
   !> Area of a cell.
@@ -258,11 +289,12 @@ contains
     !> Along x and y
     integer :: side(2)
     real(wp) :: distance(2, 2)
-    integer :: end
+    integer :: direction
 
-    do end = 0, 1
-      distance(:, end + 1) = abs([self%x_edges(place(1) + end), self%y_edges(place(2) + end)] - self%struck) &
-                             /self%cell_sides(place)
+    do direction = 1, 2
+      associate (cells => self%along(direction))
+        distance(direction, :) = abs(cells%ends(place(direction)) - self%struck(direction))/cells%side(place(direction))
+      end associate
     end do
     side = merge(-1, merge(1, 0, distance(:, 2) < 1e-6_wp), distance(:, 1) < 1e-6_wp)
   end function struck_side

@@ -7,7 +7,7 @@ module layered_meshes
   use nine_node_grids, only: cells_around
   implicit none
   private
-  public :: layered_mesh_t, zone_t, create_mesh
+  public :: layered_mesh_t, layer_t, zone_t, create_mesh
 
   !> A rectangle in which the plies above and below an interface have unknowns of their own.
   type :: zone_t
@@ -16,6 +16,14 @@ module layered_meshes
     !> First and last column of cells, then of rows
     integer :: columns(2) = 0, rows(2) = 0
   end type zone_t
+
+  !> The plies between two interfaces, or a face: those of a cell's laminate whose numbers lie in a range.
+  type :: layer_t
+    !> Laminate of the cell, among the different ones of the plate
+    integer :: laminate = 1
+    !> Smallest and largest number
+    integer :: plies(2) = 0
+  end type layer_t
 
   !> Cells, layers and the points (node and layer pairs) that carry five unknowns each.
   type, extends(cell_grid_t) :: layered_mesh_t
@@ -33,12 +41,19 @@ module layered_meshes
     integer, allocatable :: element_cell(:)
     !> First element of each cell, elements of a cell following each other downwards, (cells + 1)
     integer, allocatable :: first_element(:)
-    !> First and last ply of each element, (2, elements)
-    integer, allocatable :: element_plies(:, :)
+    !> Number of plies of the plate
+    integer :: plies = 0
+    !> The different layers of the plate
+    type(layer_t), allocatable :: layers(:)
+    !> Layer of each element, (elements)
+    integer, allocatable :: element_layer(:)
   contains
     procedure :: points
     procedure :: elements
     procedure :: element_at
+    procedure :: plies_of
+    procedure :: is_top
+    procedure :: is_below
     procedure :: lower_point
     !> Area of a zone, and length of its mean cell.
     procedure :: zone_area
@@ -49,7 +64,7 @@ module layered_meshes
 contains
 
   !> Builds the mesh of the modelled part.
-  pure function create_mesh(plate, mesh, plies, zones) result(self)
+  pure function create_mesh(plate, mesh, plies, zones, laminates) result(self)
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
     !> Elements, grading and patch
@@ -58,12 +73,19 @@ contains
     integer, intent(in) :: plies
     !> Layered rectangles, from the struck face downwards
     type(zone_t), intent(in) :: zones(:)
+    !> Laminate of each cell among the different ones of the plate; absent: there is one
+    integer, intent(in), optional :: laminates(:)
     type(layered_mesh_t) :: self
 
     call create_grid(plate, mesh, self)
     self%zones = zones
+    self%plies = plies
     call number_points(self)
-    call build_elements(self, plies)
+    if (present(laminates)) then
+      call build_elements(self, laminates)
+    else
+      call build_elements(self, spread(1, 1, product(self%cells)))
+    end if
   end function create_mesh
 
   !> Gives a node an additional point for each zone that contains it; on the border of a zone both layers share the
@@ -123,37 +145,51 @@ contains
   end function within
 
   !> One element for each layer over each cell.
-  pure subroutine build_elements(self, plies)
+  pure subroutine build_elements(self, laminates)
     !> The mesh, with its points numbered
     type(layered_mesh_t), intent(inout) :: self
-    !> Number of plies
-    integer, intent(in) :: plies
-    integer :: pass, cell, elements, zone, first
+    !> Laminate of each cell
+    integer, intent(in) :: laminates(:)
+    integer :: pass, cell, elements, zone, range(2)
 
+    allocate (self%layers(0))
     do pass = 1, 2
       elements = 0
       do cell = 1, product(self%cells)
-        first = 1
+        range = [1, self%plies]
         if (pass == 2) self%first_element(cell) = elements + 1
         do zone = 1, size(self%zones) + 1
+          range(2) = self%plies
           if (zone <= size(self%zones)) then
             if (.not. covers(self%zones(zone), self%place_of(cell))) cycle
+            range(2) = self%zones(zone)%below_ply
           end if
           elements = elements + 1
           if (pass == 1) cycle
           self%element_cell(elements) = cell
-          self%element_plies(1, elements) = first
-          self%element_plies(2, elements) = plies
-          if (zone <= size(self%zones)) self%element_plies(2, elements) = self%zones(zone)%below_ply
-          self%connectivity(:, elements) = layer_points(self, cell, first)
-          first = self%element_plies(2, elements) + 1
+          call find_layer(self, layer_t(laminates(cell), range), self%element_layer(elements))
+          self%connectivity(:, elements) = layer_points(self, cell, range(1))
+          range(1) = range(2) + 1
         end do
       end do
       if (pass == 1) allocate (self%connectivity(9, elements), self%element_cell(elements), &
-                               self%element_plies(2, elements), self%first_element(product(self%cells) + 1))
+                               self%element_layer(elements), self%first_element(product(self%cells) + 1))
     end do
     self%first_element(product(self%cells) + 1) = elements + 1
   end subroutine build_elements
+
+  !> Number of a layer among the different ones; a new one is added.
+  pure subroutine find_layer(self, layer, number)
+    type(layered_mesh_t), intent(inout) :: self
+    type(layer_t), intent(in) :: layer
+    !> Its number
+    integer, intent(out) :: number
+
+    do number = 1, size(self%layers)
+      if (self%layers(number)%laminate == layer%laminate .and. all(self%layers(number)%plies == layer%plies)) return
+    end do
+    self%layers = [self%layers, layer]
+  end subroutine find_layer
 
   !> Element of a cell whose layer contains a ply.
   pure integer function element_at(self, cell, ply) result(element)
@@ -164,10 +200,41 @@ contains
     integer, intent(in) :: ply
 
     element = self%first_element(cell)
-    do while (self%element_plies(2, element) < ply)
+    do while (self%layers(self%element_layer(element))%plies(2) < ply)
       element = element + 1
     end do
   end function element_at
+
+  !> Smallest and largest number of the plies of an element's layer.
+  pure function plies_of(self, element) result(range)
+    class(layered_mesh_t), intent(in) :: self
+    !> Element
+    integer, intent(in) :: element
+    !> The numbers
+    integer :: range(2)
+
+    range = self%layers(self%element_layer(element))%plies
+  end function plies_of
+
+  !> True for an element whose layer has the struck face.
+  elemental logical function is_top(self, element)
+    class(layered_mesh_t), intent(in) :: self
+    !> Element
+    integer, intent(in) :: element
+
+    is_top = self%first_element(self%element_cell(element)) == element
+  end function is_top
+
+  !> True for an element whose upper face is the interface of a zone.
+  pure logical function is_below(self, element, zone)
+    class(layered_mesh_t), intent(in) :: self
+    !> Element
+    integer, intent(in) :: element
+    !> Index of the zone
+    integer, intent(in) :: zone
+
+    is_below = self%layers(self%element_layer(element))%plies(1) - 1 == self%zones(zone)%below_ply
+  end function is_below
 
   !> Point of a node in the layer below a zone's interface; 0: the node has none.
   pure integer function lower_point(self, node, zone) result(point)
@@ -243,9 +310,18 @@ contains
     integer, intent(in) :: zone
 
     associate (range => self%zones(zone))
-      area = (self%x_edges(range%columns(2) + 1) - self%x_edges(range%columns(1))) &
-             *(self%y_edges(range%rows(2) + 1) - self%y_edges(range%rows(1)))
+      area = length(self%along(1)%span(range%columns))*length(self%along(2)%span(range%rows))
     end associate
+
+  contains
+
+    !> Length between two ends.
+    pure real(wp) function length(ends)
+      !> Their coordinates
+      real(wp), intent(in) :: ends(2)
+
+      length = ends(2) - ends(1)
+    end function length
   end function zone_area
 
   !> Length of the mean cell of a zone: the root of its mean area.

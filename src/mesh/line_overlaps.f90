@@ -2,11 +2,13 @@
 !> assigned to their nodes; theory (D14). A line halved by symmetry is continued on the other side of the cut by its
 !> image.
 module line_overlaps
+  use cell_lines, only: cell_line_t
   use kinds, only: wp
   use roundings, only: rounding
   implicit none
   private
-  public :: line_overlap_t, node_bounds, overlaps_of, unfolded
+  public :: line_overlap_t, overlaps_of_cells, overlaps_of_nodes, parts_of_cells, parts_of_nodes
+  public :: node_bounds, overlaps_of, unfolded
 
   !> Intervals of the other division that have a length in common with an interval.
   type :: line_overlap_t
@@ -80,4 +82,73 @@ contains
       overlaps(i)%interval = merge(images + 1 - numbers, numbers - images, overlaps(i)%turned)
     end do
   end function overlaps_of
+
+  !> Overlaps of the cells of a line with those of another.
+  pure function overlaps_of_cells(line, others, halved) result(overlaps)
+    !> The line, and the other one from the same origin
+    type(cell_line_t), intent(in) :: line, others
+    !> True: the other line begins on a cut at 0 and is continued by its image
+    logical, intent(in) :: halved
+    !> (cells)
+    type(line_overlap_t), allocatable :: overlaps(:)
+
+    overlaps = overlaps_of(line%bounds(), others%bounds(), halved)
+  end function overlaps_of_cells
+
+  !> Overlaps of the parts of cells that are assigned to the nodes of a line with those of another.
+  pure function overlaps_of_nodes(line, begins_on_cut, origin, others, halved) result(overlaps)
+    !> The line, and the other one
+    type(cell_line_t), intent(in) :: line, others
+    !> True: the line begins on a cut at 0
+    logical, intent(in) :: begins_on_cut
+    !> Origin of the line in the coordinates of the other one
+    real(wp), intent(in) :: origin
+    !> True: the other line begins on a cut at 0 and is continued by its image
+    logical, intent(in) :: halved
+    !> (nodes)
+    type(line_overlap_t), allocatable :: overlaps(:)
+    real(wp), allocatable :: bounds(:)
+    real(wp) :: ends(2)
+
+    bounds = node_bounds(others%bounds(), halved)
+    ends = others%span()
+    bounds(1) = ends(1)
+    overlaps = overlaps_of(node_bounds(line%bounds(), begins_on_cut) + origin, bounds, halved)
+  end function overlaps_of_nodes
+
+  !> Part of each cell of a line between two coordinates.
+  pure function parts_of_cells(line, low, high) result(parts)
+    type(cell_line_t), intent(in) :: line
+    !> The coordinates
+    real(wp), intent(in) :: low, high
+    !> 0 to 1, (cells)
+    real(wp), allocatable :: parts(:)
+
+    parts = parts_of(line%bounds(), low, high)
+  end function parts_of_cells
+
+  !> The same of the parts of cells that are assigned to the nodes.
+  pure function parts_of_nodes(line, low, high) result(parts)
+    type(cell_line_t), intent(in) :: line
+    !> The coordinates
+    real(wp), intent(in) :: low, high
+    !> 0 to 1, (nodes)
+    real(wp), allocatable :: parts(:)
+
+    parts = parts_of(node_bounds(line%bounds(), .false.), low, high)
+  end function parts_of_nodes
+
+  !> Part of each interval between two coordinates.
+  pure function parts_of(bounds, low, high) result(parts)
+    !> Ascending bounds of the intervals
+    real(wp), intent(in) :: bounds(:)
+    !> The coordinates
+    real(wp), intent(in) :: low, high
+    !> 0 to 1, (intervals)
+    real(wp) :: parts(size(bounds) - 1)
+
+    associate (begins => bounds(:size(parts)), ends => bounds(2:))
+      parts = max(0.0_wp, min(ends, high) - max(begins, low))/(ends - begins)
+    end associate
+  end function parts_of
 end module line_overlaps

@@ -81,9 +81,9 @@ contains
     do element = 1, size(self%element_origin)
       place = new%place_of(new%element_cell(element))
       call find_image(old, new, 1, place, turned)
-      associate (plies => new%element_plies(:, element), origin => self%element_origin(element))
+      associate (plies => new%plies_of(element), origin => self%element_origin(element))
         origin = old%element_at(place(1) + (place(2) - 1)*old%cells(1), plies(1))
-        self%is_split(element) = any(old%element_plies(:, origin) /= plies)
+        self%is_split(element) = any(old%plies_of(origin) /= plies)
       end associate
       self%mirrored(element) = turned(1) .neqv. turned(2)
     end do

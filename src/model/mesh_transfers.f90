@@ -6,10 +6,9 @@
 !> rectangle with the integrals of its shape functions as sides.
 module mesh_transfers
   use kinds, only: wp
-  use lagrange9, only: line_values
   use layer_transfers, only: layer_transfer_t, shear_field
   use layered_meshes, only: layered_mesh_t
-  use line_overlaps, only: line_overlap_t, node_bounds, overlaps_of
+  use line_overlaps, only: line_overlap_t, overlaps_of_cells, overlaps_of_nodes
   implicit none
   private
   public :: mesh_transfer_t
@@ -24,8 +23,6 @@ module mesh_transfers
     type(layered_mesh_t), private :: old, new
     !> Origin of the new mesh in the coordinates of the old one
     real(wp) :: origin(2) = 0
-    !> Plies of the laminate
-    integer, private :: plies = 0
     !> Overlaps of nodes and cells of the new mesh with those of the old one along x and y
     type(line_overlap_t), allocatable, private :: nodes_x(:), nodes_y(:), cells_x(:), cells_y(:)
   contains
@@ -45,30 +42,14 @@ contains
     self%loading = .true.
     self%old = old
     self%new = new
-    self%plies = maxval(new%element_plies)
     allocate (self%point_origin(new%points()), source=1)
     allocate (self%element_origin(new%elements()), source=1)
     allocate (self%is_split(new%elements()), source=.true.)
-    self%cells_x = overlaps_of(new%x_edges + self%origin(1), old%x_edges, old%halved(1))
-    self%cells_y = overlaps_of(new%y_edges + self%origin(2), old%y_edges, old%halved(2))
-    self%nodes_x = overlaps_of(node_bounds(new%x_edges, new%halved(1)) + self%origin(1), &
-                               from_cut(old%x_edges, old%halved(1)), old%halved(1))
-    self%nodes_y = overlaps_of(node_bounds(new%y_edges, new%halved(2)) + self%origin(2), &
-                               from_cut(old%y_edges, old%halved(2)), old%halved(2))
+    self%cells_x = overlaps_of_cells(new%along(1)%from(-self%origin(1)), old%along(1), old%halved(1))
+    self%cells_y = overlaps_of_cells(new%along(2)%from(-self%origin(2)), old%along(2), old%halved(2))
+    self%nodes_x = overlaps_of_nodes(new%along(1), new%halved(1), self%origin(1), old%along(1), old%halved(1))
+    self%nodes_y = overlaps_of_nodes(new%along(2), new%halved(2), self%origin(2), old%along(2), old%halved(2))
   end subroutine turn_to
-
-  !> Bounds of the intervals of nodes, from the symmetry line on.
-  pure function from_cut(edges, halved) result(bounds)
-    !> Edges of the cells, ascending
-    real(wp), intent(in) :: edges(:)
-    !> True: the line starts on a symmetry line at 0
-    logical, intent(in) :: halved
-    !> Ascending
-    real(wp), allocatable :: bounds(:)
-
-    bounds = node_bounds(edges, halved)
-    bounds(1) = edges(1)
-  end function from_cut
 
   !> Visits a field over points or elements; its length shows which, as there are always more points. Collective
   !> when saving.
@@ -120,8 +101,9 @@ contains
       turned = old%halved .and. at < 0
       if (turned(1) .and. .not. old%mirrored(1)) turned(2) = .true.
       where (turned) at = -at
-      call locate(old%x_edges, at(1), place(1), shapes(:, 1))
-      call locate(old%y_edges, at(2), place(2), shapes(:, 2))
+      do i = 1, 2
+        call old%along(i)%locate(at(i), place(i), shapes(:, i))
+      end do
       motion = 0
       do j = 1, 3
         do i = 1, 3
@@ -154,21 +136,6 @@ contains
     end do
     if (above /= zone) unknowns(1:3) = 0
   end function unknowns_at
-
-  !> Cell of a coordinate along a line, and the quadratic shape functions there.
-  pure subroutine locate(edges, coordinate, cell, shapes)
-    !> Edges of the cells, ascending
-    real(wp), intent(in) :: edges(:)
-    !> The coordinate
-    real(wp), intent(in) :: coordinate
-    !> The cell, from 1
-    integer, intent(out) :: cell
-    !> One value per node
-    real(wp), intent(out) :: shapes(3)
-
-    cell = max(1, min(size(edges) - 1, count(edges <= coordinate)))
-    shapes = line_values((2*coordinate - edges(cell) - edges(cell + 1))/(edges(cell + 1) - edges(cell)))
-  end subroutine locate
 
   !> Means over the area of a node; where the old mesh has no such layer, the present value is used.
   pure subroutine find_at_node(self, saved, point, name, values)
@@ -225,9 +192,9 @@ contains
 
     cell = self%new%place_of(self%new%element_cell(element))
     rows = size(values)
-    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%plies
+    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%new%plies
     associate (x => self%cells_x(cell(1)), y => self%cells_y(cell(2)), old => self%old, &
-               range => self%new%element_plies(:, element))
+               range => self%new%plies_of(element))
       allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))
       n = 0
       do j = 1, size(y%length)

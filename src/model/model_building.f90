@@ -8,14 +8,15 @@ module model_building
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
   use mean_stiffnesses, only: in_bending
-  use ply_shear, only: shear_shares_of
-  use stacking, only: section_t, stacked_plies, section_of, layer_stiffness, section_mass
+  use ply_stacks, only: ply_stack_t, whole_stack
+  use stacking, only: section_t, stacked_plies, section_of
+  use plies, only: ply_t
   use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
                              initial_deflection, is_flat, plate_t, symmetry_quarter
-  use cell_grids, only: cell_edges
+  use cell_grids, only: cells_from_struck
+  use cell_lines, only: cell_line_t
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
-  use delaminated_regions, only: cells_within
   use surface_contact, only: create_contact_law
   use cohesive_laws, only: create_cohesive_law
   use delamination_parameters, only: contact_augmented_lagrangian, law_cohesive, toughnesses
@@ -52,22 +53,18 @@ contains
     !> Set if the mesh cannot be distributed or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
     type(zone_t), allocatable :: zones(:)
-    integer :: ply
 
     self%setup = setup
     self%communicator = communicator
-    self%plies = stacked_plies(setup%laminate, setup%materials)
-    if (setup%has_thermal) then
-      do ply = 1, size(self%plies)
-        self%plies(ply)%free_strain(:2) = setup%temperature_change*setup%materials(self%plies(ply)%material)%expansion
-      end do
-    end if
-    self%shear_shares = shear_shares_of(in_bending(self%plies))
+    self%laminates = laminates_of(setup)
     self%thickness = sum(setup%laminate%thickness)
-    self%section = section_of(self%plies, setup%laminate%shear_correction)
-    self%bending_section = section_of(in_bending(self%plies), setup%laminate%shear_correction)
-    zones = zones_of(setup)
-    self%mesh = create_mesh(setup%plate, setup%mesh, size(self%plies), zones)
+    associate (skin => self%laminates(1)%plies)
+      self%section = section_of(skin, setup%laminate%shear_correction)
+      self%bending_section = section_of(in_bending(skin), setup%laminate%shear_correction)
+      zones = zones_of(setup)
+      self%mesh = create_mesh(setup%plate, setup%mesh, size(skin), zones)
+    end associate
+    self%stacks = stacks_of(self%mesh, self%laminates)
     self%membrane_idle = is_membrane_idle(setup, size(zones), self%section)
     self%fixed = fixed_unknowns(self%mesh, setup%plate, self%membrane_idle, unrestrained(setup))
     if (allocated(setup%supports)) call fix_by_rigs(self%mesh, setup%plate, setup%supports, self%fixed)
@@ -178,10 +175,12 @@ contains
     type(model_t), intent(inout) :: self
     !> Set if an element is ill-shaped
     type(error_t), allocatable, intent(inout) :: error
-    integer :: element, first, last
-    type(section_t) :: section
+    type(section_t), allocatable :: sections(:)
+    integer :: element, i
 
     associate (mesh => self%mesh, partition => self%distribution)
+      self%stack = mesh%element_layer(partition%elements)
+      sections = [(self%stacks(i)%section(), i=1, size(self%stacks))]
       call self%elements%create(mesh%node_coordinates(:, mesh%point_node(partition%points)), partition%connectivity, &
                                 self%setup%mesh%shear, error)
       if (allocated(error)) return
@@ -189,21 +188,46 @@ contains
                                                                                          partition%points)))
       if (self%setup%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
       do element = 1, size(partition%elements)
-        first = mesh%element_plies(1, partition%elements(element))
-        last = mesh%element_plies(2, partition%elements(element))
-        section = self%section
-        if (last - first + 1 < size(self%plies)) then
-          section%stiffness = layer_stiffness(self%plies, self%plies(first:last)%elasticity, first, last, &
-                                              self%setup%laminate%shear_correction)
-          section%mass = section_mass(self%plies(first:last))
-        end if
-        call self%elements%set_section(element, section%stiffness, section%mass)
-        if (self%setup%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
-          free_resultants(self%plies(first:last), self%plies(first:last)%elasticity)
+        associate (stack => self%stacks(self%stack(element)), section => sections(self%stack(element)))
+          call self%elements%set_section(element, section%stiffness, section%mass)
+          if (self%setup%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
+            free_resultants(stack%plies, stack%plies%elasticity)
+        end associate
       end do
     end associate
     if (self%setup%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
   end subroutine build_elements
+
+  !> The different laminates of the plate, the skin's first.
+  pure function laminates_of(setup) result(laminates)
+    type(setup_t), intent(in) :: setup
+    type(ply_stack_t), allocatable :: laminates(:)
+    type(ply_t), allocatable :: plies(:)
+    integer :: i
+
+    plies = stacked_plies(setup%laminate, setup%materials)
+    if (setup%has_thermal) then
+      do i = 1, size(plies)
+        plies(i)%free_strain(:2) = setup%temperature_change*setup%materials(plies(i)%material)%expansion
+      end do
+    end if
+    laminates = [whole_stack([(i, i=1, size(plies))], plies, setup%laminate%shear_correction)]
+  end function laminates_of
+
+  !> The stack of each layer of the mesh.
+  pure function stacks_of(mesh, laminates) result(stacks)
+    type(layered_mesh_t), intent(in) :: mesh
+    !> The different laminates of the plate
+    type(ply_stack_t), intent(in) :: laminates(:)
+    type(ply_stack_t) :: stacks(size(mesh%layers))
+    integer :: i
+
+    do i = 1, size(stacks)
+      associate (layer => mesh%layers(i))
+        stacks(i) = laminates(layer%laminate)%layer(layer%plies(1), layer%plies(2))
+      end associate
+    end do
+  end function stacks_of
 
   !> Shape of a plate that is not flat. Displacements are measured along its curved surface; an imperfection is too
   !> small for a difference.
@@ -230,7 +254,7 @@ contains
     allocate (self%lines(0))
     if (.not. allocated(self%setup%lines)) return
     self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, &
-                              self%fixed(:, self%distribution%points), self%plies, &
+                              self%fixed(:, self%distribution%points), self%laminates(1)%plies, &
                               self%section, self%setup%plate%symmetry), i=1, size(self%setup%lines))]
   end subroutine build_lines
 
@@ -255,20 +279,21 @@ contains
     type(setup_t), intent(in) :: setup
     !> One zone an interface
     type(zone_t), allocatable :: zones(:)
+    type(cell_line_t) :: columns, rows
     integer :: i
 
     if (.not. allocated(setup%delaminations)) then
       allocate (zones(0))
       return
     end if
+    columns = cells_from_struck(setup%plate, setup%mesh, 1)
+    rows = cells_from_struck(setup%plate, setup%mesh, 2)
     allocate (zones(size(setup%delaminations)))
     do i = 1, size(zones)
       associate (interface => setup%delaminations(i))
         zones(i)%below_ply = interface%below_ply
-        zones(i)%columns = cells_within(cell_edges(setup%plate, setup%mesh, 1) - setup%mesh%struck(1), &
-                                        interface%zone(1))
-        zones(i)%rows = cells_within(cell_edges(setup%plate, setup%mesh, 2) - setup%mesh%struck(2), &
-                                        interface%zone(2))
+        zones(i)%columns = columns%within(interface%zone(1))
+        zones(i)%rows = rows%within(interface%zone(2))
       end associate
     end do
   end function zones_of
@@ -283,13 +308,13 @@ contains
     ! Stiffness of a rigid frame: the contact multiple of the laminate's through-thickness stiffness over the area of a
     ! cell.
     self%rig = new_rig_model(self%mesh, self%setup%plate, self%setup%supports, self%distribution, &
-                             rigid*self%plies(1)%elasticity%e2/self%thickness &
+                             rigid*self%laminates(1)%plies(1)%elasticity%e2/self%thickness &
                              *product(self%setup%plate%length/self%setup%mesh%elements)/self%mesh%multiplicity)
     if (allocated(self%rig%line_rig)) call self%rig%join_ranks(self%communicator, self%halo)
     if (.not. self%rig%unilateral) return
-    associate (partition => self%distribution, last => self%plies(size(self%plies)))
+    associate (partition => self%distribution, last => self%laminates(1)%plies(self%mesh%plies))
       self%rig_area = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
-                                             self%mesh%element_plies(1, partition%elements) == 1))
+                                             self%mesh%is_top(partition%elements)))
       self%rig_law = create_contact_law(contact_augmented_lagrangian, 1.0_wp, last%elasticity%e2/self%thickness, &
                                         self%thickness, moving=self%setup%has_inertia())
     end associate
@@ -303,13 +328,13 @@ contains
     real(wp) :: thickness
     integer :: zone, i
 
-    associate (mesh => self%mesh, partition => self%distribution)
-      self%map = create_layer_map(mesh, partition, self%plies(mesh%zones%below_ply)%z_bottom)
+    associate (mesh => self%mesh, partition => self%distribution, plies => self%laminates(1)%plies)
+      self%map = create_layer_map(mesh, partition, plies(mesh%zones%below_ply)%z_bottom)
       self%zone = mesh%point_zone(partition%points)
       allocate (areas(1, size(partition%points)), source=0.0_wp)
       if (self%map%layered) then
         areas(1, :) = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
-                                             mesh%element_plies(1, partition%elements) > 1))
+                                             .not. mesh%is_top(partition%elements)))
         call self%halo%update(areas)
         where (self%zone == 0) areas(1, :) = 0
       end if
@@ -318,15 +343,14 @@ contains
       allocate (self%contact_laws(size(mesh%zones)), self%cohesive_laws(size(mesh%zones)))
       do zone = 1, size(mesh%zones)
         associate (below => mesh%zones(zone)%below_ply, interface => self%setup%delaminations(zone))
-          thickness = min(self%plies(below)%z_bottom - self%plies(1)%z_top, &
-                          self%plies(size(self%plies))%z_bottom - self%plies(below)%z_bottom)
+          thickness = min(plies(below)%z_bottom - plies(1)%z_top, plies(size(plies))%z_bottom - plies(below)%z_bottom)
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
-                                                       self%plies(below)%elasticity%e2/thickness, thickness, &
+                                                       plies(below)%elasticity%e2/thickness, thickness, &
                                                        moving=self%setup%has_inertia())
           if (interface%law == law_cohesive) &
             self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
                                                            [interface%strength_opening, interface%strength_shear], &
-                                                           interface%stiffness, self%plies(below)%elasticity%e2, &
+                                                           interface%stiffness, plies(below)%elasticity%e2, &
                                                            thickness)
         end associate
       end do

@@ -75,7 +75,7 @@ contains
     integer :: i
 
     associate (mesh => self%mesh, mine => self%distribution%elements)
-      elements = pack([(i, i=1, size(mine))], [(mesh%element_plies(1, mine(i)) == 1, i=1, size(mine))])
+      elements = pack([(i, i=1, size(mine))], mesh%is_top(mine))
       if (present(patch)) elements = pack(elements, [(mesh%in_patch(mesh%element_cell(mine(elements(i))), patch), &
                                                       i=1, size(elements))])
     end associate
@@ -126,7 +126,7 @@ contains
         end do
       end if
       do element = 1, size(partition%elements)
-        if (mesh%element_plies(1, partition%elements(element)) /= 1) pressure(:, element) = 0
+        if (.not. mesh%is_top(partition%elements(element))) pressure(:, element) = 0
       end do
     end associate
     call add_pressure(self%elements, pressure, forces)

@@ -4,7 +4,8 @@ module model_sizes
   use layer_extents, only: largest_extents
   use layered_meshes, only: zone_t
   use model_building, only: is_membrane_idle, zones_of
-  use cell_grids, only: cell_edges
+  use cell_lines, only: cell_line_t
+  use cell_grids, only: cells_along
   use setups, only: setup_t
   use stacking, only: section_of, stacked_plies
   use text, only: counted, to_text
@@ -54,11 +55,15 @@ contains
     !> Its size
     type(model_size_t) :: size_found
     type(zone_t), allocatable :: zones(:)
+    type(cell_line_t) :: line
     integer :: cells(2), i, j, a_node
     real(wp) :: nodes, inside, pairs, bytes
 
     zones = zones_of(with_largest_zones(setup, explicit))
-    cells = [size(cell_edges(setup%plate, setup%mesh, 1)) - 1, size(cell_edges(setup%plate, setup%mesh, 2)) - 1]
+    do i = 1, 2
+      line = cells_along(setup%plate, setup%mesh, i)
+      cells(i) = line%cells()
+    end do
     nodes = product(2*real(cells, wp) + 1)
     a_node = 5
     if (is_membrane_idle(setup, size(zones), section_of(stacked_plies(setup%laminate, setup%materials), &

@@ -11,7 +11,7 @@ module models
   use inertia_forces, only: add_inertia_force
   use internal_forces, only: add_internal_force
   use plate_loads, only: loaded_plate_t
-  use plies, only: ply_t
+  use ply_stacks, only: ply_stack_t
   use rig_models, only: hold_openings
   use section_laws, only: section_law_t
   use setups, only: setup_t
@@ -28,10 +28,12 @@ module models
   type, extends(loaded_plate_t) :: model_t
     !> The setup of the deck
     type(setup_t) :: setup
-    !> Plies of the laminate, struck face first
-    type(ply_t), allocatable :: plies(:)
-    !> Transverse shear stresses of its plies under unit shear forces, (2, 2, plies)
-    real(wp), allocatable :: shear_shares(:, :, :)
+    !> The different laminates of the plate, the skin's first
+    type(ply_stack_t), allocatable :: laminates(:)
+    !> The different stacks of elements, one for each layer of the mesh
+    type(ply_stack_t), allocatable :: stacks(:)
+    !> Stack of each of this rank's elements, (elements)
+    integer, allocatable :: stack(:)
     !> Section of the full laminate, and the same with the bending moduli of plies with E1c
     type(section_t) :: section, bending_section
     !> Thickness of the laminate

@@ -87,16 +87,16 @@ contains
 
     call find_place(model, gauge, at, angle)
     direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
-    columns = cells_at(model%mesh%x_edges, at(1))
-    rows = cells_at(model%mesh%y_edges, at(2))
-    ply = merge(size(model%plies), 1, gauge%face == face_back)
+    columns = model%mesh%along(1)%touching(at(1))
+    rows = model%mesh%along(2)%touching(at(2))
+    ply = merge(model%mesh%plies, 1, gauge%face == face_back)
     do j = 1, size(rows)
       do i = 1, size(columns)
         element = model%mesh%element_at(columns(i) + (rows(j) - 1)*model%mesh%cells(1), ply)
         element = findloc(model%distribution%elements, element, dim=1)
         if (element == 0) cycle
         call total%add(dot_product(direction, surface_strain(model, gauge, motion, element, &
-          [part_of(model%mesh%x_edges, columns(i), at(1)), part_of(model%mesh%y_edges, rows(j), at(2))]))/ &
+          [part_of(model%mesh%along(1)%ends(columns(i)), at(1)), part_of(model%mesh%along(2)%ends(rows(j)), at(2))]))/ &
           (size(columns)*size(rows)))
       end do
     end do
@@ -120,7 +120,9 @@ contains
     call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
     shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
     mean = matmul(shape, all(lane_of(element), corners, :6))
-    z = merge(model%plies(size(model%plies))%z_bottom, model%plies(1)%z_top, gauge%face == face_back)
+    associate (plies => model%stacks(model%stack(element))%plies)
+      z = merge(plies(size(plies))%z_bottom, plies(1)%z_top, gauge%face == face_back)
+    end associate
     strain = mean(1:3) + z*mean(4:6)
   end function surface_strain
 
@@ -144,30 +146,13 @@ contains
     end do
   end subroutine find_place
 
-  !> Cell that contains a coordinate, or both adjacent cells if the coordinate is an edge.
-  pure function cells_at(edges, at) result(cells)
-    !> Edges of the cells, ascending
-    real(wp), intent(in) :: edges(:)
-    !> The coordinate, on the plate
-    real(wp), intent(in) :: at
-    !> One or two
-    integer, allocatable :: cells(:)
-    real(wp) :: same
-    integer :: cell
-
-    same = rounding*(edges(size(edges)) - edges(1))
-    cells = [(cell, cell=max(1, count(edges < at - same)), min(size(edges) - 1, count(edges <= at + same)))]
-  end function cells_at
-
   !> Position of a coordinate in a cell, from 0 to 1.
-  pure real(wp) function part_of(edges, cell, at) result(part)
-    !> Edges of the cells
-    real(wp), intent(in) :: edges(:)
-    !> The cell
-    integer, intent(in) :: cell
+  pure real(wp) function part_of(ends, at) result(part)
+    !> Ends of the cell
+    real(wp), intent(in) :: ends(2)
     !> The coordinate
     real(wp), intent(in) :: at
 
-    part = (at - edges(cell))/(edges(cell + 1) - edges(cell))
+    part = (at - ends(1))/(ends(2) - ends(1))
   end function part_of
 end module placed_gauges

@@ -13,7 +13,6 @@ module placed_lines
   use layer_maps, only: layer_map_t
   use distributions, only: distribution_t
   use line_loads, only: line_load_t, along_x, all_layers
-  use nodal_lines, only: edges_of, node_line, simpson_weight
   implicit none
   private
   public :: placed_line_t, place_line
@@ -81,7 +80,7 @@ contains
     across = 3 - along
     self%load = load
     self%stiffness = relative_stiffness*section_scale(section, load%component)
-    crossing = node_line(edges_of(mesh, across), load%at)
+    crossing = mesh%along(across)%nearest_node(load%at)
     mirrored = is_mirrored(symmetry)
     if (mirrored(along)) self%share = self%share/2
     if (mirrored(across) .and. crossing == 0) self%share = self%share/2
@@ -92,7 +91,7 @@ contains
       associate (lines => mesh%lines_of(mesh%point_node(distribution%points(i))))
         if (lines(across) /= crossing) cycle
         call add_layers(self, mesh, map, plies, distribution%points(i), i, &
-                        simpson_weight(edges_of(mesh, along), lines(along)))
+                        mesh%along(along)%share_of_node(lines(along)))
       end associate
     end do
     call leave_out_fixed(self, fixed)

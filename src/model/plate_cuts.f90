@@ -2,7 +2,7 @@
 module plate_cuts
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use line_overlaps, only: node_bounds
+  use line_overlaps, only: parts_of_cells, parts_of_nodes
   use roundings, only: rounding
   implicit none
   private
@@ -48,13 +48,11 @@ contains
     type(layered_mesh_t), intent(in) :: mesh
     !> 0 to 1, (nodes)
     real(wp) :: parts(mesh%nodes())
-    real(wp), allocatable :: x(:, :), y(:, :), x_bounds(:), y_bounds(:)
+    real(wp), allocatable :: x(:, :), y(:, :)
     integer :: node, lines(2)
 
-    x_bounds = node_bounds(mesh%x_edges, .false.)
-    y_bounds = node_bounds(mesh%y_edges, .false.)
-    x = parts_of_intervals(self, x_bounds, 1)
-    y = parts_of_intervals(self, y_bounds, 2)
+    x = both_parts(self, mesh, 1, parts_of_nodes)
+    y = both_parts(self, mesh, 2, parts_of_nodes)
     do node = 1, size(parts)
       lines = mesh%lines_of(node) + 1
       parts(node) = part_of(mesh, x(:, lines(1)), y(:, lines(2)))
@@ -73,8 +71,8 @@ contains
     real(wp), allocatable :: x(:, :), y(:, :)
     integer :: cell, place(2)
 
-    x = parts_of_intervals(self, mesh%x_edges, 1)
-    y = parts_of_intervals(self, mesh%y_edges, 2)
+    x = both_parts(self, mesh, 1, parts_of_cells)
+    y = both_parts(self, mesh, 2, parts_of_cells)
     do cell = 1, size(parts)
       place = mesh%place_of(cell)
       parts(cell) = part_of(mesh, x(:, place(1)), y(:, place(2)))
@@ -82,23 +80,25 @@ contains
   end function of_cells
 
   !> Part of each interval of a line inside of the cut, and inside of the image of the cut on the other side of 0.
-  pure function parts_of_intervals(self, bounds, direction) result(parts)
+  pure function both_parts(self, mesh, direction, parts_of) result(parts)
     class(plate_cut_t), intent(in) :: self
-    !> Ascending bounds of the intervals
-    real(wp), intent(in) :: bounds(:)
+    !> Mesh of the plate, or of its modelled part
+    type(layered_mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
+    !> Intervals: cells or nodes
+    procedure(parts_of_cells) :: parts_of
     !> 0 to 1, (2, intervals)
-    real(wp) :: parts(2, size(bounds) - 1)
-    integer :: image
+    real(wp), allocatable :: parts(:, :)
 
-    do image = 1, 2
-      associate (middle => merge(1, -1, image == 1)*self%centre(direction), half => self%length(direction)/2, &
-                 low => bounds(:size(bounds) - 1), high => bounds(2:))
-        parts(image, :) = max(0.0_wp, min(high, middle + half) - max(low, middle - half))/(high - low)
+    associate (middle => self%centre(direction), half => self%length(direction)/2, line => mesh%along(direction))
+      associate (first => parts_of(line, middle - half, middle + half))
+        allocate (parts(2, size(first)))
+        parts(1, :) = first
       end associate
-    end do
-  end function parts_of_intervals
+      parts(2, :) = parts_of(line, -middle - half, -middle + half)
+    end associate
+  end function both_parts
 
   !> Part of a rectangle and of its images in the full plate: their mean.
   pure real(wp) function part_of(mesh, x, y) result(part)

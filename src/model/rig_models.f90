@@ -121,7 +121,7 @@ contains
     allocate (self%line_points(3, 0), self%line_rig(0), self%line_component(0), self%line_weights(3, 0), &
               self%line_stiffness(0), self%line_element(0))
     do element = 1, size(distribution%elements)
-      if (mesh%element_plies(1, distribution%elements(element)) /= 1) cycle
+      if (.not. mesh%is_top(distribution%elements(element))) cycle
       cell = mesh%element_cell(distribution%elements(element))
       do i = 1, size(supports)
         if (supports(i)%unilateral) cycle

@@ -28,6 +28,7 @@ module band_states
     !> Damage of a ply of an element, and the stresses that its closed cracks carry.
     procedure :: accepted_damage
     procedure :: carried_by_cracks
+    procedure :: permanent_shear
     procedure :: visit
   end type band_states_t
 
@@ -133,6 +134,15 @@ contains
     stresses = self%trial(self%offset(element) + ply)%recovered(:2)
   end function carried_by_cracks
 
+  !> Permanent shear strain of a ply of an element in the trial.
+  pure real(wp) function permanent_shear(self, ply, element) result(strain)
+    class(band_states_t), intent(in) :: self
+    !> Ply and element of this rank that has it
+    integer, intent(in) :: ply, element
+
+    strain = self%trial(self%offset(element) + ply)%permanent
+  end function permanent_shear
+
   !> Saves or loads the accepted states. Collective.
   subroutine visit(self, archive, model)
     class(band_states_t), intent(inout) :: self
@@ -144,9 +154,9 @@ contains
 
     ! A column has all plies of the laminate, so that, when an element is split into layers, each layer can read its
     ! plies from the column of the undivided element.
-    allocate (table(numbers*size(model%plies), size(self%offset)), strains(2*size(model%plies), size(self%offset)), &
-              closed(2*size(model%plies), size(self%offset)), kinked(size(model%plies), size(self%offset)), &
-              cracked(size(model%plies), size(self%offset)), &
+    allocate (table(numbers*model%mesh%plies, size(self%offset)), strains(2*model%mesh%plies, size(self%offset)), &
+              closed(2*model%mesh%plies, size(self%offset)), kinked(model%mesh%plies, size(self%offset)), &
+              cracked(model%mesh%plies, size(self%offset)), &
               source=0.0_wp)
     do element = 1, size(self%offset)
       do ply = self%range(1, element), self%range(2, element)

@@ -6,7 +6,8 @@ module bimodular_sections
   use mean_sections, only: mean_sections_t, new_mean_sections
   use mean_stiffnesses, only: change_values, mean_change, sub_ply_middle, mean_strains_at
   use models, only: model_t
-  use plies, only: ply_t, elasticity_t, compressed, uniaxial_strain
+  use plies, only: elasticity_t, compressed, uniaxial_strain
+  use ply_stacks, only: ply_stack_t
   use section_laws, only: section_law_t
   implicit none
   private
@@ -20,14 +21,14 @@ module bimodular_sections
     real(wp), allocatable :: free(:, :, :)
     !> The same with the moduli in tension
     real(wp), allocatable, private :: tensile(:, :, :)
-    !> Plies of the laminate
-    type(ply_t), allocatable, private :: plies(:)
-    !> Constants of the plies of elements with failed plies, (plies, elements); allocated where plies may fail
+    !> The different stacks of elements
+    type(ply_stack_t), allocatable, private :: stacks(:)
+    !> Stack of each element, (elements)
+    integer, allocatable, private :: stack(:)
+    !> Constants of the stack of elements with failed plies, (plies, elements); allocated where plies may fail
     type(elasticity_t), allocatable, private :: constants(:, :)
     !> True for these elements
     logical, allocatable, private :: failed(:)
-    !> First and last ply of each element, (2, elements)
-    integer, allocatable, private :: range(:, :)
   contains
     procedure :: soften
     procedure :: reduce
@@ -41,13 +42,13 @@ contains
     type(bimodular_sections_t) :: self
 
     self%signs = new_mean_sections(model)
-    self%plies = model%plies
     allocate (self%free(lanes, 7, model%elements%batches), source=0.0_wp)
     if (allocated(model%free)) self%free = model%free
     self%tensile = self%free
-    self%range = model%mesh%element_plies(:, model%distribution%elements)
+    self%stacks = model%stacks
+    self%stack = model%stack
     allocate (self%failed(model%elements%elements), source=.false.)
-    if (model%setup%has_ply_damage) allocate (self%constants(size(model%plies), model%elements%elements))
+    if (model%setup%has_ply_damage) allocate (self%constants(model%mesh%plies, model%elements%elements))
   end function new_bimodular_sections
 
   !> Takes over the reduced constants of the plies of an element.
@@ -61,7 +62,7 @@ contains
     real(wp), intent(in) :: tensile(7)
 
     self%failed(element) = .true.
-    self%constants(self%range(1, element):self%range(2, element), element) = constants
+    self%constants(:size(constants), element) = constants
     self%tensile(lane_of(element), :, batch_of(element)) = tensile
   end subroutine reduce
 
@@ -108,14 +109,16 @@ contains
     integer :: ply, number
 
     change = 0
-    do ply = self%range(1, element), self%range(2, element)
-      do number = 1, self%plies(ply)%sub_plies
-        z = sub_ply_middle(self%plies(ply), number)
-        associate (constants => self%constants(ply, element))
-          if (uniaxial_strain(constants, mean_strains_at(self%plies(ply), means, z)) < 0) &
-            change = change + mean_change(self%plies(ply), constants, compressed(constants), z)
-        end associate
+    associate (plies => self%stacks(self%stack(element))%plies)
+      do ply = 1, size(plies)
+        do number = 1, plies(ply)%sub_plies
+          z = sub_ply_middle(plies(ply), number)
+          associate (constants => self%constants(ply, element))
+            if (uniaxial_strain(constants, mean_strains_at(plies(ply), means, z)) < 0) &
+              change = change + mean_change(plies(ply), constants, compressed(constants), z)
+          end associate
+        end do
       end do
-    end do
+    end associate
   end function change_of
 end module bimodular_sections

@@ -88,10 +88,10 @@ contains
     type(crack_band_sections_t) :: self
     integer :: i
 
-    self%plies = model%plies
-    allocate (self%bands(size(model%plies)))
+    self%plies = model%laminates(1)%plies
+    allocate (self%bands(size(self%plies)))
     do i = 1, size(self%bands)
-      self%bands(i) = create_crack_band(material_in_place(model%plies, i, model%setup%materials, &
+      self%bands(i) = create_crack_band(material_in_place(self%plies, i, model%setup%materials, &
                                                           model%setup%ply_damage), model%setup%ply_damage)
     end do
     if (allocated(model%free)) then
@@ -106,7 +106,8 @@ contains
     end if
     self%onset = [(onset_strain(self%bands(i)), i=1, size(self%bands))]
     self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
-    self%states = new_band_states(model%mesh%element_plies(:, model%distribution%elements))
+    self%states = new_band_states(reshape([(model%mesh%plies_of(model%distribution%elements(i)), &
+                                            i=1, model%elements%elements)], [2, model%elements%elements]))
     if (model%setup%ply_damage%weibull_modulus > 0) then
       self%volumes = new_stressed_volumes(model, self%bands, size(self%states%trial))
       self%onset = min(self%onset, self%volumes%smallest_strain(self%bands))

@@ -5,7 +5,6 @@ module element_stresses
   use ply_stresses, only: middle_stress, face_stresses
   use criterion_strains, only: mean_strains_of_elements
   use ply_criteria, only: shear_force
-  use ply_shear, only: shear_of_plies
   use ply_failures, only: ply_failure_t
   use models, only: model_t
   implicit none
@@ -43,7 +42,7 @@ contains
     !> s11, s22, s12, s13, s23 in the ply's mid-plane, on its top and on its bottom; zero in elements without
     !> this ply, (5, 3, elements)
     real(wp), allocatable :: stresses(:, :, :)
-    type(ply_t) :: strained(1)
+    type(ply_t) :: strained
     integer :: element
 
     allocate (stresses(5, 3, size(strains, 2)), source=0.0_wp)
@@ -51,9 +50,9 @@ contains
       if (.not. has_ply(model, ply, element)) cycle
       associate (shear => shear_of_ply(model, strains, ply, element), &
                  elasticity => failures%elasticity(model, ply, element))
-        strained = failures%strained_plies(model, ply, ply, element)
-        stresses(:, 1, element) = middle_stress(strained(1), elasticity, strains(:6, element), shear)
-        stresses(:, 2:3, element) = face_stresses(strained(1), elasticity, strains(:6, element), shear)
+        strained = strained_ply(model, failures, ply, element)
+        stresses(:, 1, element) = middle_stress(strained, elasticity, strains(:6, element), shear)
+        stresses(:, 2:3, element) = face_stresses(strained, elasticity, strains(:6, element), shear)
         stresses(1:2, :, element) = stresses(1:2, :, element) + spread(failures%carried_by_cracks(ply, element), 2, 3)
       end associate
     end do
@@ -72,13 +71,28 @@ contains
     integer, intent(in) :: ply, element
     !> The stress
     real(wp) :: stress(5)
-    type(ply_t) :: strained(1)
+    type(ply_t) :: strained
 
-    strained = failures%strained_plies(model, ply, ply, element)
-    stress = middle_stress(strained(1), elasticity, strains(:6, element), &
+    strained = strained_ply(model, failures, ply, element)
+    stress = middle_stress(strained, elasticity, strains(:6, element), &
                            shear_of_ply(model, strains, ply, element))
     stress(1:2) = stress(1:2) + failures%carried_by_cracks(ply, element)
   end function stress_of_ply
+
+  !> A ply of an element with its permanent strain.
+  pure function strained_ply(model, failures, number, element) result(ply)
+    type(model_t), intent(in) :: model
+    !> Failures of its plies
+    type(ply_failure_t), intent(in) :: failures
+    !> Number of the ply, and element of this rank that has it
+    integer, intent(in) :: number, element
+    type(ply_t) :: ply
+
+    associate (stack => model%stacks(model%stack(element)))
+      ply = stack%plies(stack%place(number))
+    end associate
+    if (allocated(failures%bands)) ply%free_strain(3) = failures%bands%states%permanent_shear(number, element)
+  end function strained_ply
 
   !> Transverse shear stress of one ply of one element.
   pure function shear_of_ply(model, strains, ply, element) result(shear)
@@ -90,11 +104,9 @@ contains
     !> xz, yz
     real(wp) :: shear(2)
 
-    associate (first => model%mesh%element_plies(1, model%distribution%elements(element)), &
-               last => model%mesh%element_plies(2, model%distribution%elements(element)))
-      associate (all => shear_of_plies(model%plies(first:last), model%shear_shares(:, :, first:last), &
-                                       strains(7:8, element)))
-        shear = all(:, ply - first + 1)
+    associate (stack => model%stacks(model%stack(element)))
+      associate (all => stack%shear_stresses(strains(7:8, element)))
+        shear = all(:, stack%place(ply))
       end associate
     end associate
   end function shear_of_ply
@@ -105,8 +117,6 @@ contains
     !> Ply of the laminate, and element
     integer, intent(in) :: ply, element
 
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      has_ply = ply >= range(1) .and. ply <= range(2)
-    end associate
+    has_ply = model%stacks(model%stack(element))%has(ply)
   end function has_ply
 end module element_stresses

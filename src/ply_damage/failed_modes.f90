@@ -33,7 +33,7 @@ contains
     type(failed_modes_t) :: self
 
     if (.not. model%setup%has_ply_damage) return
-    allocate (self%occurred(failure_modes, size(model%plies), model%elements%elements), source=.false.)
+    allocate (self%occurred(failure_modes, model%mesh%plies, model%elements%elements), source=.false.)
   end function new_failed_modes
 
   !> Finds the modes whose criteria are met for the first time.
@@ -53,12 +53,10 @@ contains
     strains = mean_strains_of_elements(model, displacement)
     allocate (found(size(strains, 2)))
     do element = 1, size(found)
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        associate (occurred => self%occurred(:, range(1):range(2), element))
-          failing = failure_measures(model, stiffness, element, self%elasticities(model, element), &
-                                     strains(:, element)) >= 1 .and. .not. occurred
-          occurred = occurred .or. failing
-        end associate
+      associate (plies => model%stacks(model%stack(element))%number)
+        failing = failure_measures(model, stiffness, element, self%elasticities(model, element), &
+                                   strains(:, element)) >= 1 .and. .not. self%occurred(:, plies, element)
+        self%occurred(:, plies, element) = self%occurred(:, plies, element) .or. failing
       end associate
       found(element) = any(failing)
     end do
@@ -68,14 +66,14 @@ contains
   pure function elasticity(self, model, ply, element)
     class(failed_modes_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> Ply of the laminate
-    integer, intent(in) :: ply
-    !> Element of this rank
-    integer, intent(in) :: element
+    !> Ply of the laminate, and element of this rank that has it
+    integer, intent(in) :: ply, element
     !> Constants of the ply
     type(elasticity_t) :: elasticity
 
-    elasticity = model%plies(ply)%elasticity
+    associate (stack => model%stacks(model%stack(element)))
+      elasticity = stack%plies(stack%place(ply))%elasticity
+    end associate
     if (allocated(self%occurred)) &
       elasticity = degraded(elasticity, self%occurred(:, ply, element), model%setup%ply_damage)
   end function elasticity
@@ -88,12 +86,12 @@ contains
     integer, intent(in) :: element
     !> Constants of the element's plies
     type(elasticity_t), allocatable :: elasticity(:)
-    integer :: ply
+    integer :: i
 
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      allocate (elasticity(range(2) - range(1) + 1))
-      do ply = range(1), range(2)
-        elasticity(ply - range(1) + 1) = self%elasticity(model, ply, element)
+    associate (plies => model%stacks(model%stack(element))%number)
+      allocate (elasticity(size(plies)))
+      do i = 1, size(plies)
+        elasticity(i) = self%elasticity(model, plies(i), element)
       end do
     end associate
   end function elasticities
@@ -124,11 +122,9 @@ contains
     self%occurred = reshape(table, shape(self%occurred)) > 0
     ! The loaded state may be that of an element with more plies.
     do element = 1, size(self%occurred, 3)
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        do ply = 1, size(self%occurred, 2)
-          if (ply < range(1) .or. ply > range(2)) self%occurred(:, ply, element) = .false.
-        end do
-      end associate
+      do ply = 1, size(self%occurred, 2)
+        if (.not. model%stacks(model%stack(element))%has(ply)) self%occurred(:, ply, element) = .false.
+      end do
     end do
   end subroutine visit
 end module failed_modes

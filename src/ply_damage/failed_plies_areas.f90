@@ -17,21 +17,21 @@ contains
     type(model_t), intent(in) :: model
     type(ply_failure_t), intent(in) :: failures
     !> (modes, plies)
-    real(wp) :: areas(failure_modes, size(model%plies))
+    real(wp) :: areas(failure_modes, model%mesh%plies)
     real(wp) :: area
     logical :: failed(failure_modes)
-    type(exact_sum_t) :: sums(failure_modes, size(model%plies))
-    integer :: ply, mode, i
+    type(exact_sum_t) :: sums(failure_modes, model%mesh%plies)
+    integer :: k, mode, i
 
     areas = 0
     if (.not. model%setup%has_ply_damage) return
     do i = 1, model%elements%elements
       area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(i)))
-        do ply = range(1), range(2)
-          failed = failures%failed(ply, i)
+      associate (plies => model%stacks(model%stack(i))%number)
+        do k = 1, size(plies)
+          failed = failures%failed(plies(k), i)
           do mode = 1, failure_modes
-            if (failed(mode)) call sums(mode, ply)%add(area)
+            if (failed(mode)) call sums(mode, plies(k))%add(area)
           end do
         end do
       end associate
@@ -45,14 +45,14 @@ contains
     type(ply_failure_t), intent(in) :: failures
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)
-    integer :: element, ply, mode
+    integer :: element, k, mode
 
     counts = 0
     if (.not. model%setup%has_ply_damage) return
     do element = 1, model%elements%elements
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        do ply = range(1), range(2)
-          where (failures%failed(ply, element)) counts = counts + model%mesh%multiplicity
+      associate (plies => model%stacks(model%stack(element))%number)
+        do k = 1, size(plies)
+          where (failures%failed(plies(k), element)) counts = counts + model%mesh%multiplicity
         end do
       end associate
     end do

@@ -73,7 +73,7 @@ contains
         self%area(numbers(element)) = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
       end do
     end associate
-    allocate (self%moments(moment_values + 1 + merge(size(model%plies), 0, model%setup%ply_damage%permanent_shear), &
+    allocate (self%moments(moment_values + 1 + merge(model%mesh%plies, 0, model%setup%ply_damage%permanent_shear), &
                            size(self%area)), source=0.0_wp)
     allocate (self%concerned(model%elements%batches), source=.false.)
     do element = 1, size(self%number)
@@ -110,8 +110,9 @@ contains
     integer, intent(out) :: parts(most)
     !> Along x and y
     logical, intent(out) :: joined(2)
-    integer :: places(2, most), direction, known, i, other
+    integer :: places(2, most), range(2), direction, known, i, other
 
+    range = mesh%plies_of(element)
     places(:, 1) = mesh%place_of(mesh%element_cell(element))
     joined = mesh%struck_side(places(:, 1)) /= 0 .and. (mesh%halved .or. is_struck)
     known = 1
@@ -124,8 +125,8 @@ contains
     end do
     parts = 0
     do i = 1, known
-      other = mesh%element_at(mesh%cell_at(places(1, i), places(2, i)), mesh%element_plies(1, element))
-      if (any(mesh%element_plies(:, other) /= mesh%element_plies(:, element))) then
+      other = mesh%element_at(mesh%cell_at(places(1, i), places(2, i)), range(1))
+      if (mesh%element_layer(other) /= mesh%element_layer(element)) then
         parts = 0
         joined = .false.
         return

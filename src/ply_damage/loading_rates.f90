@@ -98,7 +98,7 @@ contains
     integer :: element, ply
 
     ! A column has all plies of the laminate, as those of the states.
-    allocate (table(values*size(model%plies), size(offset)), source=0.0_wp)
+    allocate (table(values*model%mesh%plies, size(offset)), source=0.0_wp)
     do element = 1, size(offset)
       do ply = range(1, element), range(2, element)
         table(values*(ply - 1) + 1:values*ply, element) = self%accepted(:, offset(element) + ply)

@@ -6,6 +6,7 @@ module mean_sections
   use kinds, only: wp
   use mean_stiffnesses, only: change_values, mean_change, sub_ply_middle, mean_strains_at
   use models, only: model_t
+  use ply_stacks, only: ply_stack_t
   use plies, only: ply_t, compressed, uniaxial_strain
   implicit none
   private
@@ -38,22 +39,9 @@ contains
   function new_mean_sections(model) result(self)
     type(model_t), intent(in) :: model
     type(mean_sections_t) :: self
-    integer :: last(0:size(model%plies)), ply, number, k, element
+    integer :: first(model%mesh%plies + 1, size(model%laminates)), range(2), k, element
 
-    last(0) = 0
-    do ply = 1, size(model%plies)
-      last(ply) = last(ply - 1) + model%plies(ply)%sub_plies
-    end do
-    allocate (self%factors(7, last(size(model%plies))), self%contributions(change_values, last(size(model%plies))))
-    do ply = 1, size(model%plies)
-      do number = 1, model%plies(ply)%sub_plies
-        k = last(ply - 1) + number
-        self%factors(:, k) = uniaxial_factors(model%plies(ply), sub_ply_middle(model%plies(ply), number))
-        self%contributions(:, k) = mean_change(model%plies(ply), model%plies(ply)%elasticity, &
-                                               compressed(model%plies(ply)%elasticity), &
-                                               sub_ply_middle(model%plies(ply), number))
-      end do
-    end do
+    call number_sub_plies(self, model%laminates, first)
     associate (batches => model%elements%batches)
       allocate (self%change(lanes, change_values, batches), source=0.0_wp)
       allocate (self%signs(lanes, size(self%factors, 2), batches), source=1.0_wp)
@@ -63,11 +51,44 @@ contains
       self%range(:, 2, :) = 0
     end associate
     do element = 1, model%elements%elements
-      associate (its => model%mesh%element_plies(:, model%distribution%elements(element)))
-        self%range(lane_of(element), :, batch_of(element)) = [last(its(1) - 1) + 1, last(its(2))]
-      end associate
+      k = model%mesh%layers(model%stack(element))%laminate
+      range = model%mesh%layers(model%stack(element))%plies
+      self%range(lane_of(element), :, batch_of(element)) = [first(range(1), k), first(range(2) + 1, k) - 1]
     end do
   end function new_mean_sections
+
+  !> Numbers the sub-plies of the different laminates consecutively, with their factors and contributions.
+  pure subroutine number_sub_plies(self, laminates, first)
+    type(mean_sections_t), intent(inout) :: self
+    !> The laminates
+    type(ply_stack_t), intent(in) :: laminates(:)
+    !> First sub-ply of each ply of the plate or of the next one of the laminate, (plies + 1, laminates)
+    integer, intent(out) :: first(:, :)
+    integer :: i, ply, place, number, next
+
+    next = 1
+    do i = 1, size(laminates)
+      do ply = 1, size(first, 1) - 1
+        first(ply, i) = next
+        place = laminates(i)%place(ply)
+        if (place > 0) next = next + laminates(i)%plies(place)%sub_plies
+      end do
+      first(size(first, 1), i) = next
+    end do
+    allocate (self%factors(7, next - 1), self%contributions(change_values, next - 1))
+    do i = 1, size(laminates)
+      do place = 1, size(laminates(i)%number)
+        associate (ply => laminates(i)%plies(place))
+          do number = 1, ply%sub_plies
+            next = first(laminates(i)%number(place), i) + number - 1
+            self%factors(:, next) = uniaxial_factors(ply, sub_ply_middle(ply, number))
+            self%contributions(:, next) = mean_change(ply, ply%elasticity, compressed(ply%elasticity), &
+                                                      sub_ply_middle(ply, number))
+          end do
+        end associate
+      end do
+    end do
+  end subroutine number_sub_plies
 
   !> Factors of the mean strains of an element in the uniaxial strain of an undamaged ply at a height, and a constant.
   pure function uniaxial_factors(ply, z) result(factors)

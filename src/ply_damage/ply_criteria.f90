@@ -5,7 +5,6 @@ module ply_criteria
   use plies, only: elasticity_t
   use ply_damage_parameters, only: failure_modes, stress_at_faces
   use ply_stresses, only: middle_stress, face_stresses
-  use ply_shear, only: shear_of_plies
   use failure_criteria, only: chosen_indices
   use models, only: model_t
   implicit none
@@ -31,13 +30,11 @@ contains
     real(wp) :: measures(failure_modes, size(elasticity))
     real(wp), allocatable :: stresses(:, :)
     real(wp) :: shear(2, size(elasticity))
-    integer :: range(2), i
+    integer :: i
 
-    range = model%mesh%element_plies(:, model%distribution%elements(element))
-    shear = shear_of_plies(model%plies(range(1):range(2)), model%shear_shares(:, :, range(1):range(2)), &
-                           shear_force(stiffness, element, strains(7:8)))
+    shear = model%stacks(model%stack(element))%shear_stresses(shear_force(stiffness, element, strains(7:8)))
     do i = 1, size(elasticity)
-      associate (ply => model%plies(range(1) + i - 1), setup => model%setup)
+      associate (ply => model%stacks(model%stack(element))%plies(i), setup => model%setup)
         if (setup%ply_damage%stress == stress_at_faces) then
           stresses = face_stresses(ply, elasticity(i), strains(:6), shear(:, i))
         else

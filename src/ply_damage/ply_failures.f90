@@ -9,7 +9,7 @@ module ply_failures
   use element_batches, only: batch_of, lane_of
   use plies, only: elasticity_t, ply_t
   use ply_damage_parameters, only: energy_modes, failure_modes
-  use stacking, only: in_plane_section, layer_stiffness
+  use stacking, only: in_plane_section
   use section_stiffnesses, only: visit_stiffness
   use models, only: model_t
   use rank_totals, only: totals_of
@@ -228,9 +228,7 @@ contains
 
     failed = .false.
     do element = 1, size(failed, 2)
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        if (range(1) <= ply .and. ply <= range(2)) failed(:, element) = self%failed(ply, element)
-      end associate
+      if (model%stacks(model%stack(element))%has(ply)) failed(:, element) = self%failed(ply, element)
     end do
   end function failed_in_elements
 
@@ -262,17 +260,20 @@ contains
     if (allocated(self%bands%volumes)) volume = self%bands%volumes%volume_at_failure(ply)
   end function stressed_volume
 
-  !> Neighbouring plies of an element with their permanent strains.
-  pure function strained_plies(self, model, first, last, element) result(plies)
+  !> Plies of an element with their permanent strains.
+  pure function strained_plies(self, model, element) result(plies)
     class(ply_failure_t), intent(in) :: self
     type(model_t), intent(in) :: model
-    !> First and last ply, and element of this rank
-    integer, intent(in) :: first, last, element
-    !> The plies
-    type(ply_t) :: plies(first:last)
+    !> Element of this rank
+    integer, intent(in) :: element
+    type(ply_t), allocatable :: plies(:)
+    integer :: i
 
-    plies = model%plies(first:last)
-    if (allocated(self%bands)) plies = self%bands%strained(first, last, element)
+    associate (stack => model%stacks(model%stack(element)))
+      plies = stack%plies
+      if (allocated(self%bands)) &
+        plies%free_strain(3) = [(self%bands%states%permanent_shear(stack%number(i), element), i=1, size(plies))]
+    end associate
   end function strained_plies
 
   !> Stresses along and across the fibres that closed cracks of a ply of an element carry, uniform over its volume.
@@ -295,10 +296,10 @@ contains
     integer, intent(in) :: element
     !> Those of the element's plies
     type(elasticity_t), allocatable :: elasticities(:)
-    integer :: ply
+    integer :: i
 
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      elasticities = [(self%elasticity(model, ply, element), ply=range(1), range(2))]
+    associate (plies => model%stacks(model%stack(element))%number)
+      elasticities = [(self%elasticity(model, plies(i), element), i=1, size(plies))]
     end associate
   end function elasticities
 
@@ -332,12 +333,10 @@ contains
     !> Element of this rank
     integer, intent(in) :: element
 
-    associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-      self%stiffness(lane_of(element), :, batch_of(element)) = &
-        layer_stiffness(model%plies, self%modes%elasticities(model, element), range(1), range(2), &
-                        model%setup%laminate%shear_correction)
+    associate (stack => model%stacks(model%stack(element)))
+      self%stiffness(lane_of(element), :, batch_of(element)) = stack%stiffness(self%modes%elasticities(model, element))
       if (allocated(self%free)) self%free(lane_of(element), :, batch_of(element)) = &
-        free_resultants(model%plies(range(1):range(2)), self%elasticities(model, element))
+        free_resultants(stack%plies, self%elasticities(model, element))
       if (allocated(self%signs)) call self%signs%reduce(element, self%elasticities(model, element), &
                                                         self%free(lane_of(element), :, batch_of(element)))
     end associate
@@ -355,12 +354,12 @@ contains
     if (.not. model%setup%has_ply_damage) return
     do element = 1, size(is_split)
       if (.not. is_split(element)) cycle
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)), &
+      associate (stack => model%stacks(model%stack(element)), &
                  left => self%stiffness(lane_of(element), :, batch_of(element)))
         left = model%elements%stiffness(lane_of(element), :, batch_of(element))
         if (allocated(self%bands)) then
           ! Softening does not reduce the transverse shear stiffness.
-          left(:18) = in_plane_section(model%plies(range(1):range(2)), self%elasticities(model, element))
+          left(:18) = in_plane_section(stack%plies, self%elasticities(model, element))
         else
           call soften(self, model, element)
         end if
@@ -373,7 +372,7 @@ contains
     class(ply_failure_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    integer :: mode, element, ply
+    integer :: mode, element, i
 
     call self%modes%visit(archive, model)
     if (allocated(self%bands)) then
@@ -387,11 +386,11 @@ contains
     if (model%setup%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
     if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%has_ply_damage)) return
     do element = 1, model%elements%elements
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
+      associate (plies => model%stacks(model%stack(element))%number)
         self%free(lane_of(element), :, batch_of(element)) = &
-          free_resultants(self%strained_plies(model, range(1), range(2), element), self%elasticities(model, element))
+          free_resultants(self%strained_plies(model, element), self%elasticities(model, element))
         if (.not. allocated(self%signs)) cycle
-        if (any([(self%modes%failed(ply, element), ply=range(1), range(2))])) &
+        if (any([(self%modes%failed(plies(i), element), i=1, size(plies))])) &
           call self%signs%reduce(element, self%elasticities(model, element), &
                                  self%free(lane_of(element), :, batch_of(element)))
       end associate

@@ -62,7 +62,7 @@ contains
 
     requested = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
     if (any(requested)) strains = element_strains(model, plies, displacement)
-    do ply = 1, size(model%plies)
+    do ply = 1, model%mesh%plies
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
           call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
@@ -96,10 +96,8 @@ contains
 
     crushed = 0
     do element = 1, size(crushed, 2)
-      associate (range => model%mesh%element_plies(:, model%distribution%elements(element)))
-        if (ply < range(1) .or. ply > range(2)) cycle
-        if (bands%states%fibres_crushed(ply, element)) crushed(1, element) = 1
-      end associate
+      if (.not. model%stacks(model%stack(element))%has(ply)) cycle
+      if (bands%states%fibres_crushed(ply, element)) crushed(1, element) = 1
     end do
   end function crushed_in
 
@@ -115,9 +113,14 @@ contains
     type(elasticity_t) :: left
     integer :: element
 
+    lost = 0
     do element = 1, size(lost, 2)
+      ! Softening plies show the damage of the cell in all of its layers.
+      if (.not. (allocated(plies%bands) .or. model%stacks(model%stack(element))%has(ply))) cycle
       left = plies%elasticity(model, ply, element)
-      lost(:, element) = 1 - [left%e1, left%e2]/[model%plies(ply)%elasticity%e1, model%plies(ply)%elasticity%e2]
+      associate (whole => model%laminates(1)%plies(ply)%elasticity)
+        lost(:, element) = 1 - [left%e1, left%e2]/[whole%e1, whole%e2]
+      end associate
     end do
   end function stiffness_lost
 

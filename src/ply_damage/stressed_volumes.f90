@@ -70,7 +70,7 @@ contains
     allocate (self%stress(states), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
     allocate (self%block(size(bands)))
     do ply = 1, size(bands)
-      range = block_of(model%plies, ply)
+      range = block_of(model%laminates(1)%plies, ply)
       self%block(ply) = range(1)
     end do
   end function new_stressed_volumes

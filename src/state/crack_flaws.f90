@@ -33,7 +33,7 @@ contains
     integer :: zone, ply
 
     if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
-    do ply = 1, size(model%plies)
+    do ply = 1, model%mesh%plies
       associate (below => model%mesh%zones%below_ply, delaminations => model%setup%delaminations)
         beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &
                  delaminations%flaw_strength < 1
@@ -41,13 +41,14 @@ contains
         cracked = cracked_cells(model, plies, ply)
         do zone = 1, size(beside)
           if (beside(zone)) call weaken_beside(interfaces%cohesive, model, zone, cracked, &
-                                               block_thickness(model%plies, ply), delaminations(zone)%flaw_strength)
+                                               block_thickness(model%laminates(1)%plies, ply), &
+                                               delaminations(zone)%flaw_strength)
         end do
       end associate
     end do
     if (.not. any(model%setup%delaminations%shear_cracks)) return
     strains = element_strains(model, plies, displacement)
-    do ply = 1, size(model%plies)
+    do ply = 1, model%mesh%plies
       call weaken_by_shear(model, plies, strains, ply, interfaces)
     end do
   end subroutine update_flaws
@@ -69,9 +70,9 @@ contains
     logical :: beside(size(parts)), cracked(product(model%mesh%cells))
     integer :: zone
 
-    reach = block_thickness(model%plies, ply)
+    reach = block_thickness(model%laminates(1)%plies, ply)
     associate (setup => model%setup, below => model%mesh%zones%below_ply)
-      strengths = crack_strengths(model%plies, ply, setup%materials, setup%ply_damage)
+      strengths = crack_strengths(model%laminates(1)%plies, ply, setup%materials, setup%ply_damage)
       beside = (below == ply .or. below == ply - 1) .and. setup%delaminations%law == law_cohesive .and. &
                setup%delaminations%shear_cracks
       parts = 1
@@ -114,7 +115,9 @@ contains
       if (cracks(i)) cracks(i) = has_ply(model, ply, i)
       if (.not. cracks(i)) cycle
       left = plies%elasticity(model, ply, i)
-      cracks(i) = left%e2 < model%plies(ply)%elasticity%e2
+      associate (stack => model%stacks(model%stack(i)))
+        cracks(i) = left%e2 < stack%plies(stack%place(ply))%elasticity%e2
+      end associate
       if (.not. cracks(i)) &
         cracks(i) = cracks_on_a_plane(strengths, stress_of_ply(model, plies, left, strains, ply, i))
     end do

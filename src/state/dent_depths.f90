@@ -67,7 +67,7 @@ contains
     associate (mesh => model%mesh)
       do element = 1, size(model%distribution%elements)
         associate (global => model%distribution%elements(element))
-          if (mesh%element_plies(1, global) /= 1) cycle
+          if (.not. mesh%is_top(global)) cycle
           point = mesh%connectivity(5, global)
           place = mesh%node_coordinates(:, mesh%point_node(point)) - mesh%struck
           if (norm2(place) < nearest*model%setup%impactor%radius .or. &

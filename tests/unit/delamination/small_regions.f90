@@ -1,5 +1,6 @@
 !> Small meshes and regions given as pictures, for the tests of the front.
 module small_regions
+  use cell_lines, only: cell_line
   use delaminated_regions, only: delaminated_region_t, create_region
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t, zone_t
@@ -16,8 +17,8 @@ contains
     type(layered_mesh_t) :: mesh
     integer :: i, j
 
-    mesh%x_edges = x_edges
-    mesh%y_edges = y_edges
+    mesh%along(1) = cell_line(x_edges)
+    mesh%along(2) = cell_line(y_edges)
     mesh%cells = [size(x_edges) - 1, size(y_edges) - 1]
     mesh%zones = [zone_t(below_ply=1, columns=columns, rows=rows)]
     allocate (mesh%node_coordinates(2, product(2*mesh%cells + 1)))

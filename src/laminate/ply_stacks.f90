@@ -1,0 +1,118 @@
+!> The plies of an element: which of the plate's plies, at which heights, and within which laminate. Elements with the
+!> same plies at the same heights refer to one stack.
+module ply_stacks
+  use kinds, only: wp
+  use mean_stiffnesses, only: in_bending
+  use ply_shear, only: shear_of_plies, shear_shares_of
+  use plies, only: elasticity_t, ply_t
+  use stacking, only: layer_stiffness, section_mass, section_t
+  implicit none
+  private
+  public :: ply_stack_t, whole_stack
+
+  !> Plies from the struck face down.
+  type :: ply_stack_t
+    !> Number of each ply among those of the plate, ascending
+    integer, allocatable :: number(:)
+    !> The plies, with their heights here
+    type(ply_t), allocatable :: plies(:)
+    !> All plies through the thickness here
+    type(ply_t), allocatable, private :: through(:)
+    !> Position of the first ply of the stack among them
+    integer, private :: first = 1
+    !> Transverse shear stresses of the plies under unit shear forces of the laminate, (2, 2, plies)
+    real(wp), allocatable, private :: shear_shares(:, :, :)
+    !> shear_five_sixths or shear_energy
+    integer, private :: shear_correction = 0
+  contains
+    procedure :: layer
+    procedure :: place
+    procedure :: has
+    procedure :: section
+    procedure :: stiffness
+    procedure :: shear_stresses
+  end type ply_stack_t
+
+contains
+
+  !> The plies through the thickness of the plate.
+  pure function whole_stack(number, plies, shear_correction) result(self)
+    !> Number of each ply among those of the plate, ascending
+    integer, intent(in) :: number(:)
+    !> The plies, with their heights
+    type(ply_t), intent(in) :: plies(:)
+    !> shear_five_sixths or shear_energy
+    integer, intent(in) :: shear_correction
+    type(ply_stack_t) :: self
+
+    self%number = number
+    self%plies = plies
+    self%through = plies
+    self%shear_shares = shear_shares_of(in_bending(plies))
+    self%shear_correction = shear_correction
+  end function whole_stack
+
+  !> The plies of a stack from one number to another: a layer of it.
+  pure function layer(self, first, last)
+    class(ply_stack_t), intent(in) :: self
+    !> Smallest and largest number
+    integer, intent(in) :: first, last
+    type(ply_stack_t) :: layer
+    integer :: from, to
+
+    from = count(self%number < first) + 1
+    to = count(self%number <= last)
+    layer = ply_stack_t(self%number(from:to), self%plies(from:to), self%through, self%first + from - 1, &
+                        self%shear_shares(:, :, from:to), self%shear_correction)
+  end function layer
+
+  !> Place in the stack of a ply of the plate; 0: it is not one of the stack.
+  pure integer function place(self, ply)
+    class(ply_stack_t), intent(in) :: self
+    !> Its number
+    integer, intent(in) :: ply
+
+    place = findloc(self%number, ply, dim=1)
+  end function place
+
+  !> True if a ply of the plate is one of the stack.
+  pure logical function has(self, ply)
+    class(ply_stack_t), intent(in) :: self
+    !> Its number
+    integer, intent(in) :: ply
+
+    has = self%place(ply) > 0
+  end function has
+
+  !> Stiffness and mass without damage.
+  pure function section(self)
+    class(ply_stack_t), intent(in) :: self
+    type(section_t) :: section
+
+    section%stiffness = self%stiffness(self%plies%elasticity)
+    section%mass = section_mass(self%plies)
+  end function section
+
+  !> Stiffness with elastic constants that may have been reduced.
+  pure function stiffness(self, elasticity)
+    class(ply_stack_t), intent(in) :: self
+    !> Present constants of the plies of the stack
+    type(elasticity_t), intent(in) :: elasticity(:)
+    !> Packed as in section_t
+    real(wp) :: stiffness(21)
+
+    stiffness = layer_stiffness(self%through, elasticity, self%first, self%first + size(self%plies) - 1, &
+                                self%shear_correction)
+  end function stiffness
+
+  !> Mean tau_xz and tau_yz of the plies under a shear force of the stack.
+  pure function shear_stresses(self, force) result(stresses)
+    class(ply_stack_t), intent(in) :: self
+    !> Qx and Qy per length
+    real(wp), intent(in) :: force(2)
+    !> (2, plies)
+    real(wp) :: stresses(2, size(self%plies))
+
+    stresses = shear_of_plies(self%plies, self%shear_shares, force)
+  end function shear_stresses
+end module ply_stacks
