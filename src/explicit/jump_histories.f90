@@ -31,7 +31,6 @@ module jump_histories
     !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
-    procedure :: record
     procedure :: damp
     procedure :: last_change
     !> Checkpoint.
@@ -50,19 +49,6 @@ contains
               self%work(points), self%lost(2, points), source=0.0_wp)
     allocate (self%friction(points))
   end function create_jump_history
-
-  !> Stores force and change of a step.
-  pure subroutine record(self, p, force, change)
-    class(jump_history_t), intent(inout) :: self
-    !> The point
-    integer, intent(in) :: p
-    !> Force, and change of the jump
-    real(wp), intent(in) :: force(3), change(3)
-
-    self%forces(:, p) = force
-    self%earlier(:, p) = self%change(:, p)
-    self%change(:, p) = change
-  end subroutine record
 
   !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
   !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
