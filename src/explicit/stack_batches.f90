@@ -1,5 +1,5 @@
 !> Stacks of layers, several at a time: constants of stacks with the same number of layers and of the same kind, lane
-!> first, and copies of the values of their points to and from lanes.
+!> first, and the states of their surfaces.
 module stack_batches
   use element_batches, only: lanes
   use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
@@ -12,7 +12,7 @@ module stack_batches
   use surface_friction, only: sliding_t
   implicit none
   private
-  public :: stack_batch_t, create_stack_batches, load_states, put, store_states, take
+  public :: stack_batch_t, create_stack_batches, load_states, store_states
 
   !> Constants of the surfaces, (lanes, n) each, of laws without flaws.
   type, public :: surface_lanes_t
@@ -162,44 +162,6 @@ contains
     end do
   end function new_surfaces
 
-  !> Values of consecutive points from the first of each lane on. Arrays of explicit shape, here and in `put`, let the
-  !> compiler unroll the loop over the values of a point.
-  pure subroutine take(values, points, field, first, rows, taken)
-    !> Number of values of a point, and of points
-    integer, intent(in) :: values, points
-    !> Values of all points
-    real(wp), intent(in) :: field(values, points)
-    !> The first point of each lane, and number of consecutive points
-    integer, intent(in) :: first(lanes), rows
-    !> Those of the lanes
-    real(wp), intent(out) :: taken(lanes, values, rows)
-    integer :: lane, l
-
-    do l = 1, rows
-      do lane = 1, lanes
-        taken(lane, :, l) = field(:, first(lane) + l - 1)
-      end do
-    end do
-  end subroutine take
-
-  !> Reverse of `take` for the lanes with a stack of their own.
-  pure subroutine put(values, points, taken, first, rows, members, field)
-    !> Number of values of a point, and of points
-    integer, intent(in) :: values, points
-    !> The first point of each lane, number of consecutive points, and number of lanes
-    integer, intent(in) :: first(lanes), rows, members
-    !> Values of the lanes
-    real(wp), intent(in) :: taken(lanes, values, rows)
-    !> Those of all points
-    real(wp), intent(inout) :: field(values, points)
-    integer :: lane, l
-
-    do l = 1, rows
-      do lane = 1, members
-        field(:, first(lane) + l - 1) = taken(lane, :, l)
-      end do
-    end do
-  end subroutine put
   !> Loads the surfaces of a damaged batch.
   pure subroutine load_states(batch, cohesive, history, jumps, last, earlier, states)
     type(stack_batch_t), intent(in) :: batch

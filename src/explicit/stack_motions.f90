@@ -8,7 +8,7 @@ module stack_motions
   use models, only: model_t
   use nodal_steps, only: nodal_steps_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: create_stack_batches, load_states, put, stack_batch_t, store_states, surface_states_t, take
+  use stack_batches, only: create_stack_batches, load_states, stack_batch_t, store_states, surface_states_t
   use stack_solutions, only: friction_t, solve_damaged, solve_intact
   use stack_updates, only: may_start, start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
@@ -34,6 +34,7 @@ contains
 
     if (allocated(nodes%batches) .and. count(nodes%stacks%damaged) > nodes%damaged) deallocate (nodes%batches)
     if (.not. allocated(nodes%batches)) call form_batches(nodes, model)
+    call nodes%stacks%history%begin_step()
     call move_alloc(nodes%batches, batches)
     do b = 1, size(batches)
       call move_batch(batches(b), nodes, model, cohesive, u, v)
@@ -77,8 +78,8 @@ contains
 
     associate (n => batch%n, history => nodes%stacks%history, points => size(u, 2), steps => nodes%steps)
       call take(5, points, u, batch%first, n + 1, displacement)
-      call take(3, points, history%change, batch%first + 1, n, last)
-      call take(3, points, history%earlier, batch%first + 1, n, change)
+      call take(3, points, history%earlier, batch%first + 1, n, last)
+      call take(3, points, history%change, batch%first + 1, n, change)
       call take(3, points, history%forces, batch%first + 1, n, before)
       call take(2, points, history%lost, batch%first + 1, n, lost)
       jumps = displacement(:, :3, 2:)
@@ -107,7 +108,7 @@ contains
         call update_intact(batch, steps, jumps, change, last, tractions, before, lost)
       end if
     end associate
-    call store_motion(batch, nodes%stacks, displacement, rates, tractions, change, last, lost, u, v)
+    call store_motion(batch, nodes%stacks, displacement, rates, tractions, change, lost, u, v)
     if (.not. batch%damaged) call find_onsets(batch, nodes%stacks, model, displacement, cohesive, u)
   end subroutine move_batch
 
@@ -226,14 +227,14 @@ contains
   end subroutine record_reactions
 
   !> Stores the motion at the end of a step and the history of the jumps.
-  pure subroutine store_motion(batch, stacks, displacement, rates, tractions, change, last, lost, u, v)
+  pure subroutine store_motion(batch, stacks, displacement, rates, tractions, change, lost, u, v)
     type(stack_batch_t), intent(in) :: batch
     !> The stacks; their history is updated
     type(interface_stacks_t), intent(inout) :: stacks
     !> Unknowns and their rates
     real(wp), dimension(lanes, 5, batch%n + 1), intent(in) :: displacement, rates
-    !> Forces on the jumps, change of the jumps in this step and in the last
-    real(wp), dimension(lanes, 3, batch%n), intent(in) :: tractions, change, last
+    !> Forces on the jumps, and change of the jumps
+    real(wp), dimension(lanes, 3, batch%n), intent(in) :: tractions, change
     !> Losses by contact, and algorithmic
     real(wp), intent(in) :: lost(lanes, 2, batch%n)
     !> Unknowns and their rates, (5, points)
@@ -242,7 +243,6 @@ contains
     associate (n => batch%n, history => stacks%history, points => size(u, 2))
       call put(5, points, displacement, batch%first, n + 1, batch%members, u)
       call put(5, points, rates, batch%first, n + 1, batch%members, v)
-      call put(3, points, last, batch%first + 1, n, batch%members, history%earlier)
       call put(3, points, change, batch%first + 1, n, batch%members, history%change)
       call put(3, points, tractions, batch%first + 1, n, batch%members, history%forces)
       call put(2, points, lost, batch%first + 1, n, batch%members, history%lost)
@@ -271,4 +271,42 @@ contains
       if (starts(lane)) call start_damage(stacks, batch%stack(lane), model, cohesive, u)
     end do
   end subroutine find_onsets
+  !> Values of consecutive points from the first of each lane on. In this module, and with arrays of explicit shape,
+  !> the loop over the values of a point is unrolled, here and in `put`.
+  pure subroutine take(values, points, field, first, rows, taken)
+    !> Number of values of a point, and of points
+    integer, intent(in) :: values, points
+    !> Values of all points
+    real(wp), intent(in) :: field(values, points)
+    !> The first point of each lane, and number of consecutive points
+    integer, intent(in) :: first(lanes), rows
+    !> Those of the lanes
+    real(wp), intent(out) :: taken(lanes, values, rows)
+    integer :: lane, l
+
+    do l = 1, rows
+      do lane = 1, lanes
+        taken(lane, :, l) = field(:, first(lane) + l - 1)
+      end do
+    end do
+  end subroutine take
+
+  !> Reverse of `take` for the lanes with a stack of their own.
+  pure subroutine put(values, points, taken, first, rows, members, field)
+    !> Number of values of a point, and of points
+    integer, intent(in) :: values, points
+    !> The first point of each lane, number of consecutive points, and number of lanes
+    integer, intent(in) :: first(lanes), rows, members
+    !> Values of the lanes
+    real(wp), intent(in) :: taken(lanes, values, rows)
+    !> Those of all points
+    real(wp), intent(inout) :: field(values, points)
+    integer :: lane, l
+
+    do l = 1, rows
+      do lane = 1, members
+        field(:, first(lane) + l - 1) = taken(lane, :, l)
+      end do
+    end do
+  end subroutine put
 end module stack_motions
