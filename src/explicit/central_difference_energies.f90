@@ -48,8 +48,7 @@ contains
     totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
     associate (ledger => now%ledger)
       ledger%kinetic = totals(1)
-      ledger%scaled = 0
-      if (method%parameters%mass_scaling > 1) ledger%scaled = totals(2)
+      ledger%scaled = totals(2)
       ledger%strain = totals(3)
       ledger%delamination = totals(4)
       ledger%friction = totals(5)
@@ -90,25 +89,31 @@ contains
     type(state_t), intent(in) :: now
     !> Factor by which damping has multiplied its velocities
     real(wp), intent(in) :: kept
-    !> Total kinetic energy, and that of in-plane motion and rotation
+    !> Total kinetic energy, and, with scaled inertia, that of in-plane motion and rotation
     type(exact_sum_t), intent(inout) :: kinetic, scaled
     real(wp), allocatable :: layer(:, :)
-    real(wp) :: plane
+    real(wp), dimension(model%distribution%owned) :: plane, total
     integer :: i
 
     layer = model%motion_of(now%motion%velocity)
     do i = 1, model%distribution%owned
-      associate (m => method%inertia%mass(:, i), v => layer(:, i))
-        plane = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
-        call scaled%add(plane)
-        plane = m(4)*v(3)**2/2 + plane + method%steps%now/2*dot_product(method%force(:, i), v) &
-                - (dot_product(method%stacks%history%forces(:, i), method%stacks%history%last_change(i, kept)) &
-                   + method%rigs%reaction(i)*method%rigs%approach(i))/2
-        if (allocated(method%inertia%springs)) plane = plane - method%steps%now/2* &
-          sum(method%inertia%springs(:, i)*now%motion%displacement(:, i)*now%motion%velocity(:, i))
-        call kinetic%add(plane)
+      associate (m => method%inertia%mass(:, i), v => layer(:, i), change => method%stacks%history%change(:, i), &
+                 lambda => method%stacks%history%forces(:, i), force => method%force(:, i))
+        plane(i) = (m(1)*(v(1)**2 + v(2)**2) + m(3)*(v(4)**2 + v(5)**2))/2 + m(2)*(v(1)*v(4) + v(2)*v(5))
+        total(i) = m(4)*v(3)**2/2 + plane(i) + method%steps%now/2*(force(1)*v(1) + force(2)*v(2) + force(3)*v(3) &
+                                                                  + force(4)*v(4) + force(5)*v(5)) &
+                   - (kept*(lambda(1)*change(1) + lambda(2)*change(2) + lambda(3)*change(3)) &
+                      + method%rigs%reaction(i)*method%rigs%approach(i))/2
       end associate
     end do
+    if (allocated(method%inertia%springs)) then
+      do i = 1, size(total)
+        total(i) = total(i) - method%steps%now/2* &
+                   sum(method%inertia%springs(:, i)*now%motion%displacement(:, i)*now%motion%velocity(:, i))
+      end do
+    end if
+    if (method%parameters%mass_scaling > 1) call scaled%add(plane)
+    call kinetic%add(total)
     do i = 1, size(method%lines%dofs)
       call kinetic%add(method%lines%dofs(i)%reaction*method%lines%dofs(i)%change/2)
     end do

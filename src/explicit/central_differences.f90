@@ -25,7 +25,7 @@ module central_differences
   use section_bounds, only: largest_stiffness
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
-  use stack_motions, only: move_stacks, new_workspaces
+  use stack_motions, only: move_stacks
   use states, only: state_t
   use step_lengths, only: step_lengths_t, commensurate_step
   implicit none
@@ -101,7 +101,6 @@ contains
                                    self%of_elements)
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
-    self%workspaces = new_workspaces(self%stacks)
     self%rigs = create_rig_steps(model)
     self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
@@ -233,7 +232,7 @@ contains
     call self%circles%prepare(model, self%inertia%inverse(7, :))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
-    if (allocated(self%intact)) deallocate (self%intact)
+    if (allocated(self%batches)) deallocate (self%batches)
     self%prepared = self%steps
   end subroutine prepare
 
@@ -353,7 +352,7 @@ contains
 
     call self%stacks%find_onsets(model, now%interfaces%cohesive)
     call self%stacks%find_damaged(now%interfaces%cohesive)
-    if (allocated(self%intact)) deallocate (self%intact)
+    if (allocated(self%batches)) deallocate (self%batches)
     call separate_constrained_points(self)
     self%motion = model%motion_of(now%motion%displacement)
     self%prepared = step_lengths_t()

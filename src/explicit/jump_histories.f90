@@ -31,9 +31,8 @@ module jump_histories
     !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
-    procedure :: record
+    procedure :: begin_step
     procedure :: damp
-    procedure :: last_change
     !> Checkpoint.
     procedure :: visit
   end type jump_history_t
@@ -51,18 +50,16 @@ contains
     allocate (self%friction(points))
   end function create_jump_history
 
-  !> Stores force and change of a step.
-  pure subroutine record(self, p, force, change)
+  !> The last change of each jump is the earlier one of the step that begins. Its own, `change`, has no meaning until
+  !> the jump has moved: until then it is that of two steps before.
+  pure subroutine begin_step(self)
     class(jump_history_t), intent(inout) :: self
-    !> The point
-    integer, intent(in) :: p
-    !> Force, and change of the jump
-    real(wp), intent(in) :: force(3), change(3)
+    real(wp), allocatable :: before(:, :)
 
-    self%forces(:, p) = force
-    self%earlier(:, p) = self%change(:, p)
-    self%change(:, p) = change
-  end subroutine record
+    call move_alloc(self%earlier, before)
+    call move_alloc(self%change, self%earlier)
+    call move_alloc(before, self%change)
+  end subroutine begin_step
 
   !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
   !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
@@ -74,19 +71,6 @@ contains
     self%work = ratio*self%work
     self%friction%stored = ratio*self%friction%stored
   end subroutine damp
-
-  !> Change of a jump in the last step with the damped velocity, for the kinetic energy and works.
-  pure function last_change(self, p, kept) result(change)
-    class(jump_history_t), intent(in) :: self
-    !> The point
-    integer, intent(in) :: p
-    !> Factor by which damping has multiplied the velocity
-    real(wp), intent(in) :: kept
-    !> The change
-    real(wp) :: change(3)
-
-    change = kept*self%change(:, p)
-  end function last_change
 
   !> Writes or reads the history.
   subroutine visit(self, archive, owned, points)

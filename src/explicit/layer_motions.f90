@@ -1,35 +1,13 @@
-!> Motion of the layers of a node: conversion between rates of the unknowns and velocities of the layers, and
-!> accelerations by forces.
+!> Motion of the layers of nodes: conversion between rates of the unknowns and velocities of the layers, accelerations
+!> by forces. Nodes with several layers move in lanes, each lane a stack with the same number of layers.
 module layer_motions
+  use element_batches, only: lanes
   use kinds, only: wp
   implicit none
   private
-  public :: accelerate, accelerate_by_tractions, accelerate_layers, find_rates, move_points, to_layers, &
-            traction_resultant
+  public :: accelerate, accelerate_layers, find_jump_rates, find_rates, find_resultants, find_velocities, move_points
 
 contains
-
-  !> Velocities of the layers from the rates of the unknowns.
-  pure subroutine to_layers(n, height, v, layer)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Rates of the unknowns, (5, n + 1)
-    real(wp), intent(in) :: v(5, n + 1)
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(out) :: layer(5, n + 1)
-    integer :: l
-
-    layer(:, 1) = v(:, 1)
-    do l = 2, n + 1
-      layer(1, l) = v(1, l) + layer(1, l - 1) + height(l)*(layer(4, l - 1) - v(4, l))
-      layer(2, l) = v(2, l) + layer(2, l - 1) + height(l)*(layer(5, l - 1) - v(5, l))
-      layer(3, l) = v(3, l) + layer(3, l - 1)
-      layer(4, l) = v(4, l)
-      layer(5, l) = v(5, l)
-    end do
-  end subroutine to_layers
 
   !> Adds the change of velocity of a layer by a force during a time.
   pure subroutine accelerate(inverse, time, force, velocity)
@@ -48,25 +26,6 @@ contains
     velocity(5) = velocity(5) + time*(inverse(5)*force(2) + inverse(6)*force(5))
     velocity(3) = velocity(3) + time*inverse(7)*force(3)
   end subroutine accelerate
-
-  !> The same for all layers of a node.
-  pure subroutine accelerate_layers(layers, inverse, time, force, velocity)
-    !> Number of layers
-    integer, intent(in) :: layers
-    !> Inverse inertia, (7, layers)
-    real(wp), intent(in) :: inverse(7, layers)
-    !> The time
-    real(wp), intent(in) :: time
-    !> Forces and moments, (5, layers)
-    real(wp), intent(in) :: force(5, layers)
-    !> Velocities of the layers, (5, layers)
-    real(wp), intent(inout) :: velocity(5, layers)
-    integer :: l
-
-    do l = 1, layers
-      call accelerate(inverse(:, l), time, force(:, l), velocity(:, l))
-    end do
-  end subroutine accelerate_layers
 
   !> Updates unconstrained points with one layer.
   pure subroutine move_points(total, points, inverse, mean, step, force, u, v)
@@ -89,70 +48,105 @@ contains
     end do
   end subroutine move_points
 
-  !> Rates of the jumps across the interfaces.
-  pure subroutine find_rates(n, height, layer, rates)
-    !> Interfaces
+  !> Velocities of the layers from the rates of the unknowns.
+  pure subroutine find_velocities(n, height, rates, velocity)
+    !> Number of interfaces
     integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(in) :: layer(5, n + 1)
-    !> Rates of the jumps, (3, n)
-    real(wp), intent(out) :: rates(3, n)
+    !> Heights of the interfaces
+    real(wp), intent(in) :: height(lanes, n)
+    !> Rates of the unknowns
+    real(wp), intent(in) :: rates(lanes, 5, n + 1)
+    !> Velocities of the layers
+    real(wp), intent(out) :: velocity(lanes, 5, n + 1)
+    integer :: l
+
+    velocity(:, :, 1) = rates(:, :, 1)
+    do l = 2, n + 1
+      associate (above => velocity(:, :, l - 1), z => height(:, l - 1))
+        velocity(:, 1, l) = rates(:, 1, l) + above(:, 1) + z*(above(:, 4) - rates(:, 4, l))
+        velocity(:, 2, l) = rates(:, 2, l) + above(:, 2) + z*(above(:, 5) - rates(:, 5, l))
+        velocity(:, 3, l) = rates(:, 3, l) + above(:, 3)
+      end associate
+      velocity(:, 4:5, l) = rates(:, 4:5, l)
+    end do
+  end subroutine find_velocities
+
+  !> `accelerate` for all layers of stacks.
+  pure subroutine accelerate_layers(layers, inverse, time, force, velocity)
+    !> Number of layers
+    integer, intent(in) :: layers
+    !> Inverse inertia
+    real(wp), intent(in) :: inverse(lanes, 7, layers)
+    !> The time
+    real(wp), intent(in) :: time
+    !> Forces and moments
+    real(wp), intent(in) :: force(lanes, 5, layers)
+    !> Velocities of the layers
+    real(wp), intent(inout) :: velocity(lanes, 5, layers)
+    integer :: l
+
+    do l = 1, layers
+      associate (m => inverse(:, :, l), f => force(:, :, l), v => velocity(:, :, l))
+        v(:, 1) = v(:, 1) + time*(m(:, 1)*f(:, 1) + m(:, 2)*f(:, 4))
+        v(:, 4) = v(:, 4) + time*(m(:, 2)*f(:, 1) + m(:, 3)*f(:, 4))
+        v(:, 2) = v(:, 2) + time*(m(:, 4)*f(:, 2) + m(:, 5)*f(:, 5))
+        v(:, 5) = v(:, 5) + time*(m(:, 5)*f(:, 2) + m(:, 6)*f(:, 5))
+        v(:, 3) = v(:, 3) + time*m(:, 7)*f(:, 3)
+      end associate
+    end do
+  end subroutine accelerate_layers
+
+  !> Rates of the jumps between two layers.
+  pure subroutine find_jump_rates(height, upper, lower, rate)
+    !> Height of the interface
+    real(wp), intent(in) :: height(lanes)
+    !> Velocities of the layers
+    real(wp), intent(in) :: upper(lanes, 5), lower(lanes, 5)
+    !> The rates
+    real(wp), intent(out) :: rate(lanes, 3)
+
+    rate(:, 1) = lower(:, 1) - upper(:, 1) + height*(lower(:, 4) - upper(:, 4))
+    rate(:, 2) = lower(:, 2) - upper(:, 2) + height*(lower(:, 5) - upper(:, 5))
+    rate(:, 3) = lower(:, 3) - upper(:, 3)
+  end subroutine find_jump_rates
+
+  !> Rates of the unknowns from the velocities of the layers.
+  pure subroutine find_rates(n, height, velocity, rates)
+    !> Number of interfaces
+    integer, intent(in) :: n
+    !> Heights of the interfaces
+    real(wp), intent(in) :: height(lanes, n)
+    !> Velocities of the layers
+    real(wp), intent(in) :: velocity(lanes, 5, n + 1)
+    !> Rates of the unknowns
+    real(wp), intent(out) :: rates(lanes, 5, n + 1)
     integer :: j
 
+    rates(:, :, 1) = velocity(:, :, 1)
     do j = 1, n
-      rates(1, j) = layer(1, j + 1) - layer(1, j) + height(j + 1)*(layer(4, j + 1) - layer(4, j))
-      rates(2, j) = layer(2, j + 1) - layer(2, j) + height(j + 1)*(layer(5, j + 1) - layer(5, j))
-      rates(3, j) = layer(3, j + 1) - layer(3, j)
+      call find_jump_rates(height(:, j), velocity(:, :, j), velocity(:, :, j + 1), rates(:, :3, j + 1))
+      rates(:, 4:5, j + 1) = velocity(:, 4:5, j + 1)
     end do
   end subroutine find_rates
 
-  !> Adds the change of velocity of the layers by the tractions between them during a time.
-  pure subroutine accelerate_by_tractions(n, height, inverse, time, forces, layer)
-    !> Interfaces
+  !> Forces of the tractions on the layers.
+  pure subroutine find_resultants(n, height, forces, resultants)
+    !> Number of interfaces
     integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Inverse inertia of the layers, (7, n + 1)
-    real(wp), intent(in) :: inverse(7, n + 1)
-    !> The time
-    real(wp), intent(in) :: time
-    !> Forces on the jumps, (3, n)
-    real(wp), intent(in) :: forces(3, n)
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(inout) :: layer(5, n + 1)
-    real(wp) :: resultant(5)
-    integer :: l
+    !> Heights of the interfaces, and forces on the jumps
+    real(wp), intent(in) :: height(lanes, n), forces(lanes, 3, n)
+    !> Forces and moments on the layers
+    real(wp), intent(out) :: resultants(lanes, 5, n + 1)
+    integer :: j
 
-    resultant = 0
-    do l = 1, n
-      resultant(1:3) = resultant(1:3) + forces(:, l)
-      resultant(4) = resultant(4) + height(l + 1)*forces(1, l)
-      resultant(5) = resultant(5) + height(l + 1)*forces(2, l)
-      call accelerate(inverse(:, l), time, resultant, layer(:, l))
-      resultant(1:3) = -forces(:, l)
-      resultant(4) = -height(l + 1)*forces(1, l)
-      resultant(5) = -height(l + 1)*forces(2, l)
+    resultants(:, :, 1) = 0
+    do j = 1, n
+      resultants(:, 1:3, j) = resultants(:, 1:3, j) + forces(:, :, j)
+      resultants(:, 4, j) = resultants(:, 4, j) + height(:, j)*forces(:, 1, j)
+      resultants(:, 5, j) = resultants(:, 5, j) + height(:, j)*forces(:, 2, j)
+      resultants(:, 1:3, j + 1) = -forces(:, :, j)
+      resultants(:, 4, j + 1) = -height(:, j)*forces(:, 1, j)
+      resultants(:, 5, j + 1) = -height(:, j)*forces(:, 2, j)
     end do
-    call accelerate(inverse(:, n + 1), time, resultant, layer(:, n + 1))
-  end subroutine accelerate_by_tractions
-
-  !> Force of the tractions on a layer.
-  pure function traction_resultant(n, height, forces, l) result(resultant)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> Height of the interface above each layer, (n + 1)
-    real(wp), intent(in) :: height(n + 1)
-    !> Forces on the jumps, (3, n)
-    real(wp), intent(in) :: forces(3, n)
-    !> The layer
-    integer, intent(in) :: l
-    !> Forces and moments
-    real(wp) :: resultant(5)
-
-    resultant = 0
-    if (l > 1) resultant = [-forces(:, l - 1), -height(l)*forces(1:2, l - 1)]
-    if (l <= n) resultant = resultant + [forces(:, l), height(l + 1)*forces(1:2, l)]
-  end function traction_resultant
+  end subroutine find_resultants
 end module layer_motions

@@ -1,13 +1,12 @@
 !> Data that determine the motion of the nodes in a step by central differences: inertia, forces, interfaces, and
 !> constraints.
 module nodal_steps
-  use intact_stacks, only: intact_batch_t
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use line_steps, only: line_steps_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_solutions, only: stack_t
+  use stack_batches, only: stack_batch_t
   use step_lengths, only: step_lengths_t
   implicit none
   private
@@ -21,14 +20,10 @@ module nodal_steps
     real(wp), allocatable :: force(:, :)
     !> Nodes with several layers
     type(interface_stacks_t) :: stacks
-    !> Undamaged stacks on no frame and no line; unallocated: to be found for the step
-    type(intact_batch_t), allocatable :: intact(:)
-    !> Indices of the other stacks
-    integer, allocatable :: others(:)
-    !> Number of damaged stacks when both were found
+    !> Batches of stacks; unallocated: to be formed for the step
+    type(stack_batch_t), allocatable :: batches(:)
+    !> Number of damaged stacks when they were formed
     integer :: damaged = 0
-    !> Work arrays of stacks, one for each number of interfaces
-    type(stack_t), allocatable :: workspaces(:)
     !> Lines
     type(line_steps_t) :: lines
     !> Frames and springs

@@ -1,40 +1,24 @@
-!> Motion of the layers of a node in a step: velocities from the forces on each layer, tractions between them, jumps.
+!> Motion of the layers of nodes in a step: velocities from the forces on each layer, tractions between them, jumps.
 module stack_motions
   use cohesive_interfaces, only: cohesive_interfaces_t
-  use damaged_stacks, only: load_stack, solve_damaged
   use element_batches, only: lanes
-  use intact_stacks, only: create_intact_batches, move_intact
   use interface_stacks, only: interface_stacks_t
-  use jump_motions, only: advance_intact, advance_points, start_damage
   use kinds, only: wp
-  use layer_motions, only: accelerate_layers, find_rates, traction_resultant, accelerate_by_tractions, to_layers
-  use line_steps, only: line_steps_t
+  use layer_motions, only: accelerate_layers, find_rates, find_resultants, find_velocities
   use models, only: model_t
   use nodal_steps, only: nodal_steps_t
-  use stack_solutions, only: stack_t
-  use tridiagonal_systems, only: solve_factored, solve_tractions
+  use rig_steps, only: rig_steps_t
+  use stack_batches, only: create_stack_batches, load_states, stack_batch_t, store_states, surface_states_t
+  use stack_solutions, only: friction_t, solve_damaged, solve_intact
+  use stack_updates, only: may_start, start_damage, update_damaged, update_intact
+  use step_lengths, only: step_lengths_t
+  use tridiagonal_systems, only: solve_tractions
   use weighted_jumps, only: newest, past_jumps
   implicit none
   private
-  public :: move_stacks, new_workspaces
+  public :: move_stacks
 
 contains
-
-  !> Work arrays for the stacks of a model, one for each number of interfaces.
-  pure function new_workspaces(stacks) result(work)
-    type(interface_stacks_t), intent(in) :: stacks
-    !> (largest number of interfaces)
-    type(stack_t), allocatable :: work(:)
-    integer :: n
-
-    allocate (work(maxval([1, stacks%layers]) - 1))
-    do n = 1, size(work)
-      work(n)%n = n
-      allocate (work(n)%stiffness(2, n), work(n)%diagonal(3, n), work(n)%off_diagonal(3, n), work(n)%trial(3, n), &
-                work(n)%start(3, n), work(n)%points(n), work(n)%surfaces(n), work(n)%closing(n), work(n)%friction(n), &
-                work(n)%secant(2, n), work(n)%given(3, n), work(n)%forces(3, n), work(n)%normal_stiffness(n))
-    end do
-  end function new_workspaces
 
   !> Updates all stacks.
   subroutine move_stacks(nodes, model, cohesive, u, v)
@@ -45,195 +29,284 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
-    logical :: reaches_onset(lanes)
-    integer :: i, b, lane
+    type(stack_batch_t), allocatable :: batches(:)
+    integer :: b
 
-    if (allocated(nodes%intact) .and. count(nodes%stacks%damaged) > nodes%damaged) deallocate (nodes%intact)
-    if (.not. allocated(nodes%intact)) call separate_stacks(nodes)
-    do b = 1, size(nodes%intact)
-      call move_intact(nodes%intact(b), nodes%steps, nodes%force, nodes%stacks, u, v, reaches_onset)
-      if (.not. any(reaches_onset)) cycle
-      do lane = 1, lanes
-        if (.not. reaches_onset(lane)) cycle
-        if (lane > 1) then
-          if (nodes%intact(b)%stack(lane) == nodes%intact(b)%stack(lane - 1)) exit
-        end if
-        call start_damage(nodes%stacks, nodes%intact(b)%stack(lane), model, cohesive, u)
-      end do
+    if (allocated(nodes%batches) .and. count(nodes%stacks%damaged) > nodes%damaged) deallocate (nodes%batches)
+    if (.not. allocated(nodes%batches)) call form_batches(nodes, model)
+    call nodes%stacks%history%begin_step()
+    call move_alloc(nodes%batches, batches)
+    do b = 1, size(batches)
+      call move_batch(batches(b), nodes, model, cohesive, u, v)
     end do
-    do i = 1, size(nodes%others)
-      call move_stack(nodes, nodes%others(i), model, cohesive, u, v)
-    end do
+    call move_alloc(batches, nodes%batches)
   end subroutine move_stacks
 
-  !> Separates undamaged stacks on no frame and no line from the others.
-  pure subroutine separate_stacks(nodes)
+  !> Forms the batches for the step.
+  pure subroutine form_batches(nodes, model)
     !> The nodes
     type(nodal_steps_t), intent(inout) :: nodes
-    logical :: is_other(size(nodes%stacks%first))
+    type(model_t), intent(in) :: model
+    logical :: constrained(size(nodes%stacks%first))
     integer :: i, p
 
-    do i = 1, size(is_other)
+    do i = 1, size(constrained)
       associate (first => nodes%stacks%first(i), last => nodes%stacks%first(i) + nodes%stacks%layers(i) - 1)
-        is_other(i) = nodes%stacks%damaged(i) .or. nodes%rigs%on_frame(first)
+        constrained(i) = nodes%rigs%on_frame(first)
         if (size(nodes%lines%dofs) == 0) cycle
-        is_other(i) = is_other(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
+        constrained(i) = constrained(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
       end associate
     end do
     nodes%damaged = count(nodes%stacks%damaged)
-    nodes%others = pack([(i, i=1, size(is_other))], is_other)
-    nodes%intact = create_intact_batches(nodes%stacks, nodes%inertia, pack([(i, i=1, size(is_other))], .not. is_other))
-  end subroutine separate_stacks
+    nodes%batches = create_stack_batches(nodes%stacks, nodes%inertia, model, constrained)
+  end subroutine form_batches
 
-  !> Updates one stack.
-  subroutine move_stack(nodes, i, model, cohesive, u, v)
+  !> Updates the stacks of a batch.
+  subroutine move_batch(batch, nodes, model, cohesive, u, v)
+    type(stack_batch_t), intent(in) :: batch
     !> The nodes
     type(nodal_steps_t), intent(inout) :: nodes
-    !> Index of the stack
-    integer, intent(in) :: i
     type(model_t), intent(in) :: model
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
-    real(wp), intent(inout) :: u(:, :), v(:, :)
-    real(wp) :: layer(5, nodes%stacks%layers(i))
-    real(wp), dimension(3, nodes%stacks%layers(i) - 1) :: rates, trial, forces
-    integer :: n, p, q
+    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
+    real(wp), dimension(lanes, 5, batch%n + 1) :: displacement, rates, loads, velocity
+    real(wp), dimension(lanes, 3, batch%n) :: jumps, trial, tractions, before, change, last
+    real(wp) :: lost(lanes, 2, batch%n), normal(lanes, batch%n), given(lanes, 3, batch%n)
+    type(surface_states_t) :: states(batch%n)
+    type(friction_t) :: friction(batch%n)
 
-    n = nodes%stacks%layers(i) - 1
-    p = nodes%stacks%first(i)
-    q = p + n
-    associate (stacks => nodes%stacks, steps => nodes%steps)
-      call to_layers(n, stacks%height(p:q), v(:, p:q), layer)
-      call accelerate_layers(n + 1, nodes%inertia%inverse(:, p:q), steps%mean(), nodes%force(:, p:q), layer)
-      call prescribe_layers(nodes%lines, p, layer)
-      call find_rates(n, stacks%height(p:q), layer, rates)
-      trial = u(1:3, p + 1:q) + steps%now*rates
-      call find_forces(nodes, i, model, cohesive, u, trial, forces)
-      if (nodes%rigs%on_frame(p)) call stop_stack_at_frame(nodes, i, u(3, p:q), trial(3, :), layer, forces(3, :))
-      call accelerate_by_tractions(n, stacks%height(p:q), nodes%inertia%inverse(:, p:q), steps%mean(), forces, layer)
-      if (nodes%rigs%on_frame(p)) layer(3, n + 1) = nodes%rigs%approach(p)/steps%now
-      call record_reactions(nodes, i, forces, v(:, p:q), layer)
-      call find_rates(n, stacks%height(p:q), layer, rates)
-      v(:, p) = layer(:, 1)
-      v(1:3, p + 1:q) = rates
-      v(4:5, p + 1:q) = layer(4:5, 2:)
-      if (stacks%damaged(i)) then
-        call advance_points(nodes, i, forces, cohesive, u, v)
+    associate (n => batch%n, history => nodes%stacks%history, points => size(u, 2), steps => nodes%steps)
+      call take(5, points, u, batch%first, n + 1, displacement)
+      call take(3, points, history%earlier, batch%first + 1, n, last)
+      call take(3, points, history%change, batch%first + 1, n, change)
+      call take(3, points, history%forces, batch%first + 1, n, before)
+      call take(2, points, history%lost, batch%first + 1, n, lost)
+      jumps = displacement(:, :3, 2:)
+      call find_free_motion(batch, nodes, v, velocity, rates)
+      trial = jumps + steps%now*rates(:, :3, 2:)
+      if (batch%damaged) then
+        call load_states(batch, cohesive, history, jumps, last, change, states)
+        call solve_damaged(batch, states, steps, model, cohesive, nodes%stacks, trial, tractions, friction, &
+                           normal, given)
       else
-        call advance_intact(nodes, i, model, forces, cohesive, u, v)
+        call solve_intact(n, batch%factors, jumps, last, change, trial, tractions)
+        if (batch%constrained) call weigh_openings(n, batch%stiffness, jumps, last, change, normal, given)
       end if
-      u(4:5, p + 1:q) = u(4:5, p + 1:q) + steps%now*v(4:5, p + 1:q)
-      u(:, p) = u(:, p) + steps%now*v(:, p)
-    end associate
-  end subroutine move_stack
-
-  !> Prescribes the velocities of layers on lines.
-  pure subroutine prescribe_layers(lines, first, layer)
-    type(line_steps_t), intent(in) :: lines
-    !> First point of the stack
-    integer, intent(in) :: first
-    !> Velocities of the layers, (5, n + 1)
-    real(wp), intent(inout) :: layer(:, :)
-    integer :: l
-
-    if (size(lines%dofs) == 0) return
-    do l = 1, size(layer, 2)
-      if (lines%is_prescribed(first + l - 1)) call lines%prescribe(first + l - 1, layer(:, l))
-    end do
-  end subroutine prescribe_layers
-
-  !> Forces on the jumps of a stack, as if there were no frame.
-  pure subroutine find_forces(nodes, i, model, cohesive, u, trial, forces)
-    !> The nodes; the work array of the stack receives its stiffness
-    type(nodal_steps_t), intent(inout) :: nodes
-    !> Index of the stack
-    integer, intent(in) :: i
-    type(model_t), intent(in) :: model
-    type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Unknowns, (5, points)
-    real(wp), intent(in) :: u(:, :)
-    !> Jumps without tractions, (3, n)
-    real(wp), contiguous, intent(in) :: trial(:, :)
-    !> Forces on the jumps, (3, n)
-    real(wp), contiguous, intent(out) :: forces(:, :)
-    real(wp) :: past(3, size(trial, 2))
-
-    associate (stacks => nodes%stacks, work => nodes%workspaces(size(trial, 2)), p => nodes%stacks%first(i), &
-               from => nodes%stacks%first(i) + 1, to => nodes%stacks%first(i) + size(trial, 2))
-      if (stacks%damaged(i)) then
-        call load_stack(stacks, work, model, cohesive, p, u, trial)
-        call solve_damaged(stacks, work, nodes%steps, p)
-        forces = work%forces
+      if (batch%constrained) &
+        call stop_at_frames(batch, nodes%rigs, steps, displacement, velocity, normal, given, trial, tractions)
+      call find_resultants(n, batch%height, tractions, loads)
+      call accelerate_layers(n + 1, batch%inverse, steps%mean(), loads, velocity)
+      if (batch%constrained) call record_reactions(batch, nodes, v, loads, velocity)
+      call find_rates(n, batch%height, velocity, rates)
+      change = steps%now*rates(:, :3, 2:)
+      displacement = displacement + steps%now*rates
+      if (batch%damaged) then
+        call update_damaged(batch, states, steps, model, cohesive, change, tractions, before, friction, lost)
+        call store_states(batch, states, cohesive, nodes%stacks%history)
       else
-        past = past_jumps(u(1:3, from:to), stacks%history%change(:, from:to), stacks%history%earlier(:, from:to))
-        call solve_factored(size(trial, 2), stacks%factors(:, :, from:to), trial + past/newest, forces)
-        if (nodes%rigs%on_frame(p)) then
-          work%normal_stiffness = newest*stacks%stiffness(2, from:to)
-          work%given(3, :) = stacks%stiffness(2, from:to)*past(3, :)
-        end if
+        call update_intact(batch, steps, jumps, change, last, tractions, before, lost)
       end if
     end associate
-  end subroutine find_forces
+    call store_motion(batch, nodes%stacks, displacement, rates, tractions, change, lost, u, v)
+    if (.not. batch%damaged) call find_onsets(batch, nodes%stacks, model, displacement, cohesive, u)
+  end subroutine move_batch
 
-  !> Stops the lowest layer at a frame that it would penetrate.
-  pure subroutine stop_stack_at_frame(nodes, i, u, trial, layer, forces)
-    !> The nodes, with the stack's stiffness against openings and the given part of the forces
-    type(nodal_steps_t), intent(inout) :: nodes
-    !> Index of the stack
-    integer, intent(in) :: i
-    !> Deflection of the first layer and openings at the start of the step, (n + 1)
-    real(wp), intent(in) :: u(:)
-    !> Openings without tractions, (n)
-    real(wp), intent(inout) :: trial(:)
-    !> Velocities of the layers without tractions, (5, n + 1)
-    real(wp), intent(in) :: layer(:, :)
-    !> Forces on the openings, (n)
-    real(wp), intent(inout) :: forces(:)
-    real(wp) :: rate, w, diagonal(size(trial))
+  !> Velocities of layers, and rates of the unknowns, at the end of a step without tractions.
+  pure subroutine find_free_motion(batch, nodes, v, velocity, rates)
+    type(stack_batch_t), intent(in) :: batch
+    !> The nodes
+    type(nodal_steps_t), intent(in) :: nodes
+    !> Rates of the unknowns at the start, (5, points)
+    real(wp), contiguous, intent(in) :: v(:, :)
+    !> Velocities of the layers, and rates of the unknowns
+    real(wp), dimension(lanes, 5, batch%n + 1), intent(out) :: velocity, rates
+    real(wp) :: loads(lanes, 5, batch%n + 1)
+    integer :: lane, l, p
 
-    w = sum(u)
-    associate (n => size(trial), p => nodes%stacks%first(i), steps => nodes%steps, stacks => nodes%stacks, &
-               work => nodes%workspaces(size(trial)), &
-               inverse => nodes%inertia%inverse(7, nodes%stacks%first(i) + size(trial)))
-      rate = layer(3, n + 1) - steps%mean()*inverse*forces(n)
-      if (w + steps%now*rate > 0) then
-        rate = layer(3, n + 1)
-        trial(n) = u(n + 1) - w - steps%now*layer(3, n)
-        diagonal = stacks%diagonal(3, p + 1:p + n)
-        diagonal(n) = diagonal(n) - steps%now*steps%mean()*inverse
-        call solve_tractions(n, work%normal_stiffness, work%given(3, :), diagonal, &
-                             stacks%off_diagonal(3, p + 1:p + n), trial, forces)
-        rate = rate - steps%mean()*inverse*forces(n)
-        if (.not. w + steps%now*rate > 0) rate = -w/steps%now + tiny(rate)
-      end if
-      call nodes%rigs%stop_at_frame(p, steps, inverse, w, rate)
-    end associate
-  end subroutine stop_stack_at_frame
+    call take(5, size(v, 2), v, batch%first, batch%n + 1, rates)
+    call take(5, size(v, 2), nodes%force, batch%first, batch%n + 1, loads)
+    call find_velocities(batch%n, batch%height, rates, velocity)
+    call accelerate_layers(batch%n + 1, batch%inverse, nodes%steps%mean(), loads, velocity)
+    if (batch%constrained .and. size(nodes%lines%dofs) > 0) then
+      do lane = 1, batch%members
+        do l = 1, batch%n + 1
+          p = batch%first(lane) + l - 1
+          if (nodes%lines%is_prescribed(p)) call nodes%lines%prescribe(p, velocity(lane, :, l))
+        end do
+      end do
+    end if
+    call find_rates(batch%n, batch%height, velocity, rates)
+  end subroutine find_free_motion
 
-  !> Records the reactions of lines on the layers of a stack.
-  pure subroutine record_reactions(nodes, i, forces, before, after)
-    !> The nodes; their lines receive the reactions
-    type(nodal_steps_t), intent(inout) :: nodes
-    !> Index of the stack
-    integer, intent(in) :: i
-    !> Forces on the jumps, (3, n)
-    real(wp), intent(in) :: forces(:, :)
-    !> Rates of the unknowns before the step, and velocities of the layers after it, (5, n + 1)
-    real(wp), intent(in) :: before(:, :), after(:, :)
-    real(wp) :: layer(5, size(after, 2))
-    integer :: l, p
+  !> Force per opening and given part of the normal forces of undamaged stacks, for frames.
+  pure subroutine weigh_openings(n, stiffness, jumps, last, earlier, normal, given)
+    !> Number of interfaces
+    integer, intent(in) :: n
+    !> Stiffness of shear and opening
+    real(wp), intent(in) :: stiffness(lanes, 2, n)
+    !> Jumps at the start, and their changes in the last step and in the one before
+    real(wp), dimension(lanes, 3, n), intent(in) :: jumps, last, earlier
+    !> Force per opening, and given parts of the forces; those along the jumps are not used
+    real(wp), intent(out) :: normal(lanes, n), given(lanes, 3, n)
 
-    if (size(nodes%lines%dofs) == 0) return
-    associate (n => size(forces, 2), first => nodes%stacks%first(i), &
-               height => nodes%stacks%height(nodes%stacks%first(i):nodes%stacks%first(i) + size(forces, 2)))
-      if (.not. any([(nodes%lines%is_prescribed(p), p=first, first + n)])) return
-      call to_layers(n, height, before, layer)
-      do l = 1, n + 1
-        p = first + l - 1
-        if (nodes%lines%is_prescribed(p)) &
-          call nodes%lines%react(p, nodes%steps, nodes%inertia%mass(:, p), layer(:, l), after(:, l), &
-                                 nodes%force(:, p) + traction_resultant(n, height, forces, l))
+    normal = newest*stiffness(:, 2, :)
+    given = 0
+    given(:, 3, :) = stiffness(:, 2, :)*past_jumps(jumps(:, 3, :), last(:, 3, :), earlier(:, 3, :))
+  end subroutine weigh_openings
+
+  !> Stops lowest layers at frames that they would penetrate.
+  pure subroutine stop_at_frames(batch, rigs, steps, displacement, velocity, normal, given, trial, forces)
+    type(stack_batch_t), intent(in) :: batch
+    !> The frames
+    type(rig_steps_t), intent(inout) :: rigs
+    !> The step and the one before
+    type(step_lengths_t), intent(in) :: steps
+    !> Unknowns at the start of the step, and velocities of the layers without tractions
+    real(wp), dimension(lanes, 5, batch%n + 1), intent(in) :: displacement, velocity
+    !> Force per opening, and given parts of the forces
+    real(wp), intent(in) :: normal(lanes, batch%n), given(lanes, 3, batch%n)
+    !> Jumps without tractions, and forces on the jumps
+    real(wp), dimension(lanes, 3, batch%n), intent(inout) :: trial, forces
+    real(wp), dimension(lanes, 3, batch%n) :: diagonal, stopped
+    real(wp) :: w(lanes), rate
+    logical :: stops(lanes)
+    integer :: lane
+
+    associate (n => batch%n, time => steps%mean())
+      stops = .false.
+      diagonal = batch%diagonal
+      do lane = 1, batch%members
+        w(lane) = sum(displacement(lane, 3, :))
+        rate = velocity(lane, 3, n + 1) - time*batch%inverse(lane, 7, n + 1)*forces(lane, 3, n)
+        stops(lane) = rigs%on_frame(batch%first(lane)) .and. w(lane) + steps%now*rate > 0
+        if (.not. stops(lane)) cycle
+        trial(lane, 3, n) = displacement(lane, 3, n + 1) - w(lane) - steps%now*velocity(lane, 3, n)
+        diagonal(lane, 3, n) = diagonal(lane, 3, n) - steps%now*time*batch%inverse(lane, 7, n + 1)
+      end do
+      if (any(stops)) call solve_tractions(n, 3, normal, given, diagonal, batch%off_diagonal, trial, stopped)
+      do lane = 1, batch%members
+        if (.not. rigs%on_frame(batch%first(lane))) cycle
+        if (stops(lane)) forces(lane, 3, :) = stopped(lane, 3, :)
+        rate = velocity(lane, 3, n + 1) - time*batch%inverse(lane, 7, n + 1)*forces(lane, 3, n)
+        if (stops(lane) .and. .not. w(lane) + steps%now*rate > 0) rate = -w(lane)/steps%now + tiny(rate)
+        call rigs%stop_at_frame(batch%first(lane), steps, batch%inverse(lane, 7, n + 1), w(lane), rate)
       end do
     end associate
+  end subroutine stop_at_frames
+
+  !> Velocities of layers stopped by frames, and reactions of lines.
+  pure subroutine record_reactions(batch, nodes, v, resultants, velocity)
+    type(stack_batch_t), intent(in) :: batch
+    !> The nodes; their lines receive the reactions
+    type(nodal_steps_t), intent(inout) :: nodes
+    !> Rates of the unknowns at the start, (5, points)
+    real(wp), contiguous, intent(in) :: v(:, :)
+    !> Forces of the tractions on the layers
+    real(wp), intent(in) :: resultants(lanes, 5, batch%n + 1)
+    !> Velocities of the layers at the end
+    real(wp), intent(inout) :: velocity(lanes, 5, batch%n + 1)
+    real(wp), dimension(lanes, 5, batch%n + 1) :: rates, before
+    integer :: lane, l, p
+
+    do lane = 1, batch%members
+      p = batch%first(lane)
+      if (nodes%rigs%on_frame(p)) velocity(lane, 3, batch%n + 1) = nodes%rigs%approach(p)/nodes%steps%now
+    end do
+    if (size(nodes%lines%dofs) == 0) return
+    call take(5, size(v, 2), v, batch%first, batch%n + 1, rates)
+    call find_velocities(batch%n, batch%height, rates, before)
+    do lane = 1, batch%members
+      do l = 1, batch%n + 1
+        p = batch%first(lane) + l - 1
+        if (nodes%lines%is_prescribed(p)) &
+          call nodes%lines%react(p, nodes%steps, nodes%inertia%mass(:, p), before(lane, :, l), velocity(lane, :, l), &
+                                 nodes%force(:, p) + resultants(lane, :, l))
+      end do
+    end do
   end subroutine record_reactions
+
+  !> Stores the motion at the end of a step and the history of the jumps.
+  pure subroutine store_motion(batch, stacks, displacement, rates, tractions, change, lost, u, v)
+    type(stack_batch_t), intent(in) :: batch
+    !> The stacks; their history is updated
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> Unknowns and their rates
+    real(wp), dimension(lanes, 5, batch%n + 1), intent(in) :: displacement, rates
+    !> Forces on the jumps, and change of the jumps
+    real(wp), dimension(lanes, 3, batch%n), intent(in) :: tractions, change
+    !> Losses by contact, and algorithmic
+    real(wp), intent(in) :: lost(lanes, 2, batch%n)
+    !> Unknowns and their rates, (5, points)
+    real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
+
+    associate (n => batch%n, history => stacks%history, points => size(u, 2))
+      call put(5, points, displacement, batch%first, n + 1, batch%members, u)
+      call put(5, points, rates, batch%first, n + 1, batch%members, v)
+      call put(3, points, change, batch%first + 1, n, batch%members, history%change)
+      call put(3, points, tractions, batch%first + 1, n, batch%members, history%forces)
+      call put(2, points, lost, batch%first + 1, n, batch%members, history%lost)
+    end associate
+  end subroutine store_motion
+
+  !> Finds the onset of damage in undamaged stacks.
+  subroutine find_onsets(batch, stacks, model, displacement, cohesive, u)
+    type(stack_batch_t), intent(in) :: batch
+    !> The stacks; are damaged if an interface is
+    type(interface_stacks_t), intent(inout) :: stacks
+    type(model_t), intent(in) :: model
+    !> Unknowns at the end of the step
+    real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> The same of all points, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    real(wp) :: min_onset(lanes, batch%n)
+    logical :: starts(lanes)
+    integer :: lane
+
+    call take(1, size(stacks%min_onset), stacks%min_onset, batch%first + 1, batch%n, min_onset)
+    starts = may_start(batch, min_onset, displacement)
+    if (.not. any(starts)) return
+    do lane = 1, batch%members
+      if (starts(lane)) call start_damage(stacks, batch%stack(lane), model, cohesive, u)
+    end do
+  end subroutine find_onsets
+  !> Values of consecutive points from the first of each lane on. In this module, and with arrays of explicit shape,
+  !> the loop over the values of a point is unrolled, here and in `put`.
+  pure subroutine take(values, points, field, first, rows, taken)
+    !> Number of values of a point, and of points
+    integer, intent(in) :: values, points
+    !> Values of all points
+    real(wp), intent(in) :: field(values, points)
+    !> The first point of each lane, and number of consecutive points
+    integer, intent(in) :: first(lanes), rows
+    !> Those of the lanes
+    real(wp), intent(out) :: taken(lanes, values, rows)
+    integer :: lane, l
+
+    do l = 1, rows
+      do lane = 1, lanes
+        taken(lane, :, l) = field(:, first(lane) + l - 1)
+      end do
+    end do
+  end subroutine take
+
+  !> Reverse of `take` for the lanes with a stack of their own.
+  pure subroutine put(values, points, taken, first, rows, members, field)
+    !> Number of values of a point, and of points
+    integer, intent(in) :: values, points
+    !> The first point of each lane, number of consecutive points, and number of lanes
+    integer, intent(in) :: first(lanes), rows, members
+    !> Values of the lanes
+    real(wp), intent(in) :: taken(lanes, values, rows)
+    !> Those of all points
+    real(wp), intent(inout) :: field(values, points)
+    integer :: lane, l
+
+    do l = 1, rows
+      do lane = 1, members
+        field(:, first(lane) + l - 1) = taken(lane, :, l)
+      end do
+    end do
+  end subroutine put
 end module stack_motions

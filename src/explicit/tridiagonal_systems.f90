@@ -1,9 +1,10 @@
-!> Tridiagonal systems of the interfaces of one node.
+!> Tridiagonal systems of the interfaces of nodes, over lanes of nodes with the same number of interfaces.
 !>
 !> A traction at one interface accelerates the layers above and below it, and so changes the jumps there and at the two
 !> adjacent interfaces. With the force lambda = k s + g on the jump s at the end of a step, s = s* - H C lambda, where
 !> s* is the jump without tractions and H the square of the step: (1 + k H C) lambda = k s* + g, theory (T7).
 module tridiagonal_systems
+  use element_batches, only: lanes
   use kinds, only: wp
   implicit none
   private
@@ -11,7 +12,7 @@ module tridiagonal_systems
 
 contains
 
-  !> Factors of the symmetric system (1/k + H C), for stiffnesses that are not zero and g = 0.
+  !> Factors of the symmetric system (1/k + H C) of one node, for stiffnesses that are not zero and g = 0.
   pure subroutine factorize(stiffness, diagonal, off_diagonal, factors)
     !> k, (n)
     real(wp), intent(in) :: stiffness(:)
@@ -32,51 +33,51 @@ contains
   end subroutine factorize
 
   !> Solves with the factors along x, y and z.
-  pure subroutine solve_factored(n, factors, jumps, forces)
+  pure subroutine solve_factored(n, factors, forces)
     !> Interfaces
     integer, intent(in) :: n
-    !> Factors, (2, 3, n)
-    real(wp), intent(in) :: factors(2, 3, n)
-    !> Jumps without tractions, (3, n)
-    real(wp), intent(in) :: jumps(3, n)
-    !> Forces on the jumps, (3, n)
-    real(wp), intent(out) :: forces(3, n)
+    !> Factors
+    real(wp), intent(in) :: factors(lanes, 2, 3, n)
+    !> Jumps without tractions on entry, forces on the jumps on return
+    real(wp), intent(inout) :: forces(lanes, 3, n)
     integer :: j
 
-    forces(:, 1) = jumps(:, 1)
     do j = 2, n
-      forces(:, j) = jumps(:, j) - factors(2, :, j - 1)*forces(:, j - 1)
+      forces(:, :, j) = forces(:, :, j) - factors(:, 2, :, j - 1)*forces(:, :, j - 1)
     end do
-    forces(:, n) = factors(1, :, n)*forces(:, n)
+    forces(:, :, n) = factors(:, 1, :, n)*forces(:, :, n)
     do j = n - 1, 1, -1
-      forces(:, j) = factors(1, :, j)*forces(:, j) - factors(2, :, j)*forces(:, j + 1)
+      forces(:, :, j) = factors(:, 1, :, j)*forces(:, :, j) - factors(:, 2, :, j)*forces(:, :, j + 1)
     end do
   end subroutine solve_factored
 
-  !> Solves for any stiffnesses, including zero, and given parts of the forces.
-  pure subroutine solve_tractions(n, stiffness, given, diagonal, off_diagonal, jumps, forces)
-    !> Interfaces
-    integer, intent(in) :: n
-    !> k and g, (n)
-    real(wp), intent(in) :: stiffness(n), given(n)
-    !> H C: its diagonal, and the off-diagonal entries, (n)
-    real(wp), intent(in) :: diagonal(n), off_diagonal(n)
-    !> Jumps without tractions, (n)
-    real(wp), intent(in) :: jumps(n)
-    !> Forces on the jumps, (n)
-    real(wp), intent(out) :: forces(n)
-    real(wp) :: above(n), pivot
+  !> Solves along one direction for any stiffnesses, including zero, and given parts of the forces.
+  pure subroutine solve_tractions(n, k, stiffness, given, diagonal, off_diagonal, jumps, forces)
+    !> Interfaces, and direction, 1 to 3
+    integer, intent(in) :: n, k
+    !> Force per jump in this direction
+    real(wp), intent(in) :: stiffness(lanes, n)
+    !> Given parts of the forces
+    real(wp), intent(in) :: given(lanes, 3, n)
+    !> H C: its diagonal, and the off-diagonal entries
+    real(wp), intent(in) :: diagonal(lanes, 3, n), off_diagonal(lanes, 3, n)
+    !> Jumps without tractions
+    real(wp), intent(in) :: jumps(lanes, 3, n)
+    !> Forces on the jumps; those of the direction are set
+    real(wp), intent(inout) :: forces(lanes, 3, n)
+    real(wp) :: above(lanes, n), pivot(lanes)
     integer :: j
 
-    pivot = 1 + stiffness(1)*diagonal(1)
-    forces(1) = (stiffness(1)*jumps(1) + given(1))/pivot
+    pivot = 1 + stiffness(:, 1)*diagonal(:, k, 1)
+    forces(:, k, 1) = (stiffness(:, 1)*jumps(:, k, 1) + given(:, k, 1))/pivot
     do j = 2, n
-      above(j - 1) = stiffness(j - 1)*off_diagonal(j - 1)/pivot
-      pivot = 1 + stiffness(j)*(diagonal(j) - off_diagonal(j - 1)*above(j - 1))
-      forces(j) = (stiffness(j)*(jumps(j) - off_diagonal(j - 1)*forces(j - 1)) + given(j))/pivot
+      above(:, j - 1) = stiffness(:, j - 1)*off_diagonal(:, k, j - 1)/pivot
+      pivot = 1 + stiffness(:, j)*(diagonal(:, k, j) - off_diagonal(:, k, j - 1)*above(:, j - 1))
+      forces(:, k, j) = (stiffness(:, j)*(jumps(:, k, j) - off_diagonal(:, k, j - 1)*forces(:, k, j - 1)) &
+                         + given(:, k, j))/pivot
     end do
     do j = n - 1, 1, -1
-      forces(j) = forces(j) - above(j)*forces(j + 1)
+      forces(:, k, j) = forces(:, k, j) - above(:, j)*forces(:, k, j + 1)
     end do
   end subroutine solve_tractions
 end module tridiagonal_systems

@@ -16,7 +16,7 @@ module cohesive_interfaces
   use rank_totals, only: total_of, totals_of
   implicit none
   private
-  public :: cohesive_interfaces_t, new_cohesive_interfaces
+  public :: cohesive_interfaces_t, new_cohesive_interfaces, prevents_penetration
 
   !> Factor of the toughness of interfaces whose damage is held: no jump of a plate has so much energy.
   real(wp), parameter :: unreached = 1.0e30_wp
