@@ -147,9 +147,18 @@ def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: 
             raise bulk.error(cards[number], f"it is not a material of plies, which the {user.name} in line {user.line} "
                                             "needs: give E1, E2, NU12, G12, G1Z and G2Z as a MAT8.")
     numbers = list(numbers)
-    stiffest = max(bulk.real(cards[number], field) or 0.0 for number in numbers for field in (2, 3))
+    stiffest = max(_stiffness(bulk, cards[number]) for number in numbers)
     return {number: _isotropic(bulk, cards[number], remarks) if cards[number].name == "MAT1"
             else _orthotropic(bulk, cards[number], remarks, shear_23, stiffest) for number in numbers}
+
+
+def _stiffness(bulk: BulkData, card: BulkCard) -> float:
+    """Return the largest in-plane modulus of a MAT1 or MAT8."""
+    from pyNastran.bdf.cards.materials import MAT1, MAT8
+    if card.name == "MAT1":
+        return float(bulk.read(card, MAT1).e or 0.0)
+    found = bulk.read(card, MAT8)
+    return max(float(found.e11), float(found.e22))
 
 
 def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
