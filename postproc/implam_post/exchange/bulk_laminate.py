@@ -19,8 +19,9 @@ _IGNORED = {
 }
 _NEAR = 0.01
 # Transverse shear moduli above this multiple of the largest modulus of the laminate stand for a ply without shear
-# deformation, which is written with this multiple; that of a core may exceed its own in-plane moduli. Measured: the deflection of a clamped plate, ten times as wide as thick, is by 4e-4 larger than without
-# shear deformation, and the same to 1e-4 where it is forty times as wide.
+# deformation, which is written with this multiple; that of a core may exceed its own in-plane moduli. Measured: the
+# deflection of a clamped plate, ten times as wide as thick, is by 4e-4 larger than without shear deformation, and the
+# same to 1e-4 where it is forty times as wide.
 _RIGID = 100.0
 # Largest ratio of the moduli of one material that is written: a deck accepts 1e6.
 _MAX_RATIO = 1e5
