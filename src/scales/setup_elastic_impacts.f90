@@ -202,10 +202,10 @@ contains
   end function with_scaled_inertia
 
   !> Errors by step, mesh and scaled inertia together of the results of a summary. The change by scaled inertia is the
-  !> larger one of those with the added inertia and with twice that: the scaled in-plane inertia is not in the modes, and
-  !> changes of vibrations may cancel in a peak. The error of the largest force is at least the root mean square error of
-  !> the forces around it and, where the force of first contact is the largest, the error of its waves in the elements
-  !> around the patch.
+  !> larger one of those with the added inertia and with twice that: the scaled in-plane inertia is not in the modes,
+  !> and changes of vibrations may cancel in a peak. The error of the largest force is at least the root mean square
+  !> error of the forces around it and, where the force of first contact is the largest, the error of its waves in the
+  !> elements around the patch.
   pure function errors_of_figures(scales, edge, coarse, fine, meshed, scaled) result(errors)
     type(setup_scales_t), intent(in) :: scales
     !> Side of the elements near the struck point
