@@ -48,7 +48,8 @@ contains
       deck%expected = expected_scales_of(deck%setup_t, scales, step, deck%stepping%time%end, &
                                 edge_near(deck, merge(scales%wave_length, maxval(deck%plate%length), &
                                                       deck%settings%is_given(mesh_group, key_core) .or. &
-                                                      .not. deck%settings%is_known(mesh_group, key_core))))
+                                                      .not. deck%settings%is_known(mesh_group, key_core))), &
+                                         deck%stepping%central%mass_scaling)
       associate (o => deck%expected)
         deck%stepping%expected = expected_response_t(scales%contact_time, o%force, o%deflection, o%last_contact)
       end associate

@@ -1,10 +1,12 @@
 !> A plate struck at its centre, represented by its modes, for estimates before a run.
 !>
 !> The modes are Navier's modes of a simply supported orthotropic Mindlin plate with rotary inertia, with the rotations
-!> condensed out. Other supports are approximated: a plate with clamped edges is replaced by a shorter one with the same
-!> first frequency, and free opposite edges have cosines, with the rigid-body motion. A curved plate has the additional
-!> stiffness of its membrane forces.
+!> condensed out. Other supports are approximated: between clamped edges modes are those of clamped beams (Rayleigh's
+!> method), a plate clamped at one edge is replaced by a shorter one with the same first frequency, and free opposite
+!> edges have cosines, with the rigid-body motion. A curved plate has the additional stiffness of its membrane forces.
 module modal_plates
+  use beam_modes, only: clamped_beam_mean, clamped_beam_number, clamped_beam_slope, propped_beam_number, &
+                        propped_beam_slope
   use curved_modes, only: membrane_mode, shallow_shape_t
   use kinds, only: wp
   use mathematical_constants, only: pi
@@ -26,11 +28,9 @@ module modal_plates
   end type modal_plate_t
 
   !> Length of a simply supported plate over that of a plate with other supports at a pair of edges and the same first
-  !> frequency. Square plates have their first frequency at 19.74 (SSSS), 28.95 (SCSC) and 23.65 (SSSC) times
-  !> sqrt(D/(rho h))/a**2 (A. W. Leissa, Vibration of Plates, NASA SP-160, 1969); beams with a free end at 3.516 instead
-  !> of 9.870, and at 15.42 for the first bending mode of one hinged at its support.
-  real(wp), parameter, public :: shortened_clamped = 0.719_wp
-  real(wp), parameter :: shortened_one_clamped = 0.846_wp, lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
+  !> frequency, if bending along this length prevails: beams have it at 9.870 (simply supported), 3.516 (clamped and
+  !> free) and, the first bending mode of one hinged at its support, 15.42 times sqrt(EI/(rho A))/a**2.
+  real(wp), parameter :: lengthened_cantilever = 1.68_wp, shortened_hinged = 0.8_wp
   !> Largest number of modes along one direction; the deflection by higher ones is negligible for an estimate.
   integer, parameter :: max_modes = 300
   !> Modes along one direction are included if their half wave is no shorter than this fraction of the patch: for
@@ -70,7 +70,7 @@ contains
     found = 0
     do j = 1, size(y, 2)
       do i = 1, size(x, 2)
-        condensed = condensed_mode(x(1, i), y(1, j), stiffness, mass)
+        condensed = condensed_mode(x(1, i), y(1, j), x(3, i)*y(3, j), stiffness, mass)
         if (present(shape)) condensed = condensed + &
           [1.0_wp, mass(1)]*membrane_mode(shape, stiffness(1:6), [x(1, i), y(1, j)], extent)
         this = x(2, i)*y(2, j)/condensed(2)
@@ -89,7 +89,8 @@ contains
     plate%wave_number = wave_number(:, :found)
   end function modal_plate_of
 
-  !> Wave numbers along one direction, and the squares of the modes' means over the patch over their norms, (2, modes).
+  !> Wave numbers along one direction, the squares of the modes' means over the patch over their norms, and the mean
+  !> square of their slopes over the square of the wave number, (3, modes).
   pure function modes_along(length, edges, patch) result(modes)
     !> Length of the plate
     real(wp), intent(in) :: length
@@ -97,7 +98,7 @@ contains
     integer, intent(in) :: edges(2)
     !> Side of the loaded square
     real(wp), intent(in) :: patch
-    !> Wave number; square of the mean over the norm, 1/length
+    !> Wave number; square of the mean over the norm, 1/length; of the slopes
     real(wp), allocatable :: modes(:, :)
     real(wp) :: extent, half
     logical :: free
@@ -106,14 +107,31 @@ contains
     free = all(edges == edge_free)
     extent = length*length_factor(edges)
     number = min(max_modes, 4 + int(extent/(2*part_of_patch*patch)))
-    allocate (modes(2, number))
+    allocate (modes(3, number), source=1.0_wp)
+    if (all(edges == edge_clamped)) then
+      associate (q => clamped_beam_number([(i, i=1, number)]))
+        modes(1, :) = q/length
+        modes(2, :) = clamped_beam_mean(q, min(1.0_wp, patch/length))**2/length
+        modes(3, :) = clamped_beam_slope(q)
+      end associate
+      return
+    end if
     do i = 1, number
       modes(1, i) = (2*i - merge(2, 1, free))*pi/extent
       half = modes(1, i)*patch/2
       modes(2, i) = merge(1, 2, modes(1, i) <= 0)/extent
       if (half > 0) modes(2, i) = modes(2, i)*(sin(half)/half)**2
     end do
+    if (is_propped(edges)) modes(3, :) = propped_beam_slope(modes(1, :)*length)
   end function modes_along
+
+  !> Whether one end is clamped and the other simply supported.
+  pure logical function is_propped(edges)
+    !> Supports at both ends
+    integer, intent(in) :: edges(2)
+
+    is_propped = any(edges == edge_clamped) .and. any(edges == edge_simple)
+  end function is_propped
 
   !> Length of the equivalent simply supported (or free) plate over that of one with other supports.
   pure real(wp) function length_factor(edges) result(factor)
@@ -122,9 +140,9 @@ contains
 
     factor = 1
     if (all(edges == edge_clamped)) then
-      factor = shortened_clamped
-    else if (any(edges == edge_clamped) .and. any(edges == edge_simple)) then
-      factor = shortened_one_clamped
+      factor = pi/clamped_beam_number(1)
+    else if (is_propped(edges)) then
+      factor = pi/propped_beam_number
     else if (any(edges == edge_clamped) .and. any(edges == edge_free)) then
       factor = lengthened_cantilever
     else if (any(edges == edge_simple) .and. any(edges == edge_free)) then
@@ -133,22 +151,27 @@ contains
   end function length_factor
 
   !> Stiffness and mass of a mode per area, for its deflection. The rotations are condensed statically; their inertia is
-  !> that of the slope.
-  pure function condensed_mode(a, b, stiffness, mass) result(condensed)
+  !> that of the slope. In Rayleigh's quotient of a thin plate, D11 a**4 + 2 (D12 + 2 D66) c a**2 b**2 + D22 b**4, the
+  !> product c of the mean square slopes multiplies Poisson's and the twisting stiffness.
+  pure function condensed_mode(a, b, slopes, stiffness, mass) result(condensed)
     !> Wave numbers along x and y
     real(wp), intent(in) :: a, b
+    !> Product of the mean square slopes along x and y over the squares of the wave numbers
+    real(wp), intent(in) :: slopes
     !> Section stiffness, packed as in section_t
     real(wp), intent(in) :: stiffness(21)
     !> Integrals of density, density z and density z**2
     real(wp), intent(in) :: mass(3)
     !> Stiffness and mass
     real(wp) :: condensed(2)
-    real(wp) :: k22, k23, k33, det, turn(2), shear(2)
+    real(wp) :: k22, k23, k33, det, turn(2), shear(2), poisson, twist
 
+    poisson = slopes*stiffness(14)
+    twist = slopes*stiffness(18)
     shear = [stiffness(19)*a, stiffness(21)*b]
-    k22 = stiffness(13)*a**2 + stiffness(18)*b**2 + stiffness(19)
-    k23 = (stiffness(14) + stiffness(18))*a*b
-    k33 = stiffness(18)*a**2 + stiffness(16)*b**2 + stiffness(21)
+    k22 = stiffness(13)*a**2 + twist*b**2 + stiffness(19)
+    k23 = (poisson + twist)*a*b
+    k33 = twist*a**2 + stiffness(16)*b**2 + stiffness(21)
     det = k22*k33 - k23**2
     turn = [k33*shear(1) - k23*shear(2), k22*shear(2) - k23*shear(1)]/det
     condensed(1) = stiffness(19)*a**2 + stiffness(21)*b**2 - dot_product(shear, turn)

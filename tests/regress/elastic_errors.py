@@ -1,5 +1,6 @@
 """Manual, estimated errors: an impact that stays elastic has those of the preliminary elastic impact, confirmed by
-cells of half the side; where interfaces or plies fail, in the same deck, none are given, as they would be too small.
+cells of half the side and by inertia that is not scaled; where interfaces or plies fail, in the same deck, none are
+given, as they would be too small.
 Usage: elastic_errors.py IMPLAM FOLDER"""
 
 import json
@@ -19,16 +20,17 @@ DECK = """&case name='{name}' units='SI' kinematics='linear' /
 &laminate materials='ply' angles=5*0, 5*90, 5*0 thicknesses=0.1333e-3 /
 &impactor mass=0.3 velocity=4 radius=8e-3 /
 &indentation law='hertz' /
-{damage}&time integrator='central_difference' end=0.25e-3 mass_scaling=1 /
+{damage}&time integrator='central_difference' end=0.25e-3 mass_scaling={scaling} /
 """
 WEAK = "&delamination below_ply=10 G_Ic=280 G_IIc=790 strength_opening=12e6 strength_shear=25e6 /\n"
 INTACT = WEAK.replace("12e6", "12e9").replace("25e6", "25e9")
 
 
-def summary_of(implam, folder, name, damage, elements="12, 12", material=""):
+def summary_of(implam, folder, name, damage, elements="12, 12", material="", scaling=1):
     """Run the deck; return its summary and the line of its peak force."""
     deck = folder / f"{name}.nml"
-    deck.write_text(DECK.format(name=name, elements=elements, material=material, damage=damage), encoding="utf-8")
+    deck.write_text(DECK.format(name=name, elements=elements, material=material, damage=damage,
+                                scaling=scaling), encoding="utf-8")
     printed = run([implam, deck, "--output", folder])
     line, = re.findall(r"^  peak force .*", printed, re.MULTILINE)
     return json.loads((folder / f"{name}_summary.json").read_text(encoding="utf-8")), line
@@ -44,6 +46,10 @@ def check(implam, folder):
     change = abs(plain["peak_force"] - fine["peak_force"])
     print(f"elastic: {plain['peak_force']:.5g} +- {errors['peak_force']:.2g}, half the cells {fine['peak_force']:.5g}")
     require(change <= AT_MOST * errors["peak_force"], f"Half the cells change the peak by {change}, {errors}.")
+    scaled, _ = summary_of(implam, folder, "scaled", "", scaling=10)
+    change, error = (abs(plain["peak_force"] - scaled["peak_force"]), scaled["estimated_errors"]["peak_force"])
+    print(f"inertia scaled by 10: {scaled['peak_force']:.5g} +- {error:.2g}")
+    require(change <= AT_MOST * error, f"Scaled inertia changes the peak by {change}, its error is {error}.")
     intact, line = summary_of(implam, folder, "intact", INTACT)
     require(intact["delaminated_area"] == 0 and intact["estimated_errors"]["source"] == "elastic" and "+-" in line,
             f"An interface that does not fail: {intact['estimated_errors']}, {line}")

@@ -46,6 +46,9 @@ class BulkCard:
             if self.name in KNOWN and text and len(text.split()) > 1:
                 raise self.error(f"field {number}, '{text}', has blanks inside: is it one value that is written apart, "
                                  f"or two in the {_FIELD} or {2 * _FIELD} columns of one field?")
+            # Python's numbers may have underscores, those of Nastran may not.
+            if self.name in KNOWN and text and re.fullmatch(r"[-+.\d]+_[-+.\w]*", text):
+                raise self.error(f"field {number}, '{text}', is not a number: leave out the underscore.")
         return card
 
     def error(self, sentence: str) -> DeckError:

@@ -18,10 +18,13 @@ _IGNORED = {
     "PCOMPG": {4: "SB", 5: "FT", 7: "GE"},
 }
 _NEAR = 0.01
-# Transverse shear moduli above this multiple of E1 stand for a ply without shear deformation, which is written with
-# this multiple. Measured: the deflection of a clamped plate, ten times as wide as thick, is by 4e-4 larger than without
-# shear deformation, and the same to 1e-4 where it is forty times as wide.
+# Transverse shear moduli above this multiple of the largest modulus of the laminate stand for a ply without shear
+# deformation, which is written with this multiple; that of a core may exceed its own in-plane moduli. Measured: the
+# deflection of a clamped plate, ten times as wide as thick, is by 4e-4 larger than without shear deformation, and the
+# same to 1e-4 where it is forty times as wide.
 _RIGID = 100.0
+# Largest ratio of the moduli of one material that is written: a deck accepts 1e6.
+_MAX_RATIO = 1e5
 # Number of the field in which the first ply of a PCOMP or PCOMPG begins.
 _FIRST_PLY = 9
 
@@ -144,8 +147,19 @@ def _materials(bulk: BulkData, numbers: Iterable[int], user: BulkCard, remarks: 
         if cards[number].name not in ("MAT1", "MAT8"):
             raise bulk.error(cards[number], f"it is not a material of plies, which the {user.name} in line {user.line} "
                                             "needs: give E1, E2, NU12, G12, G1Z and G2Z as a MAT8.")
+    numbers = list(numbers)
+    stiffest = max(_stiffness(bulk, cards[number]) for number in numbers)
     return {number: _isotropic(bulk, cards[number], remarks) if cards[number].name == "MAT1"
-            else _orthotropic(bulk, cards[number], remarks, shear_23) for number in numbers}
+            else _orthotropic(bulk, cards[number], remarks, shear_23, stiffest) for number in numbers}
+
+
+def _stiffness(bulk: BulkData, card: BulkCard) -> float:
+    """Return the largest in-plane modulus of a MAT1 or MAT8."""
+    from pyNastran.bdf.cards.materials import MAT1, MAT8
+    if card.name == "MAT1":
+        return float(bulk.read(card, MAT1).e or 0.0)
+    found = bulk.read(card, MAT8)
+    return max(float(found.e11), float(found.e22))
 
 
 def _isotropic(bulk: BulkData, card: BulkCard, remarks: Remarks) -> Material:
@@ -173,8 +187,8 @@ def _absent(bulk: BulkData, card: BulkCard, number: int) -> str:
     return "blank" if bulk.real(card, number) is None else "0"
 
 
-def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None) -> Material:
-    """Return the material of a MAT8."""
+def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | None, stiffest: float) -> Material:
+    """Return the material of a MAT8; `stiffest` is the largest in-plane modulus of the laminate."""
     from pyNastran.bdf.cards.materials import MAT8
     found = bulk.read(card, MAT8)
     g13, g23 = (bulk.real(card, number) for number in (6, 7))
@@ -187,7 +201,10 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
     if not g13:
         remarks.add(card, f"G1Z is {_absent(bulk, card, 6)}: G12 is used")
         g13 = found.g12
-    g13, g23 = (_finite_shear(card, key, modulus, found.e11, remarks) for key, modulus in (("G1Z", g13), ("G2Z", g23)))
+    limit = _RIGID * stiffest
+    written = min(limit, _MAX_RATIO * min(found.e11, found.e22, found.g12))
+    g13, g23 = (_finite_shear(card, key, modulus, limit, written, remarks)
+                for key, modulus in (("G1Z", g13), ("G2Z", g23)))
     if min(found.e11, found.e22, found.g12, g13, g23) <= 0:
         raise bulk.error(card, "E1, E2, G12, G1Z and G2Z must be greater than zero.")
     if found.nu12**2 * found.e22 >= found.e11:
@@ -201,13 +218,13 @@ def _orthotropic(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: flo
                     _name(card), strengths, expansion=(bulk.real(card, 9) or 0.0, bulk.real(card, 10) or 0.0))
 
 
-def _finite_shear(card: BulkCard, key: str, modulus: float, e1: float, remarks: Remarks) -> float:
+def _finite_shear(card: BulkCard, key: str, modulus: float, limit: float, written: float, remarks: Remarks) -> float:
     """Return a transverse shear modulus; one that excludes shear deformation is reduced to what a deck can have."""
-    if not modulus > _RIGID * e1 > 0:
+    if not modulus > limit or written <= 0:
         return modulus
-    remarks.add(card, f"{key} = {modulus:g} is taken as no transverse shear deformation: {_RIGID * e1:g}, {_RIGID:g} "
-                      "times E1, has the same effect and is written; an impact needs the modulus of the material")
-    return _RIGID * e1
+    remarks.add(card, f"{key} = {modulus:g} is taken as no transverse shear deformation: {written:g} has the same "
+                      "effect and is written; an impact needs the modulus of the material")
+    return written
 
 
 def _rest(material: Material) -> tuple[object, ...]:

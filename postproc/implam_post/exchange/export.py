@@ -9,8 +9,8 @@ from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
 from implam_post.io.counts import counted
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, finite, reason, run
-from implam_post.io.files import printable
+from implam_post.io.errors import EXIT_DONE, CommandParser, finite, run
+from implam_post.io.files import printable, write_text
 
 
 def summary(panel: Panel) -> Iterator[str]:
@@ -41,10 +41,7 @@ def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, a
     panel = read_panel(options.source, options.time).with_pressure(options.pressure)
     output = options.output or options.source.with_name(f"{options.source.stem}_panel{suffix}")
     text = "\n".join(lines(panel, options)) + "\n"
-    try:
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise FileError(f"{output} cannot be written ({reason(error)}).") from None
+    write_text(output, text)
     print(*summary(panel), output, sep="\n")
     return EXIT_DONE
 

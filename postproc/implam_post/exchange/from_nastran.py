@@ -15,8 +15,8 @@ from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
-from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
-from implam_post.io.files import printable
+from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, run
+from implam_post.io.files import printable, write_text
 from implam_post.laminate.sections import Ply
 
 
@@ -92,10 +92,7 @@ def _command(options: argparse.Namespace) -> int:
         bulk = read_bulk_data(options.bulk, options.subcase)
         text, remarks = deck_of(bulk, re.sub(r"[^\w.-]", "_", output.stem, flags=re.ASCII), impact,
                                 options.struck == "last", options.spc, options.g2z)
-    try:
-        output.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise FileError(f"{output} cannot be written ({reason(error)}).") from None
+    write_text(output, text)
     print(*report(bulk, remarks), f"deck: {output}", sep="\n")
     return EXIT_DONE
 

@@ -15,7 +15,16 @@ if TYPE_CHECKING:
 
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
-    """Yield the path of a draft with the same suffix, which replaces `path` when it is complete."""
+    """Yield the path of a draft with the same suffix, which replaces `path` when it is complete.
+
+    A device or a pipe is written itself.
+    """
+    if path.exists() and not path.is_file():
+        try:
+            yield path
+        except OSError as error:
+            raise FileError(f"{path} cannot be written ({reason(error)}).") from None
+        return
     draft = path.with_name(f".draft_{path.name}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

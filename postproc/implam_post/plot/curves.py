@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from implam_post.io.errors import FileError, reason
+from implam_post.io.files import replaced
 from implam_post.io.history import History, read_columns
 from implam_post.io.measured import check_units
 from implam_post.io.quantities import growth_rows
@@ -43,9 +44,9 @@ def plot_curves(history: History, files: Sequence[Path], path: Path, style: Pict
             axes.grid(alpha=0.3)
             axes.legend()
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            figure.savefig(path, dpi=style.dots_per_inch)
-        except (OSError, ValueError) as error:
+            with replaced(path) as draft:
+                figure.savefig(draft, dpi=style.dots_per_inch)
+        except ValueError as error:
             raise FileError(f"{path} cannot be written ({reason(error)}).") from None
     return path
 

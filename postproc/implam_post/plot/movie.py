@@ -14,6 +14,7 @@ from PIL import Image
 from implam_post.io.compression import STRESS
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, reason, run
 from implam_post.io.fields import Fields, read_fields
+from implam_post.io.files import replaced
 from implam_post.io.history import History
 from implam_post.io.run import open_run
 from implam_post.plot.compression import is_compressed
@@ -76,8 +77,9 @@ def _command(options: argparse.Namespace) -> int:
         pictures = frames(fields, open_run(options.fields).columns, style)
     path = options.save or options.fields.with_suffix(".gif")
     try:
-        pictures[0].save(path, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)
-    except (OSError, ValueError) as error:
+        with replaced(path) as draft:
+            pictures[0].save(draft, save_all=True, append_images=pictures[1:], duration=1000 / options.rate, loop=0)
+    except ValueError as error:
         raise FileError(f"{path} cannot be written ({reason(error)}).") from None
     print(path)
     return EXIT_DONE

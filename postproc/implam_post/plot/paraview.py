@@ -12,6 +12,7 @@ from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, run
 from implam_post.io.fields import MODES, Fields, Snapshot, deck_in, read_fields
 from implam_post.io.files import write_text
 from implam_post.io.history import History
+from implam_post.io.new_hdf5 import new_hdf5
 from implam_post.io.run import open_run
 from implam_post.io.shapes import heights_of
 from implam_post.laminate.decks import plies_of
@@ -66,7 +67,7 @@ def write_files(fields: Fields, history: History | None, base: Path) -> list[Pat
     radius = deck.number("impactor", "radius", 0.0) if deck.has("impactor") else 0.0
     data = base.with_name(f"{base.name}_paraview.h5")
     grids: dict[str, list[str]] = {"through": []}
-    with h5py.File(data, "w") as file:
+    with new_hdf5(data) as file:
         for number, snapshot in enumerate(fields.snapshots, start=1):
             grids["through"].append(_write_plan(file, f"{number:08d}", fields, snapshot, thickness / 2))
         if radius > 0 and history is not None:

@@ -11,6 +11,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from implam_post.io.errors import FileError, reason
 from implam_post.io.fields import Fields
+from implam_post.io.files import replaced
 from implam_post.io.history import ENERGY_ERROR, ENERGY_NAMES, History
 from implam_post.plot.compression import compression_figure, is_compressed, remark_of
 from implam_post.plot.curves import AXES, in_contact, rows_of_growth
@@ -227,9 +228,9 @@ def _names(paths: Sequence[str]) -> list[str]:
 def _save(figure: Figure, path: Path, style: PictureStyle = _PLAIN) -> Path:
     """Write the figure, create its folder if necessary, and return the path."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         lay_out(figure)
-        figure.savefig(path, dpi=style.dots_per_inch)
-    except (OSError, ValueError) as error:
+        with replaced(path) as draft:
+            figure.savefig(draft, dpi=style.dots_per_inch)
+    except ValueError as error:
         raise FileError(f"{path} cannot be written ({reason(error)}).") from None
     return path

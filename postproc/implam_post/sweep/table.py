@@ -13,7 +13,8 @@ from implam_post.io.counts import counted
 from implam_post.io.deck import Deck, system_of_deck
 from implam_post.io.deck_text import deck_value
 from implam_post.io.errors import DeckError, ImplamError
-from implam_post.io.files import replaced, write_table
+from implam_post.io.files import write_table
+from implam_post.io.new_hdf5 import new_hdf5
 from implam_post.io.program import version_in
 from implam_post.io.results import dimension_of
 from implam_post.io.run import open_run
@@ -118,7 +119,7 @@ def write_csv(table: Table, path: Path) -> None:
 
 def write_hdf5(table: Table, path: Path) -> None:
     """Write the table as HDF5: a data set for each column, the file of the sweep and the deck of each case."""
-    with replaced(path) as draft, h5py.File(draft, "w") as file:
+    with new_hdf5(path) as file:
         columns = file.create_group("table", track_order=True)
         for name, values in table.columns.items():
             numbers = table.numbers(name)

@@ -445,6 +445,8 @@ class RefusedTest(ImportTest):
         for text in ("nan", "1e400", "1.+400"):
             self.refused(Bulk(materials=[(*MATERIALS[0][:2], text, *MATERIALS[0][3:]), MATERIALS[1]]),
                          f"{text} is not a finite number")
+        self.refused(Bulk(materials=[(*MATERIALS[0][:2], "139_000.", *MATERIALS[0][3:]), MATERIALS[1]]),
+                     "field 2, '139_000.', is not a number")
         self.refused(Bulk(more=[("CQUAD4", 99, 1, 0, 1, 3, 21)]), "grid 0 does not exist")
         self.refused(Bulk(head="+,1,2\n"), "the continuation belongs to no card")
         self.refused(Bulk(more=[("GRID", 99, 4, 5.0, 0.0, 0.0)]), "coordinate system 4")

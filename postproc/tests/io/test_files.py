@@ -1,6 +1,7 @@
 """Tests of the replacement of files."""
 
 import errno
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 from implam_post.io.errors import FileError
 from implam_post.io.files import replaced, write_text
 
+PACKAGE = Path(__file__).parents[2] / "implam_post"
 
 class FilesTest(unittest.TestCase):
     """A file is replaced as a whole or not at all."""
@@ -23,6 +25,21 @@ class FilesTest(unittest.TestCase):
                     raise failure
                 self.assertEqual([found.name for found in Path(folder).iterdir()], ["page.html"])
             self.assertEqual(path.read_text(), "old")
+
+    def test_a_device_is_written_itself(self) -> None:
+        """A file that is no regular file is neither replaced nor removed; a folder is reported."""
+        write_text(Path("/dev/null"), "text")
+        self.assertTrue(Path("/dev/null").is_char_device())
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertRaises(FileError, write_text, Path(folder), "text")
+
+    def test_all_results_are_replaced(self) -> None:
+        """No result is written under its own name, where a full disk would leave an empty file or a part of it."""
+        for path in sorted(PACKAGE.rglob("*.py")):
+            for line in path.read_text(encoding="utf-8").splitlines():
+                if re.search(r"\b(savefig|write_bytes)\(|\.(save|write_text)\(|h5py\.File\([^)]*\"w\"", line):
+                    with self.subTest(path.name, line=line.strip()):
+                        self.assertRegex(line, r"\((draft|stream)\b|\bdraft\.write_|backing_store=False")
 
 
 if __name__ == "__main__":
