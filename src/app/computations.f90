@@ -189,7 +189,7 @@ contains
     base = deck%output%directory//'/'//deck%name
     select case (stage_of(base, deck%text, commit, communicator))
     case (stage_done)
-      call print_lines(communicator, [line_t(deck%name//' has been run before.')])
+      call print_lines(communicator, [line_t(deck%name//' has been run before; its results are kept.')])
     case (stage_stopped)
       left = deck
       call archive%open_for_loading(communicator, base//checkpoint_ending, error)

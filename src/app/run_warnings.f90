@@ -124,8 +124,9 @@ contains
     if (.not. record%has_warned(warning_membrane, 0) .and. abs(now%deflection) > max_deflection_ratio*thickness) then
       if (has_fibre_failure(deck, model, now)) call add(warning_membrane, 0)
     end if
-    ! After the impactor has left, the check does not apply.
-    if (.not. record%has_warned(warning_perforation, 0) .and. deck%has_ply_damage .and. now%force > 0) then
+    ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
+    if (.not. record%has_warned(warning_perforation, 0) .and. deck%has_ply_damage .and. now%force > 0 .and. &
+        now%impactor%velocity >= 0) then
       if (is_perforated(model, now)) call add(warning_perforation, 0)
     end if
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &

@@ -13,10 +13,10 @@ module starter_decks
   character(len=*), parameter, public :: starter_name = 'impact.nml'
   !> Its lines. Material and interface are those of input/peanut.nml.
   character(len=105), parameter :: lines(*) = [character(len=105) :: &
-    '! A drop weight strikes the middle of a composite plate. Lengths are in m, masses in kg, times in s,', &
-    '! so forces are in N, energies in J, stresses in Pa; any other consistent units will do.', &
-    '! `implam explain GROUP` lists all keys of a group, with their defaults.', &
+    '! A drop weight strikes the middle of a composite plate. `implam explain GROUP` lists all keys of a group,', &
+    '! with their defaults; `implam explain case units` names other units.', &
     '', &
+    '&case         units=''SI'' /             ! m, kg, s, so N, J, Pa', &
     '&plate        length=0.10, 0.10        ! sides along x and y', &
     '              edges=''clamped''          ! or ''simple'', ''free''; four values: x-min, x-max, y-min, y-max', &
     '              symmetry=''quarter'' /     ! plies at 0 and 90 degrees; others: ''point'' or ''none''', &

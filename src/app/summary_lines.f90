@@ -11,7 +11,7 @@ module summary_lines
   use run_results, only: results_t
   use summary_rows, only: label_of_result, unit_of_result
   use text, only: line_t, append, counted, rounded_text, to_text
-  use usual_units, only: area_kind, energy_kind, force_kind, length_kind, time_kind, velocity_kind
+  use usual_units, only: area_kind, energy_kind, force_kind, frequency_kind, length_kind, time_kind, velocity_kind
   implicit none
   private
   public :: lines_of_summary
@@ -113,7 +113,7 @@ contains
     if (record%filter%frequency > 0) &
       call add_figure(lines, 'filtered', results%with_unit(record%peak_filtered, force_kind)//' at '// &
                       moment(deck, record%peak_filtered_time)//' after the low-pass filter of '// &
-                      rounded_text(record%filter%frequency))
+                      results%with_unit(record%filter%frequency, frequency_kind))
     until = ', until '//results%shown('contact_until')
     if (results%value('in_contact') > 0) until = ', and still at the end'
     call add_figure(lines, label_of_result('contact_duration'), results%shown('contact_duration')// &

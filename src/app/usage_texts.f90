@@ -13,7 +13,8 @@ module usage_texts
   !> Commands and their meaning.
   character(len=text_length), parameter, public :: command_rows(2, 11) = reshape([character(len=text_length) :: &
     '[run] DECK.nml', 'run a deck', &
-    'check DECK.nml', 'check a deck and list all errors, without a run', &
+    'check DECK.nml', 'list all errors and doubtful values of a deck, and what to expect: force, contact, errors of &
+      &mesh and steps, memory and time; nothing is run', &
     'new [NAME.nml]', 'write a commented deck that is ready to run, with --rig that of a test rig; &
       &no file is overwritten', &
     'explain [GROUP [KEY]]', 'groups and keys of a deck: units, defaults, meaning; GROUP.KEY and GROUP%KEY are &

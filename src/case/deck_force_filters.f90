@@ -1,4 +1,5 @@
-!> Warns of a low-pass filter of the contact force whose corner the rows of the history cannot resolve.
+!> Warns of a low-pass filter of the contact force whose corner the rows of the history cannot resolve, or whose period
+!> is longer than the run.
 module deck_force_filters
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -23,6 +24,13 @@ contains
     if (problems%errors() > 0 .or. .not. (deck%has_time .and. deck%has_impactor)) return
     apart = deck%output%history_every
     if (.not. apart > 0) apart = deck%stepping%time%step*deck%output%steps_between_rows
+    if (deck%output%force_filter > 0 .and. deck%output%force_filter*deck%stepping%time%end < 1) then
+      call remark(deck%settings, problems, output_group, key_force_filter, 'has a period longer than the run, so '// &
+                  'that the filter removes the contact force itself; give at least '// &
+                  short_text(1/deck%stepping%time%end)//trim(merge('.                       ', &
+                                                                   '; it is probably in kHz.', &
+                                                                   deck%units == 'mm-kg-ms')))
+    end if
     if (2*apart*deck%output%force_filter <= 1) return
     call remark(deck%settings, problems, output_group, key_force_filter, 'is above the Nyquist frequency of the '// &
                 'rows, which are '//short_text(apart)//' apart; give at most '//text_at_most(0.5_wp/apart)// &

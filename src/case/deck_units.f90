@@ -20,7 +20,7 @@ module deck_units
   use mathematical_constants, only: pi
   use mesh_deck, only: key_cell, key_core, key_lines, key_patch, mesh_group
   use short_numbers, only: short_text
-  use support_deck, only: key_window, support_group
+  use support_deck, only: key_clamps, key_window, support_group
   use time_deck, only: time_group, key_end
   use unit_systems, only: base_units, is_unusual, system_named, unit_that_fits, unit_name, systems, quantities, &
                           of_length, of_mass, of_pressure, of_radius, of_thickness, of_time
@@ -39,14 +39,15 @@ module deck_units
   !> Ratios of the contact stiffness to that of Sun's formula for a rigid ball: usual and improbable ones. That of an
   !> elastic plate is .5 (input/verify/karas.nml); N/mm^1.5 in place of N/m^1.5 changes the ratio by 3e4.
   real(wp), parameter :: usual_stiffness(2) = [0.02_wp, 5.0_wp], odd_stiffness(2) = [1.0e-3_wp, 1.0e3_wp]
-  !> Slowest drop weight, m/s: 5 mm of height. Energy over thickness of a plate, J/m, beyond which nothing is left of
-  !> it: ASTM D7136 has 6.7 J/mm, perforation takes up to 60 J/mm.
-  real(wp), parameter :: slowest_drop = 0.3_wp, highest_energy = 1.0e6_wp
+  !> Slowest drop weight, m/s: 50 mm of height, where ASTM D7136 has 300 mm or more. Energy over thickness of a plate,
+  !> J/m, beyond which the impactor passes through: ASTM D7136 has 6.7 J/mm, perforation takes up to 60 J/mm.
+  real(wp), parameter :: slowest_drop = 0.99_wp, highest_energy = 1.0e5_wp
   !> Keys of lengths in the plane of the plate.
   character(len=*), parameter :: groups_of_lengths(*) = [character(len=12) :: mesh_group, mesh_group, mesh_group, &
-    mesh_group, mesh_group, delamination_group, delamination_group, support_group, impactor_group, line_group, &
-    gauge_group], keys_of_lengths(*) = [character(len=7) :: key_patch, key_core, key_cell, key_lines, key_zone, &
-    key_starter, key_window, key_at, key_line_at, key_gauge_at]
+    mesh_group, mesh_group, delamination_group, delamination_group, support_group, support_group, impactor_group, &
+    line_group, gauge_group]
+  character(len=*), parameter :: keys_of_lengths(*) = [character(len=7) :: key_patch, key_core, key_cell, key_lines, &
+    key_zone, key_starter, key_window, key_clamps, key_at, key_line_at, key_gauge_at]
   !> N/m^1.5 in one N/mm^1.5: 1000**1.5.
   real(wp), parameter :: per_millimetre = 31622.8_wp
 
@@ -225,6 +226,9 @@ contains
       energy = 0.5_wp*impactor%mass*base(2)*speed**2/(sum(deck%laminate%thickness)*base(1))
       if (is_unusual(of_mass, impactor%mass, system)) return
       if (deck%settings%is_given(impactor_group, key_energy)) then
+        if (energy >= highest_energy .and. energy/1000 < highest_energy) &
+          call remark(deck%settings, problems, impactor_group, key_energy, 'is '//short_text(energy/1000)// &
+                      ' J per mm of thickness, beyond perforation; it is probably in mJ.')
         if (speed > slowest_drop .or. speed*sqrt(1000.0_wp) < slowest_drop) return
         finding = 'has a speed of only '//short_text(speed)//' m/s with the energy of the deck'
       else

@@ -14,6 +14,7 @@ module delamination_deck
                                      unloading_contact, unloading_glued
   use interface_places, only: delamination_group, key_below_ply, plies_above
   use kinds, only: wp
+  use laminate_deck, only: laminate_group
   use text, only: line_t, to_text, words_of
   implicit none
   private
@@ -180,12 +181,16 @@ contains
     type(delamination_t), intent(inout) :: delamination
     real(wp) :: weaker(2)
     integer :: above
+    logical :: is_cohesive
 
     weaker = 0
     above = max(1, min(delamination%below_ply, size(strengths, 2) - 1))  ! one outside, which is refused: the nearest
     if (above < size(strengths, 2)) weaker = minval(strengths(:, above:above + 1), dim=2)
+    is_cohesive = suits_cohesive(settings, place, weaker)
+    ! Without plies, as their group has errors, only the key of a front decides.
+    if (size(strengths, 2) == 0) is_cohesive = .not. needs_front(settings, place)
     if (.not. settings%is_given(group, key_law, place)) call settings%derive(group, key_law, &
-      trim(merge('cohesive', 'front   ', suits_cohesive(settings, place, weaker))), .true., place)
+      trim(merge('cohesive', 'front   ', is_cohesive)), .true., place)
     delamination%law = code_of(settings%text_of(group, key_law, place), 'front cohesive', [law_front, law_cohesive])
     if (delamination%law /= law_cohesive) return
     delamination%stiffness = settings%real_of(group, 'stiffness', place)
@@ -320,8 +325,9 @@ contains
       return
     end if
     call check_law(settings, delamination, place, problems)
-    ! Without a position of the interface its adjacent plies, whose strengths are the defaults, are not known.
-    if (delamination%below_ply < 1) return
+    ! Without a position of the interface, or without the laminate, its adjacent plies are not known, and their
+    ! strengths are the defaults.
+    if (delamination%below_ply < 1 .or. problems%concern(laminate_group)) return
     if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
     if (.not. delamination%strength_shear > 0) call require(key_strength_shear, 'or S12 of the materials.')
 

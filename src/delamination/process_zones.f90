@@ -168,11 +168,24 @@ contains
     !> A clause and a sentence
     character(len=:), allocatable :: errors
 
-    errors = 'errors of '//load_errors(merge(minval(fewest), fewest(1), zone%is_pulled))// &
-             ' % of the load at growth, as in strips with such cells'
-    if (.not. zone%is_pulled) errors = errors//', and of '//area_errors(fewest(1))//' % of the area, as in impacts'
+    errors = measured(load_errors(merge(minval(fewest), fewest(1), zone%is_pulled)), 'load at growth', &
+                      'strips with such cells')
+    if (.not. zone%is_pulled) errors = errors//', and '//measured(area_errors(fewest(1)), 'area', 'impacts')
     errors = errors//'. `implam explain growth_errors` lists measured errors, --verify runs finer cells.'
   end function expected_errors
+
+  !> Errors of a quantity, which may not have been measured with such cells.
+  pure function measured(range, quantity, specimens) result(clause)
+    !> The range of errors, or 'unknown'
+    character(len=*), intent(in) :: range
+    !> The quantity, and where it was measured
+    character(len=*), intent(in) :: quantity, specimens
+    !> Such as errors of -6 to 2 % of the area, as in impacts
+    character(len=:), allocatable :: clause
+
+    clause = 'unknown errors of the '//quantity
+    if (range /= 'unknown') clause = 'errors of '//range//' % of the '//quantity//', as in '//specimens
+  end function measured
 
   !> A number of cells, to one decimal, or to three digits if that would be zero.
   pure function in_cells(cells) result(number)

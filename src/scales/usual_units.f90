@@ -10,7 +10,8 @@ module usual_units
   !> Kinds of units, as in the tables of results.
   character(len=*), parameter, public :: length_kind = 'length', area_kind = 'area', time_kind = 'time', &
                                          velocity_kind = 'length/time', force_kind = 'force', &
-                                         pressure_kind = 'pressure', energy_kind = 'energy'
+                                         pressure_kind = 'pressure', energy_kind = 'energy', &
+                                         frequency_kind = 'frequency'
 
   !> A unit.
   type :: unit_t
@@ -30,7 +31,8 @@ module usual_units
     unit_t('mm2', area_kind, 1.0e-6_wp, 0.0_wp), unit_t('m/s', velocity_kind, 1.0_wp, 0.0_wp), &
     unit_t('N', force_kind, 1.0_wp, 0.0_wp), unit_t('kN', force_kind, 1.0e3_wp, 0.1_wp), &
     unit_t('MPa', pressure_kind, 1.0e6_wp, 0.0_wp), unit_t('GPa', pressure_kind, 1.0e9_wp, 5.0_wp), &
-    unit_t('mJ', energy_kind, 1.0e-3_wp, 0.0_wp), unit_t('J', energy_kind, 1.0_wp, 0.1_wp)]
+    unit_t('mJ', energy_kind, 1.0e-3_wp, 0.0_wp), unit_t('J', energy_kind, 1.0_wp, 0.1_wp), &
+    unit_t('Hz', frequency_kind, 1.0_wp, 0.0_wp), unit_t('kHz', frequency_kind, 1.0e3_wp, 1.0_wp)]
 
 contains
 
@@ -75,6 +77,8 @@ contains
         si = length**2
       case (time_kind)
         si = time
+      case (frequency_kind)
+        si = 1/time
       case (velocity_kind)
         si = length/time
       case (force_kind)

@@ -47,6 +47,11 @@ ROWS = (
     # A drop of 3 J in steps of 1 kg, 4 J of 5.5 kg, and 13.4 m/s.
     ('mass of a drop weight in g', 'peanut', (('mass', 1e3),), 'mass', 'g'),
     ('mass of a heavy drop weight in g', 'peanut', (('mass', 5.5e3),), 'mass', 'g'),
+    # 60 g meant as 60 kg: .58 m/s with 10 J.
+    ('mass of 60 g', 'tutorial/panel', (('mass', 30),), 'mass', 'g'),
+    ('energy in mJ', 'tutorial/panel', (('energy', 1e3),), 'energy', 'mJ'),
+    ('clamps in mm', 'tutorial/panel', (('clamps', 1e3),), 'clamps', 'mm'),
+    ('corner of the filter in kHz', 'tutorial/panel', (('force_filter', 1e-3),), 'force_filter', 'kHz'),
     ('mass in g beside a velocity', 'experiments/t700_m21_25J', (('mass', 1e3),), 'mass', 'g'),
 )
 

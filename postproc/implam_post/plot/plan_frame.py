@@ -80,7 +80,15 @@ def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True,
     law = "outlines enclose the dissipated area, where the dissipated fraction is largest; " if outlined and any(
         found.is_cohesive for found in fields.snapshots[-1].interfaces.values()) else ""
     return f"State at {state}; {law}0° along x;\nview of the back face (z towards the viewer), + struck point" + (
-        "\ninset: part of the plate shown (red), window of its support (dashed)" if inset else "")
+        "\ninset: part of the plate shown (red)" + (", window of its support (dashed)" if _windows(fields) else "")
+        if inset else "")
+
+
+def _windows(fields: Fields) -> bool:
+    """Return whether the plate has supports whose window is drawn."""
+    deck = deck_in(fields.path)
+    return deck is not None and any(support.get("window") or support.get("radius")
+                                    for support in deck.groups.get("support", []))
 
 
 def locate(axes: Axes, fields: Fields) -> None:
