@@ -14,12 +14,12 @@ module energy_onsets
   private
   public :: onset_share, release_over_toughness, reduce_law
 
-  !> Energy release rate at the onset over the toughness. In opening a corner node of elements much longer than their
-  !> thickness releases r = 1.65 times the energy of its area. If it softens from the share s while the node ahead is
-  !> intact, it is stable for s < 1/r = .6 and fails at the share 1/(r**2 s): above s = 1/r**2 = .37 it fails before the
-  !> toughness is reached. Below that the value is not derived: from .15 to .4 loads at growth of a double cantilever
-  !> differ by less than two runs of one value, 2.7 %; smaller values give longer softening zones, which lower the load
-  !> of a round delamination by 1 % from .37 to .2 (doc/studies/interfaces.md).
+  !> Energy release rate at the onset over the toughness. With equal nodes in shear the softening zone is about
+  !> pi/(2 sqrt(share)) nodes long, and the load at which the front passes from node to node differs from the closed
+  !> form by at most 2 % for each share up to 2/9, three nodes, by 4 % up to .45 and 9 % above
+  !> (tests/studies/onset_share.py). Smaller shares lengthen the zone, which lowers loads of round fronts. In opening a
+  !> corner node of long elements releases r = 1.65 times the energy of its area: below 1/r**2 = .37 it does not fail
+  !> before the toughness is reached. From .15 to .3 measured loads change by 1.5 % (doc/studies/interfaces.md).
   real(wp), parameter :: onset_share = 0.2_wp
   !> Smallest factor of the strengths: where a point carries less, softening waits for more traction. It makes the ratio
   !> of jumps at failure and at the onset 1e6 times that of the undamaged law.

@@ -48,7 +48,7 @@ class Circle:
         self.last = self.first + 6.5*cell
         area = self.number*math.pi*self.last**2
         load = self.load(self.last)
-        self.travel = load*0.0056*SIDE**2/self.bending + 2*TOUGHNESS*area/load + (load/1e9)**(2/3)
+        self.travel = load*0.0056*SIDE**2/self.bending + 2*TOUGHNESS*area/load + (load/1e8)**(2/3)
 
     def stiffness_of(self, thickness):
         """Return the bending stiffness of a layer."""
@@ -88,10 +88,10 @@ class Circle:
 &material name='m'  density={density}  {material} /
 &laminate materials='m'  {angles}  thicknesses={', '.join(map(str, self.layers))}  shear_correction='5/6' /
 &impactor travel={self.travel}  rise={time/8} /
-&indentation law='hertz'  k=1e9 /
+&indentation law='hertz'  k=1e8 /
 &delamination below_ply={below}  G_c={TOUGHNESS}  law='cohesive'  strength_shear=60e6  strength_opening=60e6
   zone={zone}, {zone}  starter={STARTER}  growth_control='{control}' /
-&time integrator='central_difference'  end={time}  mass_scaling=100 /
+&time integrator='central_difference'  end={time}  mass_scaling=1000 /
 &output history_every={time/4000} /
 """
 
