@@ -93,8 +93,7 @@ module delamination_parameters
 
   !> Keys whose values must be equal in two runs for one to start with the damage of the other.
   character(len=*), parameter, public :: law_names(*) = [character(len=16) :: 'law', 'G_c', 'G_Ic', 'G_IIc', 'eta', &
-    'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks', &
-    'growth_control']
+    'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
 
 contains
 
@@ -108,7 +107,7 @@ contains
     associate (d => delamination)
       numbers = [real(d%law, wp), d%toughness, d%toughness_opening, d%toughness_shear, d%mixing_exponent, &
                  d%strength_opening, d%strength_shear, d%stiffness, d%friction, &
-                 real([merge(1, 0, d%cracks_as_flaws), merge(1, 0, d%shear_cracks), d%growth_control], wp)]
+                 real([merge(1, 0, d%cracks_as_flaws), merge(1, 0, d%shear_cracks)], wp)]
     end associate
   end function law_of
 
