@@ -31,6 +31,8 @@ ENERGIES = ("#88CCEE", "#DDCC77", "#44AA99", "#CC6677", "#332288", "#882255", "#
             "#DDDDDD", "#117733", "#000000")
 # Maps of colours of times, and of interfaces from the struck face on.
 TIMES, DEPTHS = "viridis_r", "plasma"
+# Numbers below are written without an exponent, as in the summary of a run: 14220 mm².
+_FIRST_WITH_EXPONENT = 1e7
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,10 @@ class PictureStyle:
         """Return a value with its unit, rounded to some digits; without a unit in an unknown system."""
         axis = self.axis("", dimension, [value])
         unit = axis.label.strip(" []") if self.system in SYSTEMS else ""
-        return f"{axis.factor * value:.{digits}g} {unit}".strip()
+        words = f"{axis.factor * value:.{digits}g}"
+        if "e+0" in words and abs(axis.factor * value) < _FIRST_WITH_EXPONENT:
+            words = f"{float(words):.0f}"
+        return f"{words} {unit}".strip()
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -53,6 +53,12 @@ class ImpactRowsTest(unittest.TestCase):
         """No section."""
         self.assertEqual(rows_of(PANEL[:PANEL.index("&impactor")]), {})
 
+    def test_large_areas_have_no_exponent(self):
+        """14220 mm², as in the summary of a run, without an exponent up to seven digits."""
+        self.assertEqual(PictureStyle("SI").shown("area", 14220.4e-6, 4), "14220 mm²")
+        self.assertEqual(PictureStyle("SI").shown("area", 123.4e-6, 4), "123.4 mm²")
+        self.assertEqual(PictureStyle("SI").shown("area", 14.22, 4), "1.422e+07 mm²")
+
     def test_events_before_the_run(self) -> None:
         """An interface damaged by the impact has its onset before the compression, one without damage has none."""
         style = PictureStyle("SI")
