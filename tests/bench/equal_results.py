@@ -53,21 +53,28 @@ def old_result(name, folder, options):
     return (-1 if code is None else code), deck
 
 
+def contents(path):
+    """Bytes of a file; none if there is no such file."""
+    return path.read_bytes() if path.exists() else b''
+
+
 def compared(name, folder, options):
     """A line on the equality of the results."""
     code, deck = old_result(name, folder, options)
     cut = '' if deck.read_text() == INPUT.joinpath(name).read_text() else ', cut'
     if code < 0:
-        return name, f'too long{cut}', True
+        return name, f'not compared, too long{cut}', None
     output = folder/'new'/name.replace('/', '+')/'output'
     output.parent.mkdir(parents=True, exist_ok=True)
     new_code = run(options.new, deck, output, 20*options.limit)
     old_files = sorted(path.name for path in (deck.parent/'output').glob('*.csv'))
-    different = [file for file in old_files
-                 if not (output/file).exists() or (output/file).read_bytes() != (deck.parent/'output'/file).read_bytes()]
+    different = [file for file in old_files if contents(output/file) != contents(deck.parent/'output'/file)]
+    if new_code == code and not old_files:
+        return name, f'not compared, exit code {code} without a history{cut}', None
     equal = new_code == code and not different
-    rows = sum(len((deck.parent/'output'/file).read_text().splitlines()) for file in old_files)
-    return name, f'{"equal" if equal else "DIFFERENT"}, exit code {code}, {rows} lines{cut} {" ".join(different)}', equal
+    lines = sum(contents(deck.parent/'output'/file).count(b'\n') for file in old_files)
+    verdict = 'equal' if equal else f'DIFFERENT {" ".join(different)}'
+    return name, f'{verdict}, exit code {code}, {lines} lines{cut}', equal
 
 
 def main():
@@ -87,8 +94,9 @@ def main():
         lines = list(pool.map(lambda name: compared(name, options.folder, options), names))
     for name, line, _ in lines:
         print(f'{name}: {line}')
-    print(f'{sum(equal for _, _, equal in lines)} of {len(lines)} equal')
-    sys.exit(not all(equal for _, _, equal in lines))
+    results = [equal for _, _, equal in lines]
+    print(f'{results.count(True)} equal, {results.count(False)} different, {results.count(None)} not compared')
+    sys.exit(False in results)
 
 
 if __name__ == '__main__':
