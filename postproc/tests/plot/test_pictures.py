@@ -211,7 +211,7 @@ class PicturesTest(unittest.TestCase):
             "force": np.zeros(31), "far_field_stress": np.linspace(0, 1e8, 31), "shortening": np.linspace(0, 1e-3, 31),
             "nominal_strain": np.linspace(0, 1e-2, 31)}, "b")
         self.assertIsNone(pictures.plot_response([pressed], self.folder / "b.png"))
-        with mock.patch.object(Figure, "savefig", autospec=True) as saved:
+        with mock.patch.object(Figure, "savefig", autospec=True, side_effect=Figure.savefig) as saved:
             pictures.plot_response([struck, pressed], self.folder / "a.png")
         axes = saved.call_args.args[0].axes
         self.assertEqual(len(axes), 4)

@@ -99,7 +99,8 @@ class AreasTest(unittest.TestCase):
         """Draw the fields and return the first line of each title."""
         found = []
 
-        def note(figure: Figure, *_: object, **__: object) -> None:
+        def note(figure: Figure, path: Path, **_: object) -> None:
+            path.touch()
             found.extend(axes.get_title().splitlines()[0] for axes in figure.axes if axes.get_title())
 
         with mock.patch.object(Figure, "savefig", note):
