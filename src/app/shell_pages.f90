@@ -4,6 +4,7 @@ module shell_pages
   use deck_vocabulary, only: vocabulary_t, key_entry_t
   use errors, only: error_t, fail, exit_usage
   use growth_explain, only: growth_topic
+  use key_conditions, only: conditions_in_words
   use material_explain, only: material_topic
   use result_explain, only: result_topics
   use text, only: line_t, append
@@ -72,13 +73,16 @@ contains
     !> A key.
     subroutine append_key(key)
       type(key_entry_t), intent(in) :: key
-      character(len=:), allocatable :: unit
+      character(len=:), allocatable :: unit, conditions
 
       unit = ''
       if (key%unit /= '-') unit = '; unit: '//key%unit
+      conditions = ''
+      if (key%used_with /= '') conditions = '; '//conditions_in_words(key%used_with, '')
       call append(lines, '.TP')
       call append(lines, '.B '//key%name)
-      call append(lines, escaped(key%meaning//' ('//allowed_sentence(key)//unit//'; default: '//key%default//')'))
+      call append(lines, escaped(key%meaning//' ('//allowed_sentence(key)//unit//'; default: '//key%default// &
+                                 conditions//')'))
     end subroutine append_key
   end subroutine manual_page
 

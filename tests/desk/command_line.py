@@ -154,7 +154,8 @@ def check_cut_step(implam, folder):
 def check_pages(implam, folder):
     """The manual page has every key; bash completes commands, groups, keys and decks."""
     page = output_of(implam, "man")
-    for line in output_of(implam, "explain", "plate").splitlines()[1::2]:
+    # Keys are indented by two blanks, what is said of them by more.
+    for line in re.findall(r"^  \w.*", output_of(implam, "explain", "plate"), re.MULTILINE):
         require(f".B {line.split()[0]}\n" in page, f"The manual page lacks {line.split()[0]} of &plate.")
     require("mandoc" not in page and all(line[:1] != "'" for line in page.splitlines()), "A line begins with a macro.")
     if shutil.which("groff"):

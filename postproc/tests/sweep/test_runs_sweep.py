@@ -82,7 +82,7 @@ class SweepTest(unittest.TestCase):
         code, text = run_quietly(sweep.main, *self.arguments("""
             deck = "ply_damage.nml"
             [grid]
-            "impactor.mass" = [0.5, 0.6]
+            "impactor.mass" = [0.1, 0.2]
             "output.history_every" = [1e-7]
             """, "--array"))
         self.assertEqual(code, 0, text)
