@@ -37,8 +37,8 @@ contains
     real(wp) :: half
 
     half = q*part/2
-    mean = 1/cos(q/2) - 1/cosh(q/2)
     ! Hyperbolic functions of large numbers by their exponentials.
+    mean = 1/cos(q/2) - 2*exp(-q/2)/(1 + exp(-q))
     if (half > 0) mean = sin(half)/half/cos(q/2) - exp(half - q/2)*(1 - exp(-2*half))/(half*(1 + exp(-q)))
   end function clamped_beam_mean
 
