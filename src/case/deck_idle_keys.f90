@@ -5,7 +5,6 @@ module deck_idle_keys
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, remark_idle, remark_unused
-  use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
   use interface_places, only: interfaces_between
   use impact_parameters, only: law_thornton
@@ -20,13 +19,12 @@ module deck_idle_keys
 contains
 
   !> Adds the remarks.
-  subroutine check_idle_keys(deck, problems)
+  subroutine check_idle_keys(deck, vocabulary, problems)
     type(deck_t), intent(in) :: deck
+    type(vocabulary_t), intent(in) :: vocabulary
     type(problems_t), intent(inout) :: problems
-    type(vocabulary_t) :: vocabulary
     integer :: place
 
-    call load_deck_table(vocabulary)
     call remark_unused(deck%settings, vocabulary, problems)
     do place = 1, size(deck%materials)
       call check_material(deck, place, problems)

@@ -124,7 +124,7 @@ contains
     call check_across_groups(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call check_central_differences(deck, problems)
     call check_initial_state(deck, problems)
-    call check_idle_keys(deck, problems)
+    call check_idle_keys(deck, vocabulary, problems)
     call check_left_out_zones(deck, problems)
     call set_first_zones(deck, problems)
     call check_extents(deck, problems)

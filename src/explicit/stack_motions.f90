@@ -271,6 +271,7 @@ contains
       if (starts(lane)) call start_damage(stacks, batch%stack(lane), model, cohesive, u)
     end do
   end subroutine find_onsets
+
   !> Values of consecutive points from the first of each lane on. In this module, and with arrays of explicit shape,
   !> the loop over the values of a point is unrolled, here and in `put`.
   pure subroutine take(values, points, field, first, rows, taken)

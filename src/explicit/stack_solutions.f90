@@ -23,7 +23,7 @@ module stack_solutions
   use weighted_jumps, only: newest, past_jumps, past_openings
   implicit none
   private
-  public :: friction_t, may_grow, solve_damaged, solve_intact
+  public :: friction_t, energy_of, may_grow, solve_damaged, solve_intact
 
   !> Friction of an interface in a step, a value for each lane.
   type :: friction_t
@@ -303,14 +303,28 @@ contains
     real(wp), intent(in) :: jumps(lanes, 3)
     !> One for each lane
     logical :: grows(lanes)
-    real(wp) :: ratio(lanes), energy(lanes)
+    real(wp) :: ratio(lanes)
 
     ratio = state%failure_ratio/(state%failure_ratio - state%damage*(state%failure_ratio - 1))
-    energy = (batch%surfaces%shear(:, j)*(jumps(:, 1)**2 + jumps(:, 2)**2) &
-              + state%opening*max(jumps(:, 3), 0.0_wp)**2)/2
-    grows = state%damage < 1 .and. .not. state%failure_ratio*energy &
+    grows = state%damage < 1 .and. .not. state%failure_ratio*energy_of(batch, j, state, jumps) &
             < (1 - rounding)*batch%surfaces%toughness(:, j)*ratio**2
   end function may_grow
+
+  !> Energy per area of jumps of an undamaged interface, without that of closing.
+  pure function energy_of(batch, j, state, jumps) result(energy)
+    type(stack_batch_t), intent(in) :: batch
+    !> The interface
+    integer, intent(in) :: j
+    !> Its surfaces
+    type(surface_states_t), intent(in) :: state
+    !> Two shears and opening
+    real(wp), intent(in) :: jumps(lanes, 3)
+    !> One for each lane
+    real(wp) :: energy(lanes)
+
+    energy = (batch%surfaces%shear(:, j)*(jumps(:, 1)**2 + jumps(:, 2)**2) &
+              + state%opening*max(jumps(:, 3), 0.0_wp)**2)/2
+  end function energy_of
 
   !> Corrects a force so that it does a given work over the mean motion of this step and the one before.
   pure subroutine correct_force(surfaces, point, area, before, start, jumps, change, secant, given, grows)

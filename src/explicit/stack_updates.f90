@@ -12,7 +12,7 @@ module stack_updates
   use kinds, only: wp
   use models, only: model_t
   use stack_batches, only: stack_batch_t, surface_states_t
-  use stack_solutions, only: friction_t, may_grow
+  use stack_solutions, only: energy_of, friction_t, may_grow
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: memory
   implicit none
@@ -195,22 +195,6 @@ contains
       end associate
     end do
   end subroutine grow_damage
-
-  !> Energy per area of jumps of an undamaged interface, without that of closing.
-  pure function energy_of(batch, j, state, jumps) result(energy)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
-    !> Its surfaces
-    type(surface_states_t), intent(in) :: state
-    !> Two shears and opening
-    real(wp), intent(in) :: jumps(lanes, 3)
-    !> One for each lane
-    real(wp) :: energy(lanes)
-
-    energy = (batch%surfaces%shear(:, j)*(jumps(:, 1)**2 + jumps(:, 2)**2) &
-              + state%opening*max(jumps(:, 3), 0.0_wp)**2)/2
-  end function energy_of
 
   !> Energy per area stored by the jumps.
   pure function stored(batch, j, state, jumps) result(energy)
