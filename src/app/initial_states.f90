@@ -7,7 +7,7 @@ module initial_states
   use cell_lines, only: cell_line_t
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
-  use deck_initial_states, only: inheritance_objection, is_mapped
+  use deck_initial_states, only: has_same_contact, inheritance_objection, is_mapped
   use deck_plate_cuts, only: cut_of, moved_centre
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck_text
@@ -31,6 +31,7 @@ module initial_states
   use run_records, only: run_record_t
   use states, only: new_state, state_t, time_item
   use stepping_parameters, only: end_of_run
+  use tan_sun_indentation, only: indentation_t
   use text, only: append, line_t, rounded_text, to_text
   use steppers, only: stepper_t
   implicit none
@@ -229,6 +230,7 @@ contains
     ! At rest, damage would only grow by errors of the mapping.
     call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%load_start > 0 .and. &
                                  deck%initial%motion == motion_rest)
+    call begin_contact(deck, old, stepper%now%indentation, log)
     call stepper%begin_inherited(model, transfer, deck%initial%motion, error)
     if (allocated(error)) return
     call record%inherit(model, stepper%now)
@@ -250,6 +252,24 @@ contains
                     rounded_text(ledger%strain)//', kinetic '//rounded_text(ledger%kinetic)//'.')
     end associate
   end subroutine take_initial_state
+
+  !> Begins a contact on the dent of the other run, if its impactor was the same at the same place, or on a face
+  !> without a dent.
+  subroutine begin_contact(deck, old, indentation, log)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> That at the end of the other run; receives that of the new contact
+    type(indentation_t), intent(inout) :: indentation
+    type(log_t), intent(inout) :: log
+
+    if (.not. has_same_contact(deck, old)) then
+      indentation = indentation_t()
+      return
+    end if
+    call indentation%begin_again()
+    if (indentation%dent > 0) call log%note('The impactor strikes the dent of that run, '// &
+                                            rounded_text(indentation%dent)//' deep by the indentation law.')
+  end subroutine begin_contact
 
   !> Loads the state of the other run, on its mesh, and transfers it to this one's. Collective.
   subroutine load_transfer(deck, model, stepper, transfer, mapping, old, error)

@@ -12,6 +12,7 @@ module run_records
   use models, only: model_t
   use output_clocks, only: shown_time
   use placed_gauges, only: back_to_back, gauge_strains, percent_bending
+  use projected_areas, only: area_dissipated, area_rules, projected_areas_of
   use slow_motions, only: slow_motion_t
   use states, only: state_t
   implicit none
@@ -60,6 +61,8 @@ module run_records
     type(compression_record_t) :: compression
     !> Damage before the compression
     type(compressed_damage_t) :: before
+    !> Delaminated area of all interfaces, and projected, before a run that starts from another one
+    real(wp) :: area_before(2) = 0
     !> Quantities before and after mapping to this mesh
     type(mapped_figures_t) :: mapping
     !> Largest kinetic energy of motions with scaled inertia, and largest energy of the run
@@ -98,17 +101,22 @@ contains
     allocate (self%warning_kinds(0), self%warning_zones(0), self%warning_times(0))
   end function new_run_record
 
-  !> Stores which interfaces had failed before the run: their onset and first growth are not those of this run.
+  !> Stores the delaminated area before the run, and which interfaces had failed: their onset and first growth are not
+  !> those of this run.
   !> Collective.
   subroutine inherit(self, model, now)
     class(run_record_t), intent(inout) :: self
     type(model_t), intent(in) :: model
     !> The state inherited from another run
     type(state_t), intent(in) :: now
+    real(wp) :: projected(area_rules)
 
     self%stage = stages_of(model, now%interfaces)
     where (self%stage >= stage_damaged) self%onset(1, :) = before_run
     where (self%stage >= stage_grown) self%growth(1, :) = before_run
+    if (size(self%stage) == 0) return
+    projected = projected_areas_of(model, now%interfaces)
+    self%area_before = [sum(now%interfaces%cohesive%area(model)), projected(area_dissipated)]
   end subroutine inherit
 
   !> Updates the record with an accepted step. Collective.
@@ -287,6 +295,8 @@ contains
     call archive%item('record/stage', self%stage)
     call self%compression%visit(archive)
     call self%before%visit('record/before', archive)
+    call archive%item('record/delaminated_area_before', self%area_before(1))
+    call archive%item('record/projected_area_before', self%area_before(2))
     call self%mapping%visit(archive)
     call archive%item('record/onset', self%onset)
     call archive%item('record/growth', self%growth)

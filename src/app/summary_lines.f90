@@ -239,6 +239,10 @@ contains
                     ' by dissipated fractions, as in a C-scan; failed points '// &
                     results%shown('projected_area_failed')//', with process zones '// &
                     results%shown('projected_area_softened'))
+    if (results%has('delaminated_area_before')) &
+      call add_figure(lines, '  '//label_of_result('delaminated_area_before'), &
+                      results%shown('delaminated_area_before')//' of all interfaces, '// &
+                      results%shown('projected_area_before')//' projected')
     do zone = 1, size(figures%interfaces)
       associate (figure => figures%interfaces(zone))
         call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &

@@ -42,7 +42,7 @@ contains
     if (is_slow_motion(deck)) call results%add('kinetic_share', record%slow_motion%share)
     if (record%scaled_energy > 0) call results%add('scaled_kinetic_share', record%scaled_share())
     call add_energies(results, now%ledger)
-    if (size(figures%interfaces) > 0) call add_interfaces(results, deck%has_impactor, record, figures)
+    if (size(figures%interfaces) > 0) call add_interfaces(results, deck, record, figures)
     if (deck%has_ply_damage) then
       call results%add('fibre_failures', figures%failures(1))
       call results%add('matrix_cracks', figures%failures(2))
@@ -98,11 +98,10 @@ contains
   end subroutine add_energies
 
   !> All interfaces together.
-  subroutine add_interfaces(results, has_force, record, figures)
+  subroutine add_interfaces(results, deck, record, figures)
     !> Results are added
     type(results_t), intent(inout) :: results
-    !> True: there is an impactor
-    logical, intent(in) :: has_force
+    type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
@@ -111,6 +110,10 @@ contains
     call results%add('projected_area', figures%projected_areas(area_dissipated))
     call results%add('projected_area_failed', figures%projected_areas(area_failed))
     call results%add('projected_area_softened', figures%projected_areas(area_softened))
+    if (deck%initial%is_inherited) then
+      call results%add('delaminated_area_before', record%area_before(1))
+      call results%add('projected_area_before', record%area_before(2))
+    end if
     call add_first('onset', record%earliest(record%onset))
     call add_first('first_growth', record%earliest(record%growth))
     if (figures%starter_threshold > 0) call results%add('threshold_force_at_starter', figures%starter_threshold)
@@ -125,7 +128,7 @@ contains
       real(wp), intent(in) :: event(3)
 
       call results%add(name//'_at', event(1), event(1) > 0)
-      if (has_force) call results%add(name//'_force', event(2), event(1) > 0)
+      if (deck%has_impactor) call results%add(name//'_force', event(2), event(1) > 0)
     end subroutine add_first
   end subroutine add_interfaces
 

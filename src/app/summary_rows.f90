@@ -59,6 +59,10 @@ module summary_rows
       &cohesive law.', &
     'projected_area_softened | real | area | softened | The same of points that have lost half of it, with process &
       &zones.', &
+    'delaminated_area_before | real | area | before this run | With &initial_state: delaminated area of all interfaces &
+      &at the start.', &
+    'projected_area_before | real | area | projected before | With &initial_state: projected area at the start, by &
+      &dissipated fractions.', &
     'onset_at | real | time | time of onset | Time of the first onset of all interfaces; null if there is none.', &
     'onset_force | real | force | force at onset | Contact force then.', &
     'first_growth_at | real | time | time of first growth | Time of the first growth of all interfaces.', &

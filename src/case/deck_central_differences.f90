@@ -21,7 +21,8 @@ module deck_central_differences
   use shortest_cells, only: check_narrow_cells, shortest_cell_text
   use stepping_parameters, only: past_contact
   use text, only: append, counted, to_text
-  use time_deck, only: key_end, key_mass_scaling, key_step, max_steps, time_group
+  use time_deck, only: key_end, key_mass_scaling, key_settle, key_step, max_steps, &
+                       time_group
   implicit none
   private
   public :: choose_for_central_differences, find_stable_step
@@ -72,6 +73,7 @@ contains
     type(setup_scales_t), intent(in) :: scales
     type(problems_t), intent(inout) :: problems
     type(elastic_impact_t) :: elastic
+    real(wp) :: end
 
     deck%stepping%time%extends_to_contact_end = .true.
     if (deck%settings%is_known(time_group, key_end)) return
@@ -83,8 +85,11 @@ contains
       return
     end if
     elastic = contact_end(start_elastic_impact(deck%setup_t, scales), 0.0_wp)
-    call deck%settings%derive(time_group, key_end, short_text(past_contact*elastic%last_contact), .false.)
-    call append(deck%reasons, 'End '//short_text(past_contact*elastic%last_contact)//': the contact of an '// &
+    end = past_contact*elastic%last_contact
+    ! A plate from another run comes to rest before it is struck.
+    if (deck%initial%is_inherited) end = end + deck%settings%real_of(time_group, key_settle)
+    call deck%settings%derive(time_group, key_end, short_text(end), .false.)
+    call append(deck%reasons, 'End '//short_text(end)//': the contact of an '// &
                 'undamaged plate ends at '//short_text(elastic%last_contact)//' in a preliminary elastic impact; '// &
                 'the run continues while it lasts longer.')
   end subroutine choose_end

@@ -9,7 +9,6 @@ module deck_initial_states
   use deck_remarks, only: are_clear, remark_idle, report
   use delamination_deck, only: key_starter, key_zone
   use delamination_parameters, only: delamination_t, law_names, law_of
-  use impactor_deck, only: impactor_group
   use initial_state_deck, only: initial_state_group
   use interface_places, only: delamination_group
   use kinds, only: wp
@@ -29,7 +28,7 @@ module deck_initial_states
   use time_deck, only: key_settle, time_group
   implicit none
   private
-  public :: check_initial_state, inheritance_objection, is_mapped
+  public :: check_initial_state, has_same_contact, inheritance_objection, is_mapped
 
 contains
 
@@ -53,18 +52,15 @@ contains
       else if (deck%has_time .and. .not. is_explicit(deck%stepping)) then
         call report(s, problems, initial_state_group, '', 'requires &time integrator = ''central_difference''.')
       end if
-      if (deck%has_impactor) call report(s, problems, impactor_group, '', &
-                                         'cannot be combined with &initial_state; load the '// &
-                                       'plate by &line or &pressure.')
       do place = 1, size(deck%lines)
         if (deck%lines(place)%precedes()) call report(s, problems, line_group, key_rise, &
                                                       'a line that has moved the '// &
           'plate before the run cannot be combined with &initial_state; give it a rise > 0.', place)
       end do
       do place = 1, size(deck%supports)
-        if (deck%supports(place)%unilateral) &
+        if (deck%supports(place)%unilateral .and. .not. deck%has_impactor) &
           call report(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
-                    '&initial_state; allowed: .false.', place)
+                    '&initial_state; allowed: .false., or an &impactor.', place)
       end do
     end associate
   end subroutine check_initial_state
@@ -109,6 +105,22 @@ contains
 
     is_mapped = .not. (has_same_lines(deck, old, 1) .and. has_same_lines(deck, old, 2))
   end function is_mapped
+
+  !> True if the impactor strikes where that of the other run did, with the same indentation law and nose, so that the
+  !> dent is known.
+  pure logical function has_same_contact(deck, old) result(same)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+
+    same = deck%has_impactor .and. old%has_impactor
+    if (.not. same) return
+    associate (mine => deck%indentation, its => old%indentation)
+      same = mine%law == its%law .and. mine%dent == its%dent .and. &
+             .not. any(differ([mine%k, mine%q, mine%reload, mine%beta, mine%alpha_critical, deck%impactor%radius], &
+                              [its%k, its%q, its%reload, its%beta, its%alpha_critical, old%impactor%radius])) .and. &
+             all(moved_centre(deck, old) <= rounding*deck%plate%length)
+    end associate
+  end function has_same_contact
 
   !> States that cannot be mapped.
   pure function mapping_objection(deck, old) result(objection)

@@ -235,7 +235,7 @@ contains
     call fill_initial_state(deck%settings, deck%initial)
     ! An impactor with a given travel does not leave the plate, so that the run is not extended until the contact ends.
     if (deck%impactor%travel > 0) deck%stepping%central%settle = 0
-    if (.not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
+    if (deck%initial%is_inherited .or. .not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
     if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
     call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
     if (deck%is_static()) call fill_static(deck%settings, deck%static)

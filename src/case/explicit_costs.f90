@@ -65,8 +65,8 @@ contains
     if (deck%expected%is_cut .and. (deck%stepping%central%settle > 0 .or. &
                                     deck%stepping%time%extends_to_contact_end)) &
       elastic = contact_end(start_elastic_impact(deck%setup_t, deck%expected%scales), 0.0_wp)
-    end = end_of_run(deck%stepping, stiffened_duration(deck%setup_t, deck%expected%scales, elastic%last_touch, &
-                                                       elastic%deflection))
+    end = end_of_run(deck%stepping, deck%load_start + stiffened_duration(deck%setup_t, deck%expected%scales, &
+                                                                         elastic%last_touch, elastic%deflection))
   end function expected_end
 
   !> True: an interface is cohesive.

@@ -50,7 +50,8 @@ module time_deck
       &Mean factor of rotary inertia for central differences, larger in short elements; w is not scaled. 1: none. | &
       &integrator = central_difference', &
     'time | settle | real | 1 | time | 0 | >= 0 | &
-    &Time in which a plate is damped to rest: before lines begin to load it, or after an impact. | &
+    &Time in which a plate is damped to rest: before lines load it or, with &initial_state, an impactor; and after an &
+    &impact. | &
       &integrator = central_difference, not &impactor travel']
 
   !> Largest number of steps of a run: with twenty iterations each, the number of iterations still fits a default

@@ -31,6 +31,7 @@ module impactor_steps
     real(wp) :: loss = 0
   contains
     procedure :: contact_frequency_square
+    procedure :: place
     procedure :: move
     procedure :: energy
     procedure :: visit
@@ -71,7 +72,26 @@ contains
     square = self%contact_stiffness*compliance
   end function contact_frequency_square
 
-  !> Updates the motion of the impactor, and finds the force at the end of the step. Collective.
+  !> Places the impactor at first contact with the deflected face, or in the dent of an earlier run. Collective.
+  subroutine place(self, model, now)
+    class(impactor_steps_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    !> The state; receives the deflections under the impactor
+    type(state_t), intent(inout) :: now
+    real(wp) :: w(size(self%patch%local))
+
+    call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
+    call self%patch%touch(w, now%indentation%dent)
+    now%patch_mean = now%impactor%displacement - now%indentation%dent
+    if (allocated(model%nose)) then
+      now%contact%touched_at = -self%patch%offset
+    else
+      now%contact%offset = self%patch%offset
+    end if
+  end subroutine place
+
+  !> Updates the motion of the impactor, and finds the force at the end of the step. Until the loads start it stays
+  !> at first contact with a plate that comes to rest. Collective.
   subroutine move(self, model, steps, now)
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -81,6 +101,12 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: alpha, before, change, w(size(self%patch%local))
 
+    if (model%setup%has_impactor .and. now%time <= model%setup%load_start) then
+      call self%place(model, now)
+      ! The velocity at the middle of a step, with the full one at its end.
+      self%velocity = now%impactor%velocity - steps%now/2*model%setup%impactor%gravity
+      return
+    end if
     call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
     if (.not. model%setup%has_impactor) then
       call self%patch%find_indentation(w, 0.0_wp, alpha)

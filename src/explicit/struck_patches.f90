@@ -12,6 +12,10 @@ module struck_patches
   private
   public :: struck_patch_t, create_struck_patch
 
+  !> Iterations for the position of first contact: one for a patch and for a face without a dent; on a dent the
+  !> indentation changes nearly as the position.
+  integer, parameter :: max_iterations = 50
+
   !> The points within reach.
   type :: struck_patch_t
     !> Index of each point among those of this rank; 0: on another rank, (reached)
@@ -20,7 +24,7 @@ module struck_patches
     real(wp), allocatable :: weights(:), slopes(:), inverse(:)
     !> Force relative to that of a flat face with the same indentation, and area under pressure
     real(wp) :: gain = 1, area = 0
-    !> Offset of the deflection under the impactor: minus that at first contact
+    !> Offset of the deflection under the impactor: minus that at first contact, and minus the depth of an earlier dent
     real(wp) :: offset = 0
     !> The nose; unallocated: the patch
     type(nose_t), allocatable, private :: nose
@@ -28,6 +32,7 @@ module struck_patches
     procedure :: find_deflections
     procedure :: gather
     procedure :: find_indentation
+    procedure :: touch
     procedure :: add_force
     procedure :: local_weights
     procedure :: visit
@@ -123,6 +128,23 @@ contains
       indentation = position - (dot_product(self%weights, w) + self%offset)
     end if
   end subroutine find_indentation
+
+  !> Chooses the offset with which the impactor in its first position has a given indentation of the deflected face.
+  pure subroutine touch(self, w, indentation)
+    class(struck_patch_t), intent(inout) :: self
+    !> Deflections of the points, (reached)
+    real(wp), intent(in) :: w(:)
+    !> Depth of an earlier dent; 0: first contact
+    real(wp), intent(in) :: indentation
+    real(wp) :: found
+    integer :: iteration
+
+    do iteration = 1, max_iterations
+      call self%find_indentation(w, 0.0_wp, found)
+      if (abs(found - indentation) <= epsilon(found)*indentation) exit
+      self%offset = self%offset + (found - indentation)
+    end do
+  end subroutine touch
 
   !> Adds the nodal forces of a force on the full plate.
   pure subroutine add_force(self, multiplicity, force, forces)

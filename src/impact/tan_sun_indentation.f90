@@ -34,6 +34,7 @@ module tan_sun_indentation
     !> Work of the contact force on the indentation so far, stored and dissipated
     real(wp) :: work = 0
   contains
+    procedure :: begin_again
     procedure :: visit => visit_indentation
   end type indentation_t
 
@@ -206,6 +207,15 @@ contains
     end if
     state%alpha = alpha
   end subroutine commit_indentation
+
+  !> Begins another impact on the dent of earlier ones, which the impactor touches without a force.
+  pure subroutine begin_again(self)
+    class(indentation_t), intent(inout) :: self
+
+    self%alpha = self%dent
+    self%separated = .true.
+    self%work = 0
+  end subroutine begin_again
 
   !> Saves or loads the state.
   subroutine visit_indentation(self, archive)

@@ -55,11 +55,11 @@ module crack_band_sections
     !> Their laws
     type(crack_band_t), allocatable, private :: bands(:)
     !> Sides along x and y of each element with those that share its state, (2, elements)
-    real(wp), allocatable, private :: sides(:, :)
+    real(wp), allocatable :: sides(:, :)
     !> Area of each element, (elements)
     real(wp), allocatable :: area(:)
     !> Elements that share their state with others
-    type(joined_elements_t), private :: joined
+    type(joined_elements_t) :: joined
     !> Strain below which damage does not start in each ply, and distance of its outer face from the middle surface
     real(wp), allocatable, private :: onset(:), height(:)
     !> True for elements with damage in the trial, (elements)

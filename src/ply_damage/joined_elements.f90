@@ -6,7 +6,9 @@
 !>
 !> Permanent shear strains are not localised, and mirror images have opposite ones: each element has its own, and the
 !> common damage depends on the mean square of the elastic strains.
+!> Elements that an earlier impact has damaged differently are separated (`separated_elements`).
 module joined_elements
+  use archives, only: archive_t
   use column_exchanges, only: column_exchange_t, new_column_exchange
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, flow_band
   use element_batches, only: batch_of
@@ -26,6 +28,8 @@ module joined_elements
   type :: joined_elements_t
     !> True along x and y for an element of this rank joined with that beyond its side, (2, elements)
     logical, allocatable :: joined(:, :)
+    !> True for elements of this rank that do not share their state as their damage differs, (elements)
+    logical, allocatable, private :: separated(:)
     !> Batches of this rank with elements that share their state with others
     logical, allocatable :: concerned(:)
     !> Number of each element of this rank among all that share their state; 0: it does not, (elements)
@@ -43,6 +47,9 @@ module joined_elements
     procedure :: shares
     procedure :: accumulate_strains
     procedure :: exchange
+    procedure :: spread
+    procedure :: separate
+    procedure :: visit
     procedure :: means_of
     procedure :: bound_of
   end type joined_elements_t
@@ -65,6 +72,7 @@ contains
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)
       self%joined = joined(:, elements)
+      allocate (self%separated(size(elements)), source=.false.)
       self%number = numbers(elements)
       allocate (self%parts(most, maxval(numbers)), self%area(maxval(numbers)))
       do element = 1, size(numbers)
@@ -216,6 +224,55 @@ contains
 
     call self%across%update(self%moments)
   end subroutine exchange
+
+  !> Difference between the largest and the smallest value of a quantity among each element and those joined with it.
+  !> Collective.
+  function spread(self, quantity)
+    class(joined_elements_t), intent(inout) :: self
+    !> Of each element of this rank
+    real(wp), intent(in) :: quantity(:)
+    !> 0 for an element that shares its state with no other
+    real(wp) :: spread(size(quantity))
+    integer :: element
+
+    do element = 1, size(quantity)
+      if (self%shares(element)) self%moments(1, self%number(element)) = quantity(element)
+    end do
+    call self%exchange()
+    spread = 0
+    do element = 1, size(quantity)
+      if (.not. self%shares(element)) cycle
+      associate (parts => self%parts(:, self%number(element)))
+        spread(element) = maxval(self%moments(1, pack(parts, parts > 0))) &
+                          - minval(self%moments(1, pack(parts, parts > 0)))
+      end associate
+    end do
+  end function spread
+
+  !> Separates an element from those joined with it, which must be separated as well.
+  pure subroutine separate(self, element)
+    class(joined_elements_t), intent(inout) :: self
+    !> Element of this rank
+    integer, intent(in) :: element
+
+    self%separated(element) = .true.
+    self%number(element) = 0
+    self%joined(:, element) = .false.
+  end subroutine separate
+
+  !> Saves or loads which elements are separated.
+  subroutine visit(self, archive, model, separated)
+    class(joined_elements_t), intent(in) :: self
+    class(archive_t), intent(inout) :: archive
+    type(model_t), intent(in) :: model
+    !> Receives them, (elements)
+    logical, intent(out) :: separated(:)
+    real(wp) :: fields(1, size(separated))
+
+    fields(1, :) = merge(1.0_wp, 0.0_wp, self%separated)
+    call archive%field('ply_failure/separated', model%distribution%elements, model%mesh%elements(), fields)
+    separated = fields(1, :) > 0
+  end subroutine visit
 
   !> Means of an element and those joined with it, over their total area, for the elastic strains of its plies.
   pure function means_of(self, element) result(means)

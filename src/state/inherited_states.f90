@@ -1,4 +1,5 @@
-!> State inherited from another run: displacement and velocity of the plate, history variables of plies and interfaces.
+!> State inherited from another run: displacement and velocity of the plate, history variables of plies, interfaces and
+!> indentation.
 !> Loads, impactor and steps start from zero.
 module inherited_states
   use archives, only: archive_t
@@ -30,6 +31,7 @@ contains
     call state%interfaces%cohesive%visit(archive, model)
     call visit_friction(state%interfaces%cohesive, archive, model)
     call visit_flaws(state%interfaces%cohesive, archive, model)
+    call state%indentation%visit(archive)
     call archive%item('ledger/ply_damage', state%ledger%ply_damage)
   end subroutine visit_inheritance
 end module inherited_states

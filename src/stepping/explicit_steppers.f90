@@ -12,6 +12,7 @@ module explicit_steppers
   use layer_transfers, only: layer_transfer_t
   use linear_solver_parameters, only: linear_solver_parameters_t
   use models, only: model_t
+  use separated_elements, only: separate_unequal, visit_separated
   use setups, only: setup_t
   use single_rank_equilibria, only: equilibrate_initial_stresses
   use states, only: new_state
@@ -139,7 +140,7 @@ contains
   end subroutine take_layers
 
   !> Starts from the final state of another run: internal forces are computed from that state, supports and lines start
-  !> from the present displacement, the ledger from the present energies. Collective.
+  !> from the present displacement, an impactor from first contact, the ledger from the present energies. Collective.
   subroutine begin_inherited(self, model, transfer, motion, error)
     !> The stepper with the loaded state
     class(explicit_stepper_t), intent(inout) :: self
@@ -156,11 +157,13 @@ contains
       call move_with_plate(model, transfer, now%motion%velocity)
       if (motion == motion_rest) now%motion%velocity = 0
       call now%plies%restack(model, transfer%is_split(model%distribution%elements))
+      if (allocated(now%plies%bands)) call separate_unequal(now%plies%bands, model)
       call method%lines%start_from(model, method%inertia, model%motion_of(now%motion%displacement))
       call method%resume(model, now)
       call method%renew_forces(model, now)
       now%deflection = model%deflection(now%motion%displacement)
       now%patch_mean = now%contact_deflection(model)
+      if (model%setup%has_impactor) call method%impact%place(model, now)
       call record_energies(method, model, now)
       now%ledger%initial = now%ledger%initial + now%ledger%error()
       call self%complete_state(model, error)
@@ -187,6 +190,8 @@ contains
 
     call self%now%visit(archive, model)
     call self%method%visit(archive, model)
+    if (model%setup%initial%is_inherited .and. allocated(self%now%plies%bands)) &
+      call visit_separated(self%now%plies%bands, archive, model)
     call archive%item('operator/factorizations', self%operator%factorizations)
     call archive%item('operator/solves', self%operator%solves)
     if (archive%loading) call self%method%resume(model, self%now)

@@ -60,21 +60,17 @@ contains
     if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
   end subroutine release_damage
 
-  !> True while damping brings the plate to rest: before lines begin to load it, or once the impactor has left the plate
-  !> and moves away.
+  !> True while damping brings the plate to rest: before lines or an impactor begin to load it, or once the impactor has
+  !> left the plate and moves away.
   pure logical function is_damped(method, model, now)
     !> Central differences
     type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
 
-    is_damped = .false.
-    if (.not. method%parameters%settle > 0) return
-    if (model%setup%has_impactor) then
-      is_damped = now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
-    else
-      is_damped = now%time < model%setup%load_start
-    end if
+    is_damped = now%time < model%setup%load_start
+    if (.not. (model%setup%has_impactor .and. method%parameters%settle > 0)) return
+    is_damped = is_damped .or. now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
   end function is_damped
 
   !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.

@@ -1,5 +1,6 @@
 """The second deck of a sweep, `then`: a run for each case that begins with the final state of its first run."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +21,8 @@ from implam_post.sweep.table import FIGURES, RUN_COLUMNS, Table, add_columns, fi
 SHARED = ("material", "laminate", "ply_damage", "delamination", "thermal")
 # Groups whose swept keys are also set in the second deck, since mesh and plate are those of the first run.
 _SET_TOO = ("mesh", "plate")
+# Figures of a second run that is another impact, in columns `second_NAME`.
+_OF_IMPACTS = ("peak_force", "absorbed_energy", "delaminated_area", "projected_area")
 _OWN_KEYS = ("lines_x", "lines_y", "symmetry")
 
 
@@ -74,6 +77,10 @@ def add_figures(table: Table, first: Sweep, second: Sweep) -> None:
     rows = [_figures(second, by_number[case.number], table) if case.number in by_number else {}
             for case in first.plan.cases]
     add_columns(table, rows, [name for name, figure in FIGURES.items() if figure.is_of_second])
+    if any(FIGURES["peak_force"].member in row for row in rows):
+        for name in _OF_IMPACTS:
+            values = (row.get(FIGURES[name].member) for row in rows)
+            table.columns[f"second_{name}"] = [math.nan if value is None else value for value in values]
     for name in RUN_COLUMNS:  # the last ones
         table.columns[name] = table.columns.pop(name)
 
