@@ -210,6 +210,15 @@ class SweepTest(unittest.TestCase):
         self.assertEqual(code, 2, text)
         self.assertRegex(text, "case 2: .*\n.*&lime: there is no such group(.*\n)*.*decks are faulty; no deck was run")
 
+    def test_second_impacts(self) -> None:
+        """A second deck with an impactor strikes each panel again; the table has its figures, too."""
+        code, text = run_quietly(sweep.main, *self.arguments(
+            'deck = "cai_impact.nml"\nthen = "second_impact.nml"\n[grid]\n"impactor.velocity" = [6.0]'))
+        self.assertEqual(code, 0, text)
+        row, = self.table()
+        self.assertGreater(float(row["second_peak_force"]), 1000)
+        self.assertGreater(float(row["second_delaminated_area"]), float(row["delaminated_area"]))
+
     def test_killed(self) -> None:
         """After killing the sweep only, all its processes, or all but the runs, the table is the same."""
         reference = self.folder / "reference"
