@@ -6,7 +6,7 @@ module nodal_steps
   use line_steps, only: line_steps_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: stack_batch_t
+  use stack_batches, only: stack_batches_t
   use step_lengths, only: step_lengths_t
   implicit none
   private
@@ -21,9 +21,7 @@ module nodal_steps
     !> Nodes with several layers
     type(interface_stacks_t) :: stacks
     !> Batches of stacks; unallocated: to be formed for the step
-    type(stack_batch_t), allocatable :: batches(:)
-    !> Number of damaged stacks when they were formed
-    integer :: damaged = 0
+    type(stack_batches_t), allocatable :: batches
     !> Lines
     type(line_steps_t) :: lines
     !> Frames and springs
