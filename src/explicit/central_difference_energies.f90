@@ -27,24 +27,21 @@ contains
     type(state_t), intent(inout) :: now
     type(exact_sum_t) :: sums(8)
     real(wp) :: totals(8)
-    integer :: i, b
 
     call add_kinetic(method, model, now, 1.0_wp, sums(1), sums(2))
-    do b = 1, size(method%strain, 2)
-      call sums(3)%add(method%strain(:, b))
-    end do
+    call sums(3)%add(method%strain)
     call add_stored(method, model, now, sums(3))
-    do i = 1, model%distribution%owned
+    associate (owned => model%distribution%owned, lost => method%stacks%history%lost)
       if (allocated(now%interfaces%cohesive%points)) then
-        associate (point => now%interfaces%cohesive%points(i), area => method%stacks%area(i))
-          call sums(4)%add(area*point%dissipated)
-          call sums(5)%add(area*point%sliding%heat)
+        associate (points => now%interfaces%cohesive%points(:owned), area => method%stacks%area(:owned))
+          call sums(4)%add(area*points%dissipated)
+          call sums(5)%add(area*points%sliding%heat)
         end associate
       end if
-      call sums(6)%add(method%stacks%history%lost(1, i) + method%rigs%frame_loss(i))
-      call sums(7)%add(method%stacks%history%lost(2, i) + method%rigs%step_loss(i))
-      call sums(8)%add(method%lines%work(i))
-    end do
+      call sums(6)%add(lost(1, :owned) + method%rigs%frame_loss(:owned))
+      call sums(7)%add(lost(2, :owned) + method%rigs%step_loss(:owned))
+      call sums(8)%add(method%lines%work(:owned))
+    end associate
     totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
     associate (ledger => now%ledger)
       ledger%kinetic = totals(1)
@@ -127,8 +124,10 @@ contains
     type(state_t), intent(in) :: now
     !> The energy
     type(exact_sum_t), intent(inout) :: stored
+    real(wp) :: energies(model%distribution%owned)
     integer :: i
 
+    energies = 0
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
       do i = 1, model%distribution%owned
         if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
@@ -138,12 +137,15 @@ contains
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0 .or. cohesive%by_energy(i)) then
           associate (surfaces => cohesive%surfaces_of(model, i))
-            call stored%add(method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i)))
+            energies(i) = method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i))
           end associate
         else
-          call stored%add(sum(method%stacks%stiffness([1, 1, 2], i)*u(1:3, i)**2)/2)
+          associate (k => method%stacks%stiffness(:, i))
+            energies(i) = (k(1)*u(1, i)**2 + k(1)*u(2, i)**2 + k(2)*u(3, i)**2)/2
+          end associate
         end if
       end do
     end associate
+    call stored%add(energies)
   end subroutine add_stored
 end module central_difference_energies

@@ -63,7 +63,7 @@ module crack_band_sections
     !> The smallest onset and the largest distance of each element's plies, (2, elements)
     real(wp), allocatable, private :: limits(:, :)
     !> True for elements with damage in the trial, (elements)
-    logical, allocatable, private :: touched(:)
+    logical, allocatable :: touched(:)
   contains
     procedure :: soften
     procedure :: needs_joined_strains
@@ -354,7 +354,9 @@ contains
     integer, intent(in) :: ply, element
     type(elasticity_t) :: elasticity
 
-    elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
+    elasticity = self%bands(ply)%elasticity
+    if (self%touched(element)) &
+      elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
   end function elasticity
 
   !> Saves or loads the accepted state.

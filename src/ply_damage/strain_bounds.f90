@@ -19,18 +19,19 @@ contains
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> (lane, membrane and curvature)
     real(wp) :: sizes(lanes, 2)
-    real(wp) :: area(lanes)
+    real(wp) :: area(lanes), membrane(lanes), curvature(lanes)
     integer :: g
 
-    sizes = 0
+    membrane = 0
+    curvature = 0
     area = tiny(area)
     do g = 1, 9
       area = area + weight(:, g)
-      sizes(:, 1) = sizes(:, 1) + weight(:, g)*(strains(:, g, 1)**2 + strains(:, g, 2)**2 + strains(:, g, 3)**2/2)
-      sizes(:, 2) = sizes(:, 2) + weight(:, g)*(strains(:, g, 4)**2 + strains(:, g, 5)**2 + strains(:, g, 6)**2/2)
+      membrane = membrane + weight(:, g)*(strains(:, g, 1)**2 + strains(:, g, 2)**2 + strains(:, g, 3)**2/2)
+      curvature = curvature + weight(:, g)*(strains(:, g, 4)**2 + strains(:, g, 5)**2 + strains(:, g, 6)**2/2)
     end do
-    sizes(:, 1) = sqrt(sizes(:, 1)/area)
-    sizes(:, 2) = sqrt(sizes(:, 2)/area)
+    sizes(:, 1) = sqrt(membrane/area)
+    sizes(:, 2) = sqrt(curvature/area)
   end function strain_sizes
 
   !> Means over each element of its strains and of their products.
