@@ -1,4 +1,6 @@
-!> Energy ledger of central differences, by the exact energy identity of the method, theory (E5) and (E6).
+!> Energies of central differences: their ledger, damping, and the check that no energy is created.
+!>
+!> The ledger follows the exact energy identity of the method, theory (E5) and (E6).
 !>
 !> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, with the mid-step velocity v. T
 !> changes by the work of the mean force of both ends, so that T plus strain energy of a linear plate without interfaces
@@ -6,15 +8,30 @@
 !> algorithmic dissipation. The remaining error of the ledger is that of forces which are nonlinear within a step.
 module central_difference_energies
   use central_differences, only: central_difference_t
+  use errors, only: error_t, exit_convergence, fail
   use exact_sums, only: exact_sum_t
   use interface_stacks, only: last_layer
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use models, only: model_t
   use rank_totals, only: total_of, totals_of
+  use short_numbers, only: short_text
   use states, only: state_t
+  use text, only: rounded_text, to_text
   implicit none
   private
-  public :: record_energies, kinetic_energy
+  public :: record_energies, damp_motion, check_stability
+
+  !> Ratio of the final to the initial amplitude. That of energies is 1e-7, below the usual tolerance of 1e-6.
+  real(wp), parameter :: final_ratio = 3.0e-4_wp
+  !> Smallest duration of the damping in periods of a vibration: in fewer periods the vibration is overdamped and
+  !> returns more slowly.
+  real(wp), parameter, public :: min_periods = -log(final_ratio)/(2*pi)
+
+  !> Ratio of the energy error to the largest energy so far above which a run ends. The present energy is no reference:
+  !> it returns to zero in free vibration. An unstable mode grows exponentially, so the exact value is not important.
+  !> The check of the ledger warns from a tenth of it, 1 %.
+  real(wp), parameter :: max_energy_error = 0.1_wp
 
 contains
 
@@ -148,4 +165,79 @@ contains
     end associate
     call stored%add(energies)
   end subroutine add_stored
+
+  !> Reduces the velocities at the start of a step. The changes of coordinates in the last step, half of which enter the
+  !> kinetic energy with the forces (central_difference_energies), are reduced by the same factor there. Collective.
+  subroutine damp_motion(method, model, now, duration, kept)
+    !> Central differences, after a step
+    type(central_difference_t), intent(inout) :: method
+    type(model_t), intent(in) :: model
+    !> The state; its ledger receives the energy
+    type(state_t), intent(inout) :: now
+    !> Duration of the damping; motions with a longer period are damped less
+    real(wp), intent(in) :: duration
+    !> Factor by which the velocities have been multiplied, for the next step
+    real(wp), intent(out) :: kept
+    real(wp) :: before
+
+    kept = 1
+    if (.not. method%steps%now > 0) return
+    kept = exp(2*log(final_ratio)*method%steps%now/duration)
+    before = kinetic_energy(method, model, now, 1.0_wp)
+    now%motion%velocity = kept*now%motion%velocity
+    call method%stacks%history%damp(kept)
+    method%rigs%approach = kept*method%rigs%approach
+    method%lines%dofs%change = kept*method%lines%dofs%change
+    now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now, kept)
+  end subroutine damp_motion
+
+  !> Sets an error if the energy error shows unstable growth. Collective.
+  subroutine check_stability(model, now, error)
+    type(model_t), intent(in) :: model
+    !> The state, with its ledger
+    type(state_t), intent(in) :: now
+    !> Set if the motion is unstable; the same on every rank
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: created, energy
+    character(len=:), allocatable :: amount
+
+    created = now%ledger%error()
+    energy = now%ledger%largest + now%ledger%residual
+    if (created <= max_energy_error*energy .and. abs(created) <= huge(created)) return
+    amount = 'the energy has become infinite'
+    if (abs(created) <= huge(created)) &
+      amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
+    call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
+              ': '//amount//'; the largest velocity is '//fastest_point(model, now%motion%velocity)// &
+              '. Take a smaller &time step_factor.')
+  end subroutine check_stability
+
+  !> Point of the largest transverse velocity. Collective.
+  function fastest_point(model, velocity) result(place)
+    type(model_t), intent(in) :: model
+    !> Rates of the unknowns, (5, points)
+    real(wp), intent(in) :: velocity(:, :)
+    !> Coordinates and layer
+    character(len=:), allocatable :: place
+    real(wp), allocatable :: rates(:)
+    real(wp) :: largest
+    integer :: i, point
+
+    associate (partition => model%distribution)
+      rates = abs(velocity(3, :partition%owned))
+      where (.not. rates <= huge(rates)) rates = huge(rates)
+      largest = maxval(rates)
+      call model%communicator%maximum(largest)
+      point = huge(point)
+      do i = 1, partition%owned
+        if (rates(i) >= largest) point = min(point, partition%points(i))
+      end do
+    end associate
+    call model%communicator%minimum(point)
+    associate (node => model%mesh%point_node(point))
+      place = 'at x = '//short_text(model%mesh%node_coordinates(1, node))//', y = '// &
+              short_text(model%mesh%node_coordinates(2, node))//', layer '// &
+              to_text(point - model%mesh%first_point(node) + 1)
+    end associate
+  end function fastest_point
 end module central_difference_energies

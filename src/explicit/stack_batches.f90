@@ -4,8 +4,7 @@ module stack_batches
   use element_batches, only: lanes
   use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
   use cohesive_points, only: cohesive_point_t
-  use interface_stacks, only: interface_stacks_t
-  use jump_histories, only: friction_history_t, jump_history_t
+  use interface_stacks, only: friction_history_t, interface_stacks_t, jump_history_t
   use kinds, only: wp
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t

@@ -5,10 +5,11 @@ module stack_motions
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, find_resultants, find_velocities
+  use line_steps, only: line_steps_t
   use models, only: model_t
-  use nodal_steps, only: nodal_steps_t
+  use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: load_states, new_stack_batches, stack_batch_t, stack_batches_t, store_states, &
+  use stack_batches, only: stack_batches_t, load_states, new_stack_batches, stack_batch_t, store_states, &
                            surface_states_t
   use stack_solutions, only: friction_t, solve_damaged, solve_intact
   use stack_updates, only: may_start, start_damage, update_damaged, update_intact
@@ -17,7 +18,25 @@ module stack_motions
   use weighted_jumps, only: newest, past_jumps
   implicit none
   private
-  public :: move_stacks
+  public :: nodal_steps_t, move_stacks
+
+  !> The nodes in a step.
+  type :: nodal_steps_t
+    !> Lumped inertia of the points, inverted for the step
+    type(nodal_inertia_t) :: inertia
+    !> Forces on the layers without tractions, (5, points); at the end of a step loads minus internal forces
+    real(wp), allocatable :: force(:, :)
+    !> Nodes with several layers
+    type(interface_stacks_t) :: stacks
+    !> Batches of stacks; unallocated: to be formed for the step
+    type(stack_batches_t), allocatable :: batches
+    !> Lines
+    type(line_steps_t) :: lines
+    !> Frames and springs
+    type(rig_steps_t) :: rigs
+    !> The step taken last and the one before it
+    type(step_lengths_t) :: steps
+  end type nodal_steps_t
 
 contains
 
