@@ -94,12 +94,11 @@ contains
     class(exact_sum_t), intent(inout) :: self
     !> The terms
     real(wp), intent(in) :: values(:)
-    integer :: i
+    integer :: i, last
 
     do i = 1, size(values), width*columns
-      associate (block => values(i:min(i + width*columns - 1, size(values))))
-        call add_block(self, size(block), block)
-      end associate
+      last = min(i + width*columns - 1, size(values))
+      call add_block(self, last - i + 1, values(i:last))
     end do
   end subroutine add_values
 
