@@ -5,6 +5,11 @@
 !> arXiv:1505.05571): a fixed-point number as wide as the range of double precision, in chunks of 64 bits whose lowest
 !> bits are 32 bits apart. The upper half of a chunk receives carries. Here a term is split into three parts below 2^32
 !> instead of two, so that carries are due after 2^30 terms instead of 2^11.
+!>
+!> Lists are first reduced block by block: (s + x) - s, with a power of two s larger than the sum of a block, is the
+!> leading part of x, all leading parts of the block have an exact sum in double precision, and what is left of x is
+!> exact, too (S. M. Rump, T. Ogita, S. Oishi, SIAM Journal on Scientific Computing 31 (2008) 189-224). These loops are
+!> vectorized.
 module exact_sums
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
   use kinds, only: wp, long
@@ -24,6 +29,11 @@ module exact_sums
   integer, parameter :: leading_bits = 62
   !> Terms after which carries are due: each adds less than 2^32 to a chunk with a capacity of 2^63
   integer, parameter :: max_terms = 2**30
+  !> Terms of a block: columns of as many as a vector has, fewer than 2^block_bits with two more
+  integer, parameter :: columns = 64, width = 8, block_bits = 10
+  !> Largest number of leading parts: the rest of a double whose exponent is at least 76 below the largest, or of one in
+  !> the range of denormal numbers, is added by itself
+  integer, parameter :: most_parts = 3
   !> Largest number in a place, and fraction, as masks
   integer(long), parameter :: place_mask = 2_long**place_bits - 1, fraction_mask = 2_long**fraction_bits - 1
 
@@ -36,8 +46,8 @@ module exact_sums
     integer, private :: terms = 0
   contains
     !> Adds terms.
-    generic :: add => add_value, add_values
-    procedure, private :: add_value, add_values
+    generic :: add => add_value, add_values, add_table
+    procedure, private :: add_value, add_values, add_table
     !> Propagates carries, so that sums over up to 2^31 parts can be added number by number.
     procedure :: carry
     procedure :: rounded
@@ -84,12 +94,64 @@ contains
     class(exact_sum_t), intent(inout) :: self
     !> The terms
     real(wp), intent(in) :: values(:)
-    integer :: i
+    integer :: i, last
 
-    do i = 1, size(values)
-      call self%add_value(values(i))
+    do i = 1, size(values), width*columns
+      last = min(i + width*columns - 1, size(values))
+      call add_block(self, last - i + 1, values(i:last))
     end do
   end subroutine add_values
+
+  !> Adds a table of terms.
+  pure subroutine add_table(self, values)
+    class(exact_sum_t), intent(inout) :: self
+    !> The terms
+    real(wp), intent(in) :: values(:, :)
+
+    call self%add_values(reshape(values, [size(values)]))
+  end subroutine add_table
+
+  !> Adds the terms of a block by their leading parts.
+  pure subroutine add_block(self, terms, values)
+    type(exact_sum_t), intent(inout) :: self
+    !> The terms, as many as in a block at most
+    integer, intent(in) :: terms
+    real(wp), intent(in) :: values(terms)
+    real(wp) :: rest(width*columns), sums(width), unit, leading
+    integer(long) :: bits(terms), largest
+    integer :: part, i, k
+
+    largest = 0
+    bits = transfer(values, bits)
+    do i = 1, terms
+      largest = max(largest, ibclr(bits(i), bit_size(largest) - 1))
+    end do
+    if (largest == 0) return
+    rest(:terms) = values
+    rest(terms + 1:) = 0
+    i = int(shiftr(largest, fraction_bits))
+    ! The power of two above the largest magnitude, unless that is denormal or close to overflow or infinite.
+    if (i > 0 .and. i < not_finite - 1 - block_bits) then
+      unit = 2*real(transfer(shiftl(int(i, long), fraction_bits), unit), wp)
+      do part = 1, most_parts
+        unit = unit*2.0_wp**block_bits
+        sums = 0
+        do i = 1, width*columns, width
+          do k = 1, width
+            leading = (unit + rest(i + k - 1)) - unit
+            rest(i + k - 1) = rest(i + k - 1) - leading
+            sums(k) = sums(k) + leading
+          end do
+        end do
+        call self%add_value(sum(sums))
+        unit = unit*2.0_wp**(-fraction_bits - 1)
+        if (.not. any(abs(rest) > 0)) return
+      end do
+    end if
+    do i = 1, terms
+      call self%add_value(rest(i))
+    end do
+  end subroutine add_block
 
   !> Counts a term that is not finite.
   pure subroutine count_special(self, is_nan, is_negative)

@@ -3,7 +3,7 @@ module deck_scales
   use case_deck, only: case_group, key_accuracy
   use cell_grids, only: cells_from_struck
   use cell_lines, only: cell_line_t
-  use damped_motions, only: min_periods
+  use central_difference_energies, only: min_periods
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark

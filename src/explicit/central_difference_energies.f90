@@ -1,4 +1,6 @@
-!> Energy ledger of central differences, by the exact energy identity of the method, theory (E5) and (E6).
+!> Energies of central differences: their ledger, damping, and the check that no energy is created.
+!>
+!> The ledger follows the exact energy identity of the method, theory (E5) and (E6).
 !>
 !> The kinetic energy at the end of a step is T = v M v/2 + h (F - B^T lambda) v/2, with the mid-step velocity v. T
 !> changes by the work of the mean force of both ends, so that T plus strain energy of a linear plate without interfaces
@@ -6,15 +8,30 @@
 !> algorithmic dissipation. The remaining error of the ledger is that of forces which are nonlinear within a step.
 module central_difference_energies
   use central_differences, only: central_difference_t
+  use errors, only: error_t, exit_convergence, fail
   use exact_sums, only: exact_sum_t
   use interface_stacks, only: last_layer
   use kinds, only: wp
+  use mathematical_constants, only: pi
   use models, only: model_t
   use rank_totals, only: total_of, totals_of
+  use short_numbers, only: short_text
   use states, only: state_t
+  use text, only: rounded_text, to_text
   implicit none
   private
-  public :: record_energies, kinetic_energy
+  public :: record_energies, damp_motion, check_stability
+
+  !> Ratio of the final to the initial amplitude. That of energies is 1e-7, below the usual tolerance of 1e-6.
+  real(wp), parameter :: final_ratio = 3.0e-4_wp
+  !> Smallest duration of the damping in periods of a vibration: in fewer periods the vibration is overdamped and
+  !> returns more slowly.
+  real(wp), parameter, public :: min_periods = -log(final_ratio)/(2*pi)
+
+  !> Ratio of the energy error to the largest energy so far above which a run ends. The present energy is no reference:
+  !> it returns to zero in free vibration. An unstable mode grows exponentially, so the exact value is not important.
+  !> The check of the ledger warns from a tenth of it, 1 %.
+  real(wp), parameter :: max_energy_error = 0.1_wp
 
 contains
 
@@ -27,24 +44,21 @@ contains
     type(state_t), intent(inout) :: now
     type(exact_sum_t) :: sums(8)
     real(wp) :: totals(8)
-    integer :: i, b
 
     call add_kinetic(method, model, now, 1.0_wp, sums(1), sums(2))
-    do b = 1, size(method%strain, 2)
-      call sums(3)%add(method%strain(:, b))
-    end do
+    call sums(3)%add(method%strain)
     call add_stored(method, model, now, sums(3))
-    do i = 1, model%distribution%owned
+    associate (owned => model%distribution%owned, lost => method%stacks%history%lost)
       if (allocated(now%interfaces%cohesive%points)) then
-        associate (point => now%interfaces%cohesive%points(i), area => method%stacks%area(i))
-          call sums(4)%add(area*point%dissipated)
-          call sums(5)%add(area*point%sliding%heat)
+        associate (points => now%interfaces%cohesive%points(:owned), area => method%stacks%area(:owned))
+          call sums(4)%add(area*points%dissipated)
+          call sums(5)%add(area*points%sliding%heat)
         end associate
       end if
-      call sums(6)%add(method%stacks%history%lost(1, i) + method%rigs%frame_loss(i))
-      call sums(7)%add(method%stacks%history%lost(2, i) + method%rigs%step_loss(i))
-      call sums(8)%add(method%lines%work(i))
-    end do
+      call sums(6)%add(lost(1, :owned) + method%rigs%frame_loss(:owned))
+      call sums(7)%add(lost(2, :owned) + method%rigs%step_loss(:owned))
+      call sums(8)%add(method%lines%work(:owned))
+    end associate
     totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
     associate (ledger => now%ledger)
       ledger%kinetic = totals(1)
@@ -127,8 +141,10 @@ contains
     type(state_t), intent(in) :: now
     !> The energy
     type(exact_sum_t), intent(inout) :: stored
+    real(wp) :: energies(model%distribution%owned)
     integer :: i
 
+    energies = 0
     associate (cohesive => now%interfaces%cohesive, u => now%motion%displacement)
       do i = 1, model%distribution%owned
         if (allocated(method%inertia%springs)) call stored%add(sum(method%inertia%springs(:, i)*u(:, i)**2)/2)
@@ -138,12 +154,90 @@ contains
         if (.not. (model%zone(i) > 0 .and. method%stacks%area(i) > 0)) cycle
         if (cohesive%points(i)%damage > 0 .or. cohesive%by_energy(i)) then
           associate (surfaces => cohesive%surfaces_of(model, i))
-            call stored%add(method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i)))
+            energies(i) = method%stacks%area(i)*surfaces%stored(u(1:3, i), cohesive%points(i))
           end associate
         else
-          call stored%add(sum(method%stacks%stiffness([1, 1, 2], i)*u(1:3, i)**2)/2)
+          associate (k => method%stacks%stiffness(:, i))
+            energies(i) = (k(1)*u(1, i)**2 + k(1)*u(2, i)**2 + k(2)*u(3, i)**2)/2
+          end associate
         end if
       end do
     end associate
+    call stored%add(energies)
   end subroutine add_stored
+
+  !> Reduces the velocities at the start of a step. The changes of coordinates in the last step, half of which enter the
+  !> kinetic energy with the forces (central_difference_energies), are reduced by the same factor there. Collective.
+  subroutine damp_motion(method, model, now, duration, kept)
+    !> Central differences, after a step
+    type(central_difference_t), intent(inout) :: method
+    type(model_t), intent(in) :: model
+    !> The state; its ledger receives the energy
+    type(state_t), intent(inout) :: now
+    !> Duration of the damping; motions with a longer period are damped less
+    real(wp), intent(in) :: duration
+    !> Factor by which the velocities have been multiplied, for the next step
+    real(wp), intent(out) :: kept
+    real(wp) :: before
+
+    kept = 1
+    if (.not. method%steps%now > 0) return
+    kept = exp(2*log(final_ratio)*method%steps%now/duration)
+    before = kinetic_energy(method, model, now, 1.0_wp)
+    now%motion%velocity = kept*now%motion%velocity
+    call method%stacks%history%damp(kept)
+    method%rigs%approach = kept*method%rigs%approach
+    method%lines%dofs%change = kept*method%lines%dofs%change
+    now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, model, now, kept)
+  end subroutine damp_motion
+
+  !> Sets an error if the energy error shows unstable growth. Collective.
+  subroutine check_stability(model, now, error)
+    type(model_t), intent(in) :: model
+    !> The state, with its ledger
+    type(state_t), intent(in) :: now
+    !> Set if the motion is unstable; the same on every rank
+    type(error_t), allocatable, intent(out) :: error
+    real(wp) :: created, energy
+    character(len=:), allocatable :: amount
+
+    created = now%ledger%error()
+    energy = now%ledger%largest + now%ledger%residual
+    if (created <= max_energy_error*energy .and. abs(created) <= huge(created)) return
+    amount = 'the energy has become infinite'
+    if (abs(created) <= huge(created)) &
+      amount = rounded_text(created)//' of energy have been created, of a total of '//rounded_text(energy)
+    call fail(error, exit_convergence, 'Central differences have become unstable by time '//rounded_text(now%time)// &
+              ': '//amount//'; the largest velocity is '//fastest_point(model, now%motion%velocity)// &
+              '. Take a smaller &time step_factor.')
+  end subroutine check_stability
+
+  !> Point of the largest transverse velocity. Collective.
+  function fastest_point(model, velocity) result(place)
+    type(model_t), intent(in) :: model
+    !> Rates of the unknowns, (5, points)
+    real(wp), intent(in) :: velocity(:, :)
+    !> Coordinates and layer
+    character(len=:), allocatable :: place
+    real(wp), allocatable :: rates(:)
+    real(wp) :: largest
+    integer :: i, point
+
+    associate (partition => model%distribution)
+      rates = abs(velocity(3, :partition%owned))
+      where (.not. rates <= huge(rates)) rates = huge(rates)
+      largest = maxval(rates)
+      call model%communicator%maximum(largest)
+      point = huge(point)
+      do i = 1, partition%owned
+        if (rates(i) >= largest) point = min(point, partition%points(i))
+      end do
+    end associate
+    call model%communicator%minimum(point)
+    associate (node => model%mesh%point_node(point))
+      place = 'at x = '//short_text(model%mesh%node_coordinates(1, node))//', y = '// &
+              short_text(model%mesh%node_coordinates(2, node))//', layer '// &
+              to_text(point - model%mesh%first_point(node) + 1)
+    end associate
+  end function fastest_point
 end module central_difference_energies

@@ -15,5 +15,19 @@ module central_difference_parameters
     real(wp) :: longest = 0
     !> Duration of damping that brings the plate to rest before lines load it; 0: none
     real(wp) :: settle = 0
+  contains
+    procedure :: stable_step
   end type central_difference_parameters_t
+
+contains
+
+  !> Step for the highest frequency of a model.
+  pure real(wp) function stable_step(self, frequency) result(step)
+    class(central_difference_parameters_t), intent(in) :: self
+    !> The angular frequency
+    real(wp), intent(in) :: frequency
+
+    step = self%step_factor*2/frequency
+    if (self%longest > 0) step = min(step, self%longest)
+  end function stable_step
 end module central_difference_parameters

@@ -9,7 +9,6 @@ module central_differences
   use archives, only: archive_t
   use batch_strains, only: depends_on_slopes
   use central_difference_parameters, only: central_difference_parameters_t
-  use circle_frames, only: circle_frames_t, create_circle_frames
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
   use front_onsets, only: front_onsets_t, create_front_onsets
   use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
@@ -18,14 +17,13 @@ module central_differences
   use line_steps, only: create_line_steps
   use models, only: model_t
   use nodal_inertia, only: create_nodal_inertia
-  use nodal_steps, only: nodal_steps_t
   use element_batches, only: lanes
   use rank_totals, only: total_of
   use rig_steps, only: add_clamp_forces, create_rig_steps
   use section_bounds, only: largest_stiffness
   use stable_steps, only: highest_element_frequency, stiffened_frequency
   use layer_motions, only: accelerate, move_points
-  use stack_motions, only: move_stacks
+  use stack_motions, only: move_stacks, nodal_steps_t
   use states, only: state_t
   use step_lengths, only: step_lengths_t, commensurate_step
   implicit none
@@ -50,8 +48,6 @@ module central_differences
     type(central_difference_parameters_t) :: parameters
     !> The impactor and its patch
     type(impactor_steps_t) :: impact
-    !> Points on circular windows
-    type(circle_frames_t) :: circles
     !> Search for onsets of damage by energy
     type(front_onsets_t), private :: onsets
     !> Step for which inertia and stacks are prepared
@@ -102,7 +98,6 @@ contains
     self%stiffened = self%frequency
     self%stacks = create_interface_stacks(model, now%interfaces%cohesive, self%inertia)
     self%rigs = create_rig_steps(model)
-    self%circles = create_circle_frames(model)
     self%lines = create_line_steps(model, self%inertia)
     self%onsets = create_front_onsets(model)
     call separate_constrained_points(self)
@@ -145,8 +140,7 @@ contains
     square = self%stiffened**2
     if (model%setup%has_impactor) &
       square = square + self%impact%contact_frequency_square(model, now%indentation)
-    step = self%parameters%step_factor*2/sqrt(square)
-    if (self%parameters%longest > 0) step = min(step, self%parameters%longest)
+    step = self%parameters%stable_step(sqrt(square))
   end function longest_step
 
   !> Takes one step. Its length changes only where the stable step requires it, as alternating lengths excite the
@@ -180,7 +174,7 @@ contains
       call move_single(self, model, u, v)
       call move_stacks(self%nodal_steps_t, model, now%interfaces%cohesive, u, v)
       if (allocated(self%inertia%springs)) call self%rigs%record_springs(self%inertia, self%steps, rates, v)
-      call self%circles%constrain(model, self%steps, u(3, :), v(3, :))
+      call self%rigs%circles%constrain(model, self%steps, u(3, :), v(3, :))
       call self%inertia%move_dependents(u)
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
@@ -229,7 +223,7 @@ contains
     if (abs(self%prepared%now - self%steps%now) <= 0 .and. abs(self%prepared%last - self%steps%last) <= 0) return
     call self%inertia%invert(self%steps%now*self%steps%mean())
     call self%lines%project(self%inertia%inverse)
-    call self%circles%prepare(model, self%inertia%inverse(7, :))
+    call self%rigs%circles%prepare(model, self%inertia%inverse(7, :))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
     if (allocated(self%batches)) deallocate (self%batches)

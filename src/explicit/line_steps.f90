@@ -263,8 +263,7 @@ contains
         reaction = missing(dof%component)
         if (dof%component <= 2) missing(dof%component + 3) = missing(dof%component + 3) - dof%height*reaction
         change = steps%now*component_of(dof, after)
-        self%work(p) = self%work(p) + reaction*(change + steps%shift(dof%change, change)) &
-                       + (reaction - dof%reaction)*dof%change/2
+        self%work(p) = self%work(p) + steps%work(reaction, dof%reaction, change, dof%change)
         dof%reaction = reaction
         dof%change = change
       end associate

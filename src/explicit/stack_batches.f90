@@ -4,15 +4,14 @@ module stack_batches
   use element_batches, only: lanes
   use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
   use cohesive_points, only: cohesive_point_t
-  use interface_stacks, only: interface_stacks_t
-  use jump_histories, only: friction_history_t, jump_history_t
+  use interface_stacks, only: friction_history_t, interface_stacks_t, jump_history_t
   use kinds, only: wp
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   use surface_friction, only: sliding_t
   implicit none
   private
-  public :: stack_batch_t, create_stack_batches, load_states, store_states
+  public :: stack_batch_t, stack_batches_t, new_stack_batches, load_states, store_states
 
   !> Constants of the surfaces, (lanes, n) each, of laws without flaws.
   type, public :: surface_lanes_t
@@ -34,7 +33,7 @@ module stack_batches
     integer :: n = 0, members = 0
     !> True: some interfaces are damaged. True: frames or lines constrain layers
     logical :: damaged = .false., constrained = .false.
-    !> Stack and first point of each lane; the last stack fills the remaining lanes
+    !> Stack and first point of each lane; others than those of the members are computed and not stored
     integer :: stack(lanes) = 0, first(lanes) = 0
     !> Height of the interface below each layer, (lanes, n)
     real(wp), allocatable :: height(:, :)
@@ -49,6 +48,19 @@ module stack_batches
     !> Surfaces, of damaged stacks only
     type(surface_lanes_t) :: surfaces
   end type stack_batch_t
+
+  !> The batches of all stacks of this rank, in a step of the present length.
+  type :: stack_batches_t
+    !> The batches, of which this number has stacks, or had until they became damaged
+    type(stack_batch_t), allocatable :: list(:)
+    integer :: filled = 0
+    !> Batch with free lanes for each number of layers and kind: 1 if constrained plus 2 if damaged; 0: none
+    integer, allocatable, private :: open(:, :)
+    !> Number of damaged stacks
+    integer, private :: damaged = 0
+  contains
+    procedure :: move_damaged
+  end type stack_batches_t
 
   !> Surfaces of an interface of damaged stacks, a value for each lane.
   type, public :: surface_states_t
@@ -73,55 +85,113 @@ module stack_batches
 contains
 
   !> Batches of all stacks. Stacks of the same number of layers and of the same kind share batches.
-  pure function create_stack_batches(stacks, inertia, model, constrained) result(batches)
+  pure function new_stack_batches(stacks, inertia, model, constrained) result(self)
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(model_t), intent(in) :: model
     !> True for stacks with layers that frames or lines constrain
     logical, intent(in) :: constrained(:)
-    !> The batches
-    type(stack_batch_t), allocatable :: batches(:)
-    integer, allocatable :: equal(:)
-    integer :: layers, kind, i, total
+    type(stack_batches_t) :: self
+    integer :: i, layers
 
-    allocate (batches(size(constrained)))
-    total = 0
-    do layers = 2, maxval([1, stacks%layers])
-      do kind = 0, 3
-        equal = pack([(i, i=1, size(constrained))], stacks%layers == layers .and. &
-                     (stacks%damaged .eqv. kind > 1) .and. (constrained .eqv. modulo(kind, 2) == 1))
-        do i = 1, size(equal), lanes
-          total = total + 1
-          associate (members => equal(i:min(i + lanes - 1, size(equal))), batch => batches(total))
-            batch = new_batch(stacks, inertia, members)
-            batch%constrained = constrained(members(1))
-            if (batch%damaged) batch%surfaces = new_surfaces(stacks, model, batch)
-          end associate
-        end do
-      end do
+    layers = maxval([1, stacks%layers])
+    ! All stacks may become damaged. For each number of layers and kind, one batch has free lanes.
+    allocate (self%list(2*(size(constrained)/lanes) + 6*layers), self%open(layers, 0:3))
+    self%open = 0
+    do i = 1, size(constrained)
+      call join(self, i, constrained(i), stacks, inertia, model)
     end do
-    batches = batches(:total)
-  end function create_stack_batches
+    self%damaged = count(stacks%damaged)
+  end function new_stack_batches
 
-  !> A batch of stacks.
-  pure function new_batch(stacks, inertia, members) result(self)
+  !> Moves stacks that have become damaged to batches of damaged stacks.
+  pure subroutine move_damaged(self, stacks, inertia, model)
+    class(stack_batches_t), intent(inout) :: self
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
-    !> Indices of at least one and at most `lanes` stacks
-    integer, intent(in) :: members(:)
-    type(stack_batch_t) :: self
+    type(model_t), intent(in) :: model
+    integer :: b, lane, i
+
+    if (count(stacks%damaged) == self%damaged) return
+    self%damaged = count(stacks%damaged)
+    do b = 1, self%filled
+      if (self%list(b)%damaged) cycle
+      do lane = self%list(b)%members, 1, -1
+        i = self%list(b)%stack(lane)
+        if (.not. stacks%damaged(i)) cycle
+        ! The last stack takes its lane.
+        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, model)
+        self%list(b)%members = self%list(b)%members - 1
+        call join(self, i, self%list(b)%constrained, stacks, inertia, model)
+      end do
+    end do
+  end subroutine move_damaged
+
+  !> Adds a stack to a batch with free lanes, or to a new one, which it fills.
+  pure subroutine join(self, i, constrained, stacks, inertia, model)
+    type(stack_batches_t), intent(inout) :: self
+    !> Index of the stack
+    integer, intent(in) :: i
+    !> True: frames or lines constrain layers
+    logical, intent(in) :: constrained
+    type(interface_stacks_t), intent(in) :: stacks
+    !> Lumped inertia, inverted for this step
+    type(nodal_inertia_t), intent(in) :: inertia
+    type(model_t), intent(in) :: model
+    integer :: last
+
+    associate (open => self%open(stacks%layers(i), merge(1, 0, constrained) + merge(2, 0, stacks%damaged(i))))
+      last = lanes
+      if (open > 0) last = self%list(open)%members + 1
+      if (open == 0 .or. last > lanes) then
+        self%filled = self%filled + 1
+        open = self%filled
+        call allocate_batch(self%list(open), stacks%layers(i) - 1, stacks%damaged(i), constrained)
+        last = lanes
+      end if
+      associate (batch => self%list(open))
+        batch%members = batch%members + 1
+        call set_lanes(batch, batch%members, last, i, stacks, inertia, model)
+      end associate
+    end associate
+  end subroutine join
+
+  !> Allocates the constants of a batch.
+  pure subroutine allocate_batch(self, n, damaged, constrained)
+    type(stack_batch_t), intent(inout) :: self
+    !> Number of interfaces
+    integer, intent(in) :: n
+    !> Kind of the stacks
+    logical, intent(in) :: damaged, constrained
+
+    self%n = n
+    self%damaged = damaged
+    self%constrained = constrained
+    allocate (self%height(lanes, n), self%inverse(lanes, 7, n + 1), self%stiffness(lanes, 2, n), &
+              self%diagonal(lanes, 3, n), self%off_diagonal(lanes, 3, n), self%factors(lanes, 2, 3, n))
+    if (.not. damaged) return
+    associate (its => self%surfaces)
+      allocate (its%area(lanes, n), its%shear(lanes, n), its%opening(lanes, n), its%closing(lanes, n), &
+                its%toughness(lanes, n), its%failure_ratio(lanes, n), its%friction(lanes, n), its%contact(lanes, n))
+    end associate
+  end subroutine allocate_batch
+
+  !> Sets the constants of lanes.
+  pure subroutine set_lanes(self, from, to, i, stacks, inertia, model)
+    type(stack_batch_t), intent(inout) :: self
+    !> First and last lane, and index of the stack
+    integer, intent(in) :: from, to, i
+    type(interface_stacks_t), intent(in) :: stacks
+    !> Lumped inertia, inverted for this step
+    type(nodal_inertia_t), intent(in) :: inertia
+    type(model_t), intent(in) :: model
     integer :: lane, p
 
-    self%members = size(members)
-    self%n = stacks%layers(members(1)) - 1
-    self%damaged = stacks%damaged(members(1))
-    allocate (self%height(lanes, self%n), self%inverse(lanes, 7, self%n + 1), self%stiffness(lanes, 2, self%n), &
-              self%diagonal(lanes, 3, self%n), self%off_diagonal(lanes, 3, self%n), self%factors(lanes, 2, 3, self%n))
-    do lane = 1, lanes
-      self%stack(lane) = members(min(lane, size(members)))
-      p = stacks%first(self%stack(lane))
+    p = stacks%first(i)
+    do lane = from, to
+      self%stack(lane) = i
       self%first(lane) = p
       self%height(lane, :) = stacks%height(p + 1:p + self%n)
       self%inverse(lane, :, :) = inertia%inverse(:, p:p + self%n)
@@ -129,38 +199,34 @@ contains
       self%diagonal(lane, :, :) = stacks%diagonal(:, p + 1:p + self%n)
       self%off_diagonal(lane, :, :) = stacks%off_diagonal(:, p + 1:p + self%n)
       self%factors(lane, :, :, :) = stacks%factors(:, :, p + 1:p + self%n)
+      if (self%damaged) call set_surfaces(self%surfaces, lane, self%n, p, stacks, model)
     end do
-  end function new_batch
+  end subroutine set_lanes
 
-  !> The surfaces of a batch.
-  pure function new_surfaces(stacks, model, batch) result(self)
+  !> Sets the surfaces of a lane.
+  pure subroutine set_surfaces(self, lane, n, first, stacks, model)
+    type(surface_lanes_t), intent(inout) :: self
+    !> The lane, number of interfaces, and first point of the stack
+    integer, intent(in) :: lane, n, first
     type(interface_stacks_t), intent(in) :: stacks
     type(model_t), intent(in) :: model
-    type(stack_batch_t), intent(in) :: batch
-    type(surface_lanes_t) :: self
-    integer :: lane, j
+    integer :: j
 
-    associate (n => batch%n)
-      allocate (self%area(lanes, n), self%shear(lanes, n), self%opening(lanes, n), self%closing(lanes, n), &
-                self%toughness(lanes, n), self%failure_ratio(lanes, n), self%friction(lanes, n), self%contact(lanes, n))
-    end associate
-    do j = 1, batch%n
-      do lane = 1, lanes
-        associate (p => batch%first(lane) + j, zone => model%zone(batch%first(lane) + j))
-          associate (law => model%cohesive_laws(zone))
-            self%area(lane, j) = stacks%area(p)
-            self%shear(lane, j) = law%stiffness_shear
-            self%opening(lane, j) = law%stiffness_opening
-            self%closing(lane, j) = law%stiffness_closing
-            self%toughness(lane, j) = min(law%toughness_opening, law%toughness_shear)
-            self%failure_ratio(lane, j) = law%failure_ratio
-          end associate
-          self%friction(lane, j) = model%setup%delaminations(zone)%friction
-          self%contact(lane, j) = prevents_penetration(model, zone)
+    do j = 1, n
+      associate (zone => model%zone(first + j))
+        associate (law => model%cohesive_laws(zone))
+          self%area(lane, j) = stacks%area(first + j)
+          self%shear(lane, j) = law%stiffness_shear
+          self%opening(lane, j) = law%stiffness_opening
+          self%closing(lane, j) = law%stiffness_closing
+          self%toughness(lane, j) = min(law%toughness_opening, law%toughness_shear)
+          self%failure_ratio(lane, j) = law%failure_ratio
         end associate
-      end do
+        self%friction(lane, j) = model%setup%delaminations(zone)%friction
+        self%contact(lane, j) = prevents_penetration(model, zone)
+      end associate
     end do
-  end function new_surfaces
+  end subroutine set_surfaces
 
   !> Loads the surfaces of a damaged batch.
   pure subroutine load_states(batch, cohesive, history, jumps, last, earlier, states)

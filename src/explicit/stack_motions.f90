@@ -5,10 +5,12 @@ module stack_motions
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, find_resultants, find_velocities
+  use line_steps, only: line_steps_t
   use models, only: model_t
-  use nodal_steps, only: nodal_steps_t
+  use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: create_stack_batches, load_states, stack_batch_t, store_states, surface_states_t
+  use stack_batches, only: stack_batches_t, load_states, new_stack_batches, stack_batch_t, store_states, &
+                           surface_states_t
   use stack_solutions, only: friction_t, solve_damaged, solve_intact
   use stack_updates, only: may_start, start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
@@ -16,7 +18,25 @@ module stack_motions
   use weighted_jumps, only: newest, past_jumps
   implicit none
   private
-  public :: move_stacks
+  public :: nodal_steps_t, move_stacks
+
+  !> The nodes in a step.
+  type :: nodal_steps_t
+    !> Lumped inertia of the points, inverted for the step
+    type(nodal_inertia_t) :: inertia
+    !> Forces on the layers without tractions, (5, points); at the end of a step loads minus internal forces
+    real(wp), allocatable :: force(:, :)
+    !> Nodes with several layers
+    type(interface_stacks_t) :: stacks
+    !> Batches of stacks; unallocated: to be formed for the step
+    type(stack_batches_t), allocatable :: batches
+    !> Lines
+    type(line_steps_t) :: lines
+    !> Frames and springs
+    type(rig_steps_t) :: rigs
+    !> The step taken last and the one before it
+    type(step_lengths_t) :: steps
+  end type nodal_steps_t
 
 contains
 
@@ -29,24 +49,27 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
-    type(stack_batch_t), allocatable :: batches(:)
+    type(stack_batches_t), allocatable :: batches
     integer :: b
 
-    if (allocated(nodes%batches) .and. count(nodes%stacks%damaged) > nodes%damaged) deallocate (nodes%batches)
-    if (.not. allocated(nodes%batches)) call form_batches(nodes, model)
-    call nodes%stacks%history%begin_step()
     call move_alloc(nodes%batches, batches)
-    do b = 1, size(batches)
-      call move_batch(batches(b), nodes, model, cohesive, u, v)
+    if (allocated(batches)) then
+      call batches%move_damaged(nodes%stacks, nodes%inertia, model)
+    else
+      batches = new_stack_batches(nodes%stacks, nodes%inertia, model, are_constrained(nodes))
+    end if
+    call nodes%stacks%history%begin_step()
+    do b = 1, batches%filled
+      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, model, cohesive, u, v)
     end do
     call move_alloc(batches, nodes%batches)
   end subroutine move_stacks
 
-  !> Forms the batches for the step.
-  pure subroutine form_batches(nodes, model)
+  !> True for stacks with layers that frames or lines constrain.
+  pure function are_constrained(nodes) result(constrained)
     !> The nodes
-    type(nodal_steps_t), intent(inout) :: nodes
-    type(model_t), intent(in) :: model
+    type(nodal_steps_t), intent(in) :: nodes
+    !> One for each stack
     logical :: constrained(size(nodes%stacks%first))
     integer :: i, p
 
@@ -57,9 +80,7 @@ contains
         constrained(i) = constrained(i) .or. any([(nodes%lines%is_prescribed(p), p=first, last)])
       end associate
     end do
-    nodes%damaged = count(nodes%stacks%damaged)
-    nodes%batches = create_stack_batches(nodes%stacks, nodes%inertia, model, constrained)
-  end subroutine form_batches
+  end function are_constrained
 
   !> Updates the stacks of a batch.
   subroutine move_batch(batch, nodes, model, cohesive, u, v)

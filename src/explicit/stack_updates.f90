@@ -55,14 +55,11 @@ contains
     real(wp), intent(in) :: change(lanes, 3), last(lanes, 3)
     !> One for each lane
     real(wp) :: work(lanes)
-    real(wp) :: works(lanes, 3), damped(lanes), shift(lanes)
+    real(wp) :: works(lanes, 3)
     integer :: k
 
-    shift = 0
     do k = 1, 3
-      damped = steps%kept*last(:, k)
-      if (abs(steps%now - steps%last) > 0) shift = steps%shift(damped, change(:, k))
-      works(:, k) = forces(:, k)*(change(:, k) + shift) + (forces(:, k) - before(:, k))*damped/2
+      works(:, k) = steps%work_in_lanes(forces(:, k), before(:, k), change(:, k), steps%kept*last(:, k))
     end do
     work = works(:, 1) + works(:, 2) + works(:, 3)
   end function work_of
@@ -253,15 +250,12 @@ contains
     real(wp), intent(in) :: before(lanes), change(lanes), last(lanes)
     !> One for each lane
     real(wp) :: lost(lanes)
-    real(wp), dimension(lanes) :: from, to, damped, shift
+    real(wp), dimension(lanes) :: from, to
 
-    damped = steps%kept*last
-    shift = 0
-    if (abs(steps%now - steps%last) > 0) shift = steps%shift(damped, change)
     from = min(before, 0.0_wp)
     to = min(before + change, 0.0_wp)
-    lost = merge(batch%stiffness(:, 2, j)*(to*(change + shift) + (to - from)*damped/2 - (to**2 - from**2)/2), 0.0_wp, &
-                 batch%surfaces%contact(:, j))
+    lost = merge(batch%stiffness(:, 2, j)*(steps%work_in_lanes(to, from, change, steps%kept*last) &
+                                           - (to**2 - from**2)/2), 0.0_wp, batch%surfaces%contact(:, j))
   end function lost_in_contact
 
   !> Slip of surfaces, change of their elastic jumps, and heat, theory (T11): the work of friction less half of the

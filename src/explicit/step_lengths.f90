@@ -1,5 +1,6 @@
 !> Lengths of the present and the previous step, and the damping between them.
 module step_lengths
+  use element_batches, only: lanes
   use kinds, only: wp
   implicit none
   private
@@ -13,7 +14,8 @@ module step_lengths
     real(wp) :: kept = 1
   contains
     procedure :: mean
-    procedure :: shift
+    procedure :: work
+    procedure :: work_in_lanes
   end type step_lengths_t
 
 contains
@@ -39,6 +41,28 @@ contains
     if (self%last > 0) shift = shift + before/self%last
     shift = (self%now - self%last)/4*shift
   end function shift
+
+  !> Decrease of the kinetic energy at whole steps by a force R on a coordinate q: R dq + (R - R_old) dq_old/2, and the
+  !> work over the additional displacement.
+  elemental real(wp) function work(self, force, force_before, change, change_before)
+    class(step_lengths_t), intent(in) :: self
+    !> Force in this step and in the one before
+    real(wp), intent(in) :: force, force_before
+    !> Change of the coordinate in this step and, reduced by damping, in the one before
+    real(wp), intent(in) :: change, change_before
+
+    work = force*(change + shift(self, change_before, change)) + (force - force_before)*change_before/2
+  end function work
+
+  !> The same for the lanes of a batch: here the elemental function is expanded and vectorized.
+  pure function work_in_lanes(self, force, force_before, change, change_before) result(works)
+    class(step_lengths_t), intent(in) :: self
+    !> As in `work`
+    real(wp), dimension(lanes), intent(in) :: force, force_before, change, change_before
+    real(wp) :: works(lanes)
+
+    works = work(self, force, force_before, change, change_before)
+  end function work_in_lanes
 
   !> Longest step, not longer than a bound, of which an integer number equals a time.
   pure real(wp) function commensurate_step(time, longest) result(step)

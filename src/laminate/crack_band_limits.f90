@@ -1,7 +1,7 @@
 !> Limits of softening plies: the strain below which no ply is damaged, and the longest elements that dissipate no more
 !> than the fracture energies.
 module crack_band_limits
-  use crack_bands, only: crack_band_t
+  use crack_bands, only: band_state_t, band_strains_t, crack_band_t, remaining_stiffness
   use kinds, only: wp
   use larc_criteria, only: kinking_exposure
   use linear_softening, only: min_ratio
@@ -9,9 +9,10 @@ module crack_band_limits
   use matrix_exposures, only: matrix_exposure
   use plies, only: reduced_stiffness
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
+  use roundings, only: rounding
   implicit none
   private
-  public :: onset_strain, strain_of_stress, longest_element
+  public :: onset_strain, strain_of_stress, may_soften, longest_element
 
 contains
 
@@ -79,6 +80,39 @@ contains
     end associate
     strain = reserve/exposure
   end function kinking_strain
+
+  !> False where strains certainly do not change the state of a ply: what may fail further is exposed by less than 1.
+  !> Compressed sub-plies have another modulus along the fibres, which changes the strain that each stress alone would
+  !> cause by less than that of all of them compressed; the exposures of the matrix are convex on each side of pure
+  !> shear, hence largest at the ends.
+  pure logical function may_soften(band, strains, state)
+    !> The law
+    type(crack_band_t), intent(in) :: band
+    !> Strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> The ply in the last accepted state
+    type(band_state_t), intent(in) :: state
+    real(wp) :: left(2), along, across, shear, divisor
+
+    may_soften = band%kinking .or. band%crack_closure .or. band%shear_beta > 0
+    if (may_soften) return
+    left = remaining_stiffness(band, state%damage)
+    associate (c => band%elasticity, s => strains%square, stiffer => max(1.0_wp, band%elasticity%compression), &
+               nu21 => left(2)*band%elasticity%nu12*band%elasticity%e2/band%elasticity%e1, &
+               nu12 => left(1)*band%elasticity%nu12)
+      divisor = (1 - nu12*nu21*stiffer)*(1 - rounding)
+      if (state%damage(1) < 1) then
+        along = sqrt(stiffer*max(0.0_wp, s(1) + nu21*(2*s(3) + nu21*s(2))))*c%e1/divisor
+        may_soften = .not. max(along/band%along(1), sqrt(c%compression)*along/band%along(2)) < 1
+      end if
+      if (may_soften .or. .not. state%damage(2) < 1) return
+      across = c%e2*(sqrt(max(0.0_wp, s(2) + nu12*(2*s(3) + nu12*s(1)))) &
+                     + abs(nu12*(c%compression - 1))*sqrt(max(0.0_wp, s(1))))/divisor
+      shear = c%g12*sqrt(strains%shear_square)/(1 - rounding)
+    end associate
+    may_soften = .not. max(matrix_exposure(band%matrix, across, shear), matrix_exposure(band%matrix, 0.0_wp, shear), &
+                           matrix_exposure(band%matrix, -across, shear)) < 1
+  end function may_soften
 
   !> Longest element across the crack that dissipates no more than the fracture energy, in each mode; shear counts as
   !> transverse compression.

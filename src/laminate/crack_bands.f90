@@ -23,7 +23,8 @@ module crack_bands
   implicit none
   private
   public :: crack_band_t, band_state_t, band_strains_t, create_crack_band, flow_band, soften_band, &
-            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, stiffness_lost, tensile_stress
+            degraded_elasticity, mean_elasticity, energy_of_shear, is_damaged, remaining_stiffness, stiffness_lost, &
+            tensile_stress
 
   !> Largest number of iterations for both damage variables, and their tolerance. Poisson's coupling is weak, so five
   !> iterations are usual.
@@ -72,7 +73,11 @@ contains
     ! While the matrix softens its strengths are constant, so that it dissipates its fracture energies.
     if (old%strengthened > 0) factor = max(1.0_wp, old%strengthened)
     if (.not. band%permanent_shear) call shear_band(band, strains, factor, old, new)
-    call find_damage(sheared_law(band, new%shear_damage), lengths, strains, factor, old, new)
+    if (new%shear_damage > 0) then
+      call find_damage(sheared_law(band, new%shear_damage), lengths, strains, factor, old, new)
+    else
+      call find_damage(band, lengths, strains, factor, old, new)
+    end if
     if (new%damage(2) > 0) new%strengthened = factor
   end subroutine soften_band
 

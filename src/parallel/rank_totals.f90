@@ -33,11 +33,8 @@ contains
     !> This rank's terms, any number of them
     real(wp), intent(in) :: values(:, :)
     type(exact_sum_t) :: sum
-    integer :: i
 
-    do i = 1, size(values, 2)
-      call sum%add(values(:, i))
-    end do
+    call sum%add(values)
     total = total_of_sum(communicator, sum)
   end function total_of_table
 

@@ -1,15 +1,18 @@
-!> Sums over the softening plies of elements: energies dissipated, and changes of sections by the sign of stresses.
+!> Sums over the softening plies of elements: energies dissipated, resultants of stress-free strains, and changes of
+!> sections by the sign of stresses.
 module band_energies
   use band_states, only: band_states_t
+  use crack_closures, only: closing_resultants
   use crack_bands, only: crack_band_t, degraded_elasticity, energy_of_shear, mean_elasticity
   use exact_sums, only: exact_sum_t
+  use free_strains, only: free_resultants
   use kinds, only: wp
   use mean_stiffnesses, only: change_values, mean_change, mean_strains_at, sub_ply_middle
   use plies, only: ply_t
   use ply_damage_parameters, only: energy_modes
   implicit none
   private
-  public :: dissipated_in_trial, dissipated_so_far, changed_by_signs
+  public :: dissipated_in_trial, dissipated_so_far, changed_by_signs, resultants_without_strain
 
 contains
 
@@ -100,4 +103,31 @@ contains
       end associate
     end do
   end function changed_by_signs
+
+  !> Resultants of the stress-free strains of an element in the trial.
+  pure function resultants_without_strain(plies, bands, states, element, closing) result(resultants)
+    !> Plies of the laminate
+    type(ply_t), intent(in) :: plies(:)
+    !> Their laws
+    type(crack_band_t), intent(in) :: bands(:)
+    !> States of the plies
+    type(band_states_t), intent(in) :: states
+    !> The element
+    integer, intent(in) :: element
+    !> True: with the stresses that closed cracks carry
+    logical, intent(in) :: closing
+    !> Of the section, and their energy per area
+    real(wp) :: resultants(7)
+    type(ply_t) :: strained(states%range(1, element):states%range(2, element))
+    integer :: ply
+
+    associate (first => states%range(1, element), last => states%range(2, element), offset => states%offset(element))
+      strained = plies(first:last)
+      strained%free_strain(3) = states%trial(offset + first:offset + last)%permanent
+      resultants = free_resultants(strained, degraded_elasticity(bands(first:last), &
+                                                                 states%trial(offset + first:offset + last)))
+      if (closing .and. bands(first)%crack_closure) resultants = resultants + closing_resultants(strained, &
+        reshape([(states%trial(offset + ply)%recovered, ply=first, last)], [3, last - first + 1]))
+    end associate
+  end function resultants_without_strain
 end module band_energies

@@ -4,15 +4,13 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
-  use band_energies, only: dissipated_in_trial, dissipated_so_far
+  use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain
   use band_states, only: band_states_t, new_band_states
-  use crack_closures, only: closing_resultants
-  use crack_bands, only: crack_band_t, band_strains_t, create_crack_band, soften_band, degraded_elasticity, &
-                         is_damaged, stiffness_lost, tensile_stress
-  use crack_band_limits, only: onset_strain
+  use crack_bands, only: band_state_t, band_strains_t, crack_band_t, create_crack_band, soften_band, &
+                         degraded_elasticity, is_damaged, stiffness_lost, tensile_stress
+  use crack_band_limits, only: may_soften, onset_strain
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
-  use free_strains, only: free_resultants
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
@@ -25,7 +23,7 @@ module crack_band_sections
   use section_laws, only: section_law_t
   use signed_sections, only: signed_resultants
   use stacking, only: in_plane_section
-  use strain_bounds, only: largest_strains, strain_moments
+  use strain_bounds, only: strain_moments, strain_sizes
   use stressed_volumes, only: stressed_volumes_t, new_stressed_volumes
   implicit none
   private
@@ -62,8 +60,10 @@ module crack_band_sections
     type(joined_elements_t) :: joined
     !> Strain below which damage does not start in each ply, and distance of its outer face from the middle surface
     real(wp), allocatable, private :: onset(:), height(:)
+    !> The smallest onset and the largest distance of each element's plies, (2, elements)
+    real(wp), allocatable, private :: limits(:, :)
     !> True for elements with damage in the trial, (elements)
-    logical, allocatable, private :: touched(:)
+    logical, allocatable :: touched(:)
   contains
     procedure :: soften
     procedure :: needs_joined_strains
@@ -75,8 +75,6 @@ module crack_band_sections
     procedure :: dissipation_sums
     procedure :: dissipated
     procedure :: elasticity
-    procedure :: strained
-    procedure, private :: free_resultants_of
     procedure :: visit
   end type crack_band_sections_t
 
@@ -118,11 +116,15 @@ contains
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
     allocate (self%touched(model%elements%elements), source=.false.)
+    allocate (self%limits(2, model%elements%elements))
     self%joined = find_joined_elements(model)
     do i = 1, model%elements%elements
       associate (place => model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
         self%area(i) = model%mesh%cell_area(place)
         self%sides(:, i) = model%mesh%cell_sides(place)*merge(2, 1, self%joined%joined(:, i))
+      end associate
+      associate (first => self%states%range(1, i), last => self%states%range(2, i))
+        self%limits(:, i) = [minval(self%onset(first:last)), maxval(self%height(first:last))]
       end associate
     end do
   end function new_crack_band_sections
@@ -145,18 +147,20 @@ contains
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
-    real(wp) :: bounds(lanes), moments(lanes, moment_values)
+    real(wp) :: sizes(lanes, 2), moments(lanes, moment_values)
     integer :: lane, element
 
-    bounds = largest_strains(self%plies, weight, strains)
+    sizes = strain_sizes(weight, strains)
     moments = strain_moments(weight, strains)
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
       if (.not. self%joined%shares(element)) cycle
       associate (first => self%states%range(1, element), last => self%states%range(2, element), &
                  offset => self%states%offset(element))
-        call self%joined%accumulate_strains(element, moments(lane, :), bounds(lane), first, self%plies(first:last), &
-                                            self%bands(first:last), self%states%accepted(offset + first:offset + last))
+        call self%joined%accumulate_strains(element, moments(lane, :), &
+                                            sizes(lane, 1) + self%limits(2, element)*sizes(lane, 2), first, &
+                                            self%plies(first:last), self%bands(first:last), &
+                                            self%states%accepted(offset + first:offset + last))
       end associate
     end do
   end subroutine accumulate_strains
@@ -182,38 +186,38 @@ contains
     real(wp), intent(inout) :: stiffness(lanes, 21)
     !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
-    real(wp) :: bounds(lanes), moments(lanes, moment_values), onset
-    logical :: has_moments
+    real(wp) :: sizes(lanes, 2), moments(lanes, moment_values), bound
+    logical :: has_moments, changed
     integer :: lane, element
 
-    bounds = largest_strains(self%plies, weight, strains)
-    onset = minval(self%onset)
+    sizes = strain_sizes(weight, strains)
     has_moments = .false.
     do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
       element = first_element(b) + lane - 1
-      if (self%joined%shares(element)) bounds(lane) = self%joined%bound_of(element)
       if (allocated(self%volumes)) call self%volumes%clear(self%states, element)
-      if (.not. self%touched(element) .and. bounds(lane) < onset) cycle
-      if (.not. (self%keeps_damage .or. has_moments)) then
-        moments = strain_moments(weight, strains)
-        has_moments = .true.
-      end if
+      bound = sizes(lane, 1) + self%limits(2, element)*sizes(lane, 2)
+      if (self%joined%shares(element)) bound = self%joined%bound_of(element)
+      if (.not. self%touched(element) .and. bound < self%limits(1, element)) cycle
+      if (.not. has_moments) moments = strain_moments(weight, strains)
+      has_moments = .true.
+      changed = self%keeps_damage
       if (.not. self%keeps_damage) &
-        call soften_element(self, element, moments_from(moments(lane, :)), stiffness(lane, :))
+        call soften_element(self, element, moments_from(moments(lane, :)), stiffness(lane, :), changed)
+      if (.not. changed) cycle
       if (allocated(self%signs)) then
-        self%tensile(lane, :, b) = self%free_resultants_of(element)
+        self%tensile(lane, :, b) = resultants_without_strain(self%plies, self%bands, self%states, element, .false.)
       else if (present(free)) then
-        free(lane, :) = self%free_resultants_of(element)
+        free(lane, :) = resultants_without_strain(self%plies, self%bands, self%states, element, .true.)
       end if
     end do
     if (allocated(self%signs)) free = self%tensile(:, :, b) + &
       signed_resultants(self%signs, self%plies, self%bands, self%states, self%joined, self%touched, b, weight, strains)
     if (present(free)) self%free(:, :, b) = free
-    self%stiffness(:, :, b) = stiffness
+    if (has_moments) self%stiffness(:, :, b) = stiffness
   end subroutine soften
 
   !> Damage of the plies of one element under trial strains, and its section.
-  pure subroutine soften_element(self, element, moments, stiffness)
+  pure subroutine soften_element(self, element, moments, stiffness, changed)
     class(crack_band_sections_t), intent(inout) :: self
     !> Element of this rank
     integer, intent(in) :: element
@@ -221,16 +225,17 @@ contains
     type(strain_moments_t), intent(in) :: moments
     !> Section stiffness
     real(wp), intent(inout) :: stiffness(21)
+    !> True: the stress-free strains or the stiffness of a ply may have changed
+    logical, intent(out) :: changed
     type(band_strains_t) :: strains
     type(strain_moments_t) :: joined
     real(wp), allocatable :: means(:)
-    real(wp) :: before(3), normal(2), factor, membrane, curvature
-    logical :: changed
+    real(wp) :: before(3), membrane, curvature
+    logical :: loses
     integer :: ply
 
-    changed = .false.
+    loses = .false.
     self%touched(element) = .false.
-    factor = 1
     joined = moments
     if (self%joined%shares(element)) then
       means = self%joined%means_of(element)
@@ -238,39 +243,51 @@ contains
     end if
     membrane = invariant_measure(joined%membrane)
     curvature = invariant_measure(joined%curvature)
-    associate (first => self%states%range(1, element), last => self%states%range(2, element))
+    associate (first => self%states%range(1, element), last => self%states%range(2, element), &
+               offset => self%states%offset(element))
       do ply = first, last
-        associate (old => self%states%accepted(self%states%offset(element) + ply), &
-                   new => self%states%trial(self%states%offset(element) + ply))
+        associate (old => self%states%accepted(offset + ply), new => self%states%trial(offset + ply))
           before = stiffness_lost(new)
           new = old
-          ! The bound of `strain_bounds` for one ply.
-          if (.not. is_damaged(old) .and. membrane + self%height(ply)*curvature < self%onset(ply)) then
-            changed = changed .or. any(abs(before) > 0)
-            cycle
+          ! The bound of `strain_sizes` for one ply.
+          if (is_damaged(old) .or. .not. membrane + self%height(ply)*curvature < self%onset(ply)) then
+            call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
+            if (allocated(self%rates) .or. allocated(self%volumes) .or. may_soften(self%bands(ply), strains, old)) &
+              call soften_ply(self, element, ply, joined, strains, new)
           end if
-          normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
-          call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
-          if (allocated(self%rates)) &
-            call self%rates%find_factor(self%states%offset(element) + ply, self%plies(ply), self%bands(ply), joined, &
-                                        factor)
-          ! Mean width of the elements normal to a straight crack.
-          call soften_band(self%bands(ply), [dot_product(normal, self%sides(:, element)), &
-                                             dot_product(normal, self%sides([2, 1], element))], strains, old, new, &
-                           factor)
-          if (allocated(self%volumes)) &
-            self%volumes%stress(self%states%offset(element) + ply) = tensile_stress(self%bands(ply), strains, new)
-          changed = changed .or. any(abs(stiffness_lost(new) - before) > 0)
+          loses = loses .or. any(abs(stiffness_lost(new) - before) > 0)
           self%touched(element) = self%touched(element) .or. is_damaged(new)
         end associate
       end do
-      if (changed) then
-        associate (states => self%states%trial(self%states%offset(element) + first:self%states%offset(element) + last))
-          stiffness(:18) = in_plane_section(self%plies(first:last), degraded_elasticity(self%bands(first:last), states))
-        end associate
-      end if
+      if (loses) stiffness(:18) = in_plane_section(self%plies(first:last), degraded_elasticity(self%bands(first:last), &
+                                                   self%states%trial(offset + first:offset + last)))
+      changed = loses .or. any(self%bands(first:last)%permanent_shear .or. self%bands(first:last)%crack_closure)
     end associate
   end subroutine soften_element
+
+  !> Damage of a ply of an element under its trial strains.
+  pure subroutine soften_ply(self, element, ply, moments, strains, new)
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Element of this rank, and the ply
+    integer, intent(in) :: element, ply
+    !> Strains of the element with those joined with it
+    type(strain_moments_t), intent(in) :: moments
+    !> Elastic strains of the ply
+    type(band_strains_t), intent(in) :: strains
+    !> The accepted state with the present permanent strain; receives the damage
+    type(band_state_t), intent(inout) :: new
+    real(wp) :: normal(2), factor
+
+    factor = 1
+    associate (at => self%states%offset(element) + ply, sides => self%sides(:, element))
+      if (allocated(self%rates)) call self%rates%find_factor(at, self%plies(ply), self%bands(ply), moments, factor)
+      ! Mean width of the elements normal to a straight crack.
+      normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
+      call soften_band(self%bands(ply), [dot_product(normal, sides), dot_product(normal, sides([2, 1]))], strains, &
+                       self%states%accepted(at), new, factor)
+      if (allocated(self%volumes)) self%volumes%stress(at) = tensile_stress(self%bands(ply), strains, new)
+    end associate
+  end subroutine soften_ply
 
   !> Accepts the trial state.
   pure subroutine commit(self)
@@ -337,41 +354,10 @@ contains
     integer, intent(in) :: ply, element
     type(elasticity_t) :: elasticity
 
-    elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
+    elasticity = self%bands(ply)%elasticity
+    if (self%touched(element)) &
+      elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
   end function elasticity
-
-  !> Neighbouring plies of an element with the permanent strains of the trial.
-  pure function strained(self, first, last, element) result(plies)
-    class(crack_band_sections_t), intent(in) :: self
-    !> First and last ply, and element of this rank
-    integer, intent(in) :: first, last, element
-    type(ply_t) :: plies(first:last)
-    integer :: ply
-
-    plies = self%plies(first:last)
-    do ply = first, last
-      plies(ply)%free_strain(3) = self%states%trial(self%states%offset(element) + ply)%permanent
-    end do
-  end function strained
-
-  !> Resultants of stress-free strains in the trial.
-  pure function free_resultants_of(self, element) result(resultants)
-    class(crack_band_sections_t), intent(in) :: self
-    !> Element of this rank
-    integer, intent(in) :: element
-    !> Of the section, and their energy per area
-    real(wp) :: resultants(7)
-    integer :: ply
-
-    associate (first => self%states%range(1, element), last => self%states%range(2, element), &
-               offset => self%states%offset(element))
-      resultants = free_resultants(self%strained(first, last, element), &
-                                   [(self%elasticity(ply, element), ply=first, last)])
-      if (self%bands(first)%crack_closure .and. .not. allocated(self%signs)) resultants = resultants &
-        + closing_resultants(self%plies(first:last), reshape([(self%states%trial(offset + ply)%recovered, &
-                                                               ply=first, last)], [3, last - first + 1]))
-    end associate
-  end function free_resultants_of
 
   !> Saves or loads the accepted state.
   subroutine visit(self, archive, model)
@@ -387,6 +373,8 @@ contains
     if (allocated(self%volumes)) self%bands%along(1) = self%volumes%strengths()
     do element = 1, size(self%touched)
       self%touched(element) = self%states%damaged(element)
+      if (self%touched(element) .and. allocated(self%signs)) self%tensile(lane_of(element), :, batch_of(element)) = &
+        resultants_without_strain(self%plies, self%bands, self%states, element, .false.)
     end do
   end subroutine visit
 end module crack_band_sections

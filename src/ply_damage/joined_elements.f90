@@ -284,16 +284,19 @@ contains
     real(wp) :: total
     integer :: i
 
+    allocate (means(size(self%moments, 1) - 1), source=0.0_wp)
+    total = 0
     associate (parts => self%parts(:, self%number(element)))
-      allocate (means(size(self%moments, 1)), source=0.0_wp)
-      total = 0
       do i = 1, most
         if (parts(i) == 0) exit
-        means = means + self%moments(:, parts(i))*self%area(parts(i))
-        total = total + self%area(parts(i))
+        associate (column => self%moments(:, parts(i)), area => self%area(parts(i)), n => moment_values)
+          means(:n) = means(:n) + column(:n)*area
+          means(n + 1:) = means(n + 1:) + column(n + 2:)*area
+          total = total + area
+        end associate
       end do
-      means = [means(:moment_values), means(moment_values + 2:)]/total
     end associate
+    means = means/total
   end function means_of
 
   !> Elastic strains of a ply of an element with those joined with it, and the permanent shear strain of this element.

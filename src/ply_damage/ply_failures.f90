@@ -210,7 +210,8 @@ contains
     logical :: failed(failure_modes)
 
     if (allocated(self%bands)) then
-      failed = self%bands%states%failed_modes(ply, element)
+      failed = self%bands%touched(element)
+      if (failed(1)) failed = self%bands%states%failed_modes(ply, element)
     else
       failed = self%modes%failed(ply, element)
     end if

@@ -3,25 +3,23 @@
 module strain_bounds
   use element_batches, only: lanes
   use kinds, only: wp
-  use plies, only: ply_t
   use ply_strains, only: moment_values
   implicit none
   private
-  public :: largest_strains, strain_moments
+  public :: strain_sizes, strain_moments
 
 contains
 
-  !> Bounds of the strains in the planes of all plies of a batch, root mean squares over each ply's volume.
-  pure function largest_strains(plies, weight, strains) result(bounds)
-    !> Plies of the laminate
-    type(ply_t), intent(in) :: plies(:)
+  !> Root mean squares of the membrane strains and of the curvatures of a batch over each element's area, in the measure
+  !> of `onset_strain`. At a distance z from the middle surface strains are at most the first plus z times the second.
+  pure function strain_sizes(weight, strains) result(sizes)
     !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
-    !> In the measure of onset_strain, (lane)
-    real(wp) :: bounds(lanes)
-    real(wp) :: membrane(lanes), curvature(lanes), area(lanes), height
+    !> (lane, membrane and curvature)
+    real(wp) :: sizes(lanes, 2)
+    real(wp) :: area(lanes), membrane(lanes), curvature(lanes)
     integer :: g
 
     membrane = 0
@@ -32,9 +30,9 @@ contains
       membrane = membrane + weight(:, g)*(strains(:, g, 1)**2 + strains(:, g, 2)**2 + strains(:, g, 3)**2/2)
       curvature = curvature + weight(:, g)*(strains(:, g, 4)**2 + strains(:, g, 5)**2 + strains(:, g, 6)**2/2)
     end do
-    height = max(abs(plies(1)%z_top), abs(plies(size(plies))%z_bottom))
-    bounds = sqrt(membrane/area) + height*sqrt(curvature/area)
-  end function largest_strains
+    sizes(:, 1) = sqrt(membrane/area)
+    sizes(:, 2) = sqrt(curvature/area)
+  end function strain_sizes
 
   !> Means over each element of its strains and of their products.
   pure function strain_moments(weight, strains) result(moments)

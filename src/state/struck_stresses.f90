@@ -19,16 +19,13 @@ contains
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
     type(exact_sum_t) :: sums(3)
+    real(wp), allocatable :: motion(:, :)
     integer :: i, k
 
+    if (size(model%struck_elements) > 0) motion = model%motion_of(displacement)
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
-        if (model%map%layered) then
-          call mean_strains(model%elements, batch_of(element), model%setup%kinematics, model%motion_of(displacement), &
-                            strains)
-        else
-          call mean_strains(model%elements, batch_of(element), model%setup%kinematics, displacement, strains)
-        end if
+        call mean_strains(model%elements, batch_of(element), model%setup%kinematics, motion, strains)
         do k = 1, 3
           call sums(k)%add(strains(lane_of(element), 3 + k))
         end do

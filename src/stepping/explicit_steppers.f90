@@ -208,10 +208,7 @@ contains
   pure real(wp) function longest_step(self)
     class(explicit_stepper_t), intent(in) :: self
 
-    associate (parameters => self%method%parameters)
-      longest_step = parameters%step_factor*(2/self%method%frequency)
-      if (parameters%longest > 0) longest_step = min(longest_step, parameters%longest)
-    end associate
+    longest_step = self%method%parameters%stable_step(self%method%frequency)
   end function longest_step
 
   !> Steps between two checks of a run.

@@ -1,16 +1,13 @@
 !> Steps by central differences: failures of plies, flaws of interfaces, and the ledger when output or a check is due.
 module explicit_steps
-  use central_difference_energies, only: record_energies
+  use central_difference_energies, only: check_stability, damp_motion, record_energies
   use central_differences, only: central_difference_t
   use crack_flaws, only: update_flaws
-  use damped_motions, only: damp_motion
   use errors, only: error_t
   use kinds, only: wp
   use models, only: model_t
-  use rig_reactions, only: reactions_of
   use states, only: state_t
   use struck_stresses, only: struck_stress
-  use unstable_motions, only: check_stability
   implicit none
   private
   public :: advance_explicit, complete_step
@@ -87,7 +84,7 @@ contains
       now%contact%area = method%impact%patch%area
     end if
     call record_energies(method, model, now)
-    now%interfaces%rig%found = reactions_of(method, model, now)
+    now%interfaces%rig%found = method%rigs%reactions_of(model, method%force, now%motion%displacement)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
     now%stress = struck_stress(model, now%motion%displacement)
     now%largest_stress = max(now%largest_stress, now%stress)

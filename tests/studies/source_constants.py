@@ -40,7 +40,7 @@ CONSTANTS = {
     "lengthening_ratio": ("explicit/central_differences", "0.8_wp", ("0.6_wp", "0.9_wp"), "dent"),
     "stiffened_reserve": ("explicit/central_differences", "1.01_wp", ("1.005_wp", "1.02_wp"), "dent"),
     "slope_reserve": ("explicit/impactor_steps", "2", ("1.5_wp", "4"), "dent cai"),
-    "final_ratio": ("explicit/damped_motions", "3.0e-4_wp", ("3.0e-3_wp", "3.0e-5_wp"), "dent"),
+    "final_ratio": ("explicit/central_difference_energies", "3.0e-4_wp", ("3.0e-3_wp", "3.0e-5_wp"), "dent"),
 }
 
 
