@@ -3,7 +3,6 @@
 module strain_bounds
   use element_batches, only: lanes
   use kinds, only: wp
-  use plies, only: ply_t
   use ply_strains, only: moment_values
   implicit none
   private
@@ -12,16 +11,16 @@ module strain_bounds
 contains
 
   !> Bounds of the strains in the planes of all plies of a batch, root mean squares over each ply's volume.
-  pure function largest_strains(plies, weight, strains) result(bounds)
-    !> Plies of the laminate
-    type(ply_t), intent(in) :: plies(:)
+  pure function largest_strains(height, weight, strains) result(bounds)
+    !> Largest distance of a face of a ply from the middle surface
+    real(wp), intent(in) :: height
     !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
     !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
     !> In the measure of onset_strain, (lane)
     real(wp) :: bounds(lanes)
-    real(wp) :: membrane(lanes), curvature(lanes), area(lanes), height
+    real(wp) :: membrane(lanes), curvature(lanes), area(lanes)
     integer :: g
 
     membrane = 0
@@ -32,7 +31,6 @@ contains
       membrane = membrane + weight(:, g)*(strains(:, g, 1)**2 + strains(:, g, 2)**2 + strains(:, g, 3)**2/2)
       curvature = curvature + weight(:, g)*(strains(:, g, 4)**2 + strains(:, g, 5)**2 + strains(:, g, 6)**2/2)
     end do
-    height = max(abs(plies(1)%z_top), abs(plies(size(plies))%z_bottom))
     bounds = sqrt(membrane/area) + height*sqrt(curvature/area)
   end function largest_strains
 
