@@ -50,7 +50,7 @@ contains
     !> Axis of the load
     integer, intent(in) :: along
     type(compressed_damage_t) :: damage
-    type(collected_t) :: interfaces(size(model%mesh%zones)), plies(model%mesh%plies)
+    type(collected_t) :: interfaces(size(model%mesh%zones)), plies(model%plies)
     integer :: i
 
     do i = 1, size(interfaces)

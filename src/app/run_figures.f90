@@ -68,7 +68,7 @@ contains
     figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
     figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)
-    figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%mesh%plies)]
+    figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plies)]
     along = pressed_axis(model)
     if (along > 0) then
       figures%compressed = damage_of(model, now, along)

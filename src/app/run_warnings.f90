@@ -240,7 +240,7 @@ contains
 
     is_perforated = .false.
     counts = failed_counts(model, now%plies)
-    if (counts(fibre_failure) < size(model%setup%laminate%angle)) return
+    if (counts(fibre_failure) < model%plies) return
     areas = failed_areas(model, now%plies)
     is_perforated = all(areas(fibre_failure, :) >= &
       max(model%setup%mesh%patch**2, now%pressed_area(model))*(1 - rounding))

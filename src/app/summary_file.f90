@@ -8,6 +8,7 @@ module summary_file
   use json_text, only: json_t
   use interface_summary, only: put_interfaces
   use kinds, only: wp
+  use laminate_parameters, only: laminate_t
   use output_clocks, only: shown_time
   use output_deck, only: key_force_filter
   use profiles, only: profile_row_t
@@ -124,21 +125,24 @@ contains
     type(deck_t), intent(in) :: deck
     !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
+    type(laminate_t) :: list
     integer :: ply
 
+    list = deck%all_plies()
     call json%put('plate_size', deck%plate%length)
     call json%open_list('plies')
-    do ply = 1, size(deck%laminate%angle)
+    do ply = 1, size(list%angle)
       call json%open_object('')
       call json%put('ply', ply)
-      call json%put('made_of', deck%materials(deck%laminate%material(ply))%name)
-      call json%put('angle', deck%laminate%angle(ply))
-      call json%put('thickness', deck%laminate%thickness(ply))
+      call json%put('made_of', deck%materials(list%material(ply))%name)
+      call json%put('angle', list%angle(ply))
+      call json%put('thickness', list%thickness(ply))
       if (deck%has_ply_damage) then
         call json%put('fibre_failure_area', figures%failed_area(1, ply))
         call json%put('matrix_crack_area', figures%failed_area(2, ply))
         call json%put('matrix_crushing_area', figures%failed_area(3, ply))
-        if (deck%ply_damage%weibull_modulus > 0) call put_strength(json, deck, figures%stressed_volume(ply), ply)
+        if (deck%ply_damage%weibull_modulus > 0) call put_strength(json, deck, figures%stressed_volume(ply), &
+                                                                   deck%materials(list%material(ply))%xt)
       end if
       call json%close()
     end do
@@ -147,19 +151,18 @@ contains
 
   !> Tensile strength of the fibres of a ply, and the stressed volume it belongs to, at their first failure; null
   !> without.
-  subroutine put_strength(json, deck, volume, ply)
+  subroutine put_strength(json, deck, volume, strength)
     !> The summary
     type(json_t), intent(inout) :: json
     type(deck_t), intent(in) :: deck
     !> The volume; 0: the fibres have not failed
     real(wp), intent(in) :: volume
-    !> The ply
-    integer, intent(in) :: ply
+    !> Tensile strength of the reference volume
+    real(wp), intent(in) :: strength
 
     if (volume > 0) then
       call json%put('stressed_volume', volume)
-      call json%put('fibre_strength', factor_of(deck%ply_damage, volume)* &
-                                      deck%materials(deck%laminate%material(ply))%xt)
+      call json%put('fibre_strength', factor_of(deck%ply_damage, volume)*strength)
     else
       call json%put_null('stressed_volume')
       call json%put_null('fibre_strength')

@@ -167,7 +167,7 @@ contains
     real(wp) :: longest(size(toughness_keys)), present(2), usual
     integer :: mode
 
-    if (.not. any(deck%laminate%material == place)) return
+    if (.not. any(deck%used_materials() == place)) return
     present = element_lengths(deck)
     longest = longest_elements(deck, place)
     usual = present(2)

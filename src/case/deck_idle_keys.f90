@@ -45,7 +45,7 @@ contains
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
     if (allocated(deck%laminate%material)) then
-      if (.not. any(deck%laminate%material == place) .and. problems%errors() == 0) then
+      if (.not. any(deck%used_materials() == place) .and. problems%errors() == 0) then
         call remark(deck%settings, problems, material_group, '', ''''//deck%materials(place)%name// &
                     ''' has no effect: no ply of the laminate has it.', place)
         return

@@ -7,6 +7,7 @@ module deck_initial_states
   use deck_plate_cuts, only: cut_objection, has_same_length, moved_centre
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, remark_idle, report
+  use deck_zones, only: zones_objection => zone_objection
   use delamination_deck, only: key_starter, key_zone
   use delamination_parameters, only: delamination_t, law_names, law_of
   use initial_state_deck, only: initial_state_group
@@ -93,6 +94,7 @@ contains
       objection = both('&thermal delta_T', to_text(deck%temperature_change), to_text(old%temperature_change))
     end if
     if (objection == '') objection = laminate_objection(deck, old)
+    if (objection == '') objection = zones_objection(deck, old)
     if (objection == '') objection = damage_objection(deck, old)
     if (objection == '') objection = interface_objection(deck, old)
     if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck, old)

@@ -71,8 +71,9 @@ contains
     if (deck%settings%is_given(mesh_group, key_mass) .and. &
         deck%settings%text_of(mesh_group, key_mass) == 'consistent') return
     if (deck%has_ply_damage .and. allocated(deck%laminate%material)) then
-      if (any([(any(deck%materials(deck%laminate%material(ply))%toughness > 0), &
-                ply=1, size(deck%laminate%material))])) softening = 'plies'
+      associate (used => deck%used_materials())
+        if (any([(any(deck%materials(used(ply))%toughness > 0), ply=1, size(used))])) softening = 'plies'
+      end associate
     end if
     if (any(deck%delaminations%law == law_cohesive)) softening = 'interfaces'
   end function softening_part

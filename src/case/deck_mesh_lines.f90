@@ -10,12 +10,14 @@ module deck_mesh_lines
   use kinds, only: wp
   use mesh_deck, only: key_core, key_lines, mesh_group
   use mesh_parameters, only: add_lines
+  use ply_zone_parameters, only: ply_zone_t
   use rigs, only: window_lines
   use roundings, only: rounding
   use short_numbers, only: short_text
   use support_deck, only: key_window, support_group
   use support_parameters, only: window_rectangle
   use text, only: to_text
+  use zone_deck, only: doubler_group, key_zone_at, key_zone_size, ply_drop_group
   implicit none
   private
   public :: place_mesh_lines, check_window_lines, lacks_window_lines
@@ -118,6 +120,7 @@ contains
     given = places(windows + 1:)
     call add_lines(lines, [-given, given])
     call add_lines(lines, window_lines(deck%supports, direction))
+    call take_zone_lines(deck, direction, lines, problems)
 
   contains
 
@@ -137,6 +140,68 @@ contains
     end subroutine remark_moved
   end subroutine merge_along
 
+  !> Adds the edges of doublers and ply drops to the lines required along one direction. An edge that nearly coincides
+  !> with another line, the patch or the border is moved there.
+  subroutine take_zone_lines(deck, direction, lines, problems)
+    !> The deck; its zones are moved
+    type(deck_t), intent(inout) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    !> The lines
+    real(wp), allocatable, intent(inout) :: lines(:)
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    if (allocated(deck%zones%doublers)) then
+      do i = 1, size(deck%zones%doublers)
+        call take(deck%zones%doublers(i), doubler_group)
+      end do
+    end if
+    if (allocated(deck%zones%drops)) then
+      do i = 1, size(deck%zones%drops)
+        call take(deck%zones%drops(i), ply_drop_group)
+      end do
+    end if
+
+  contains
+
+    !> Adds the edges of one zone.
+    subroutine take(zone, group)
+      class(ply_zone_t), intent(inout) :: zone
+      !> Its group
+      character(len=*), intent(in) :: group
+      real(wp) :: edges(2), moved(2)
+      integer :: k
+
+      associate (mesh => deck%mesh, half => deck%plate%length(direction)/2)
+        edges = zone%edges(direction)
+        do k = 1, 2
+          moved(k) = nearest_line([mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2, -half, half, lines], &
+                                  edges(k), merging_distance*2*half)
+          if (abs(moved(k) - edges(k)) > rounding*half) &
+            call remark(deck%settings, problems, group, key_zone_size, 'the edge at '// &
+                        merge('x', 'y', direction == 1)//' = '//to_text(edges(k))//' nearly coincides with another '// &
+                        'line of the mesh at '//to_text(moved(k))//' and is moved there, to avoid cells of '// &
+                        short_text(abs(moved(k) - edges(k)))//' between them.', i)
+        end do
+      end associate
+      zone%at(direction) = sum(moved)/2
+      zone%size(direction) = moved(2) - moved(1)
+      call add_lines(lines, moved)
+    end subroutine take
+  end subroutine take_zone_lines
+
+  !> The line nearest to a coordinate; the coordinate itself if there is none within a distance.
+  pure real(wp) function nearest_line(lines, at, distance) result(line)
+    !> Their coordinates
+    real(wp), intent(in) :: lines(:)
+    !> The coordinate, and the distance
+    real(wp), intent(in) :: at, distance
+
+    line = lines(minloc(abs(lines - at), dim=1))
+    if (abs(line - at) > distance) line = at
+  end function nearest_line
+
   !> Reports windows and requested lines without a line in the mesh, because all are used by the patch or by other
   !> windows.
   subroutine check_window_lines(deck, problems)
@@ -151,12 +216,48 @@ contains
       return
     end if
     do direction = 1, 2
+      call check_zone_lines(deck, direction, problems)
       if (.not. deck%settings%is_given(mesh_group, key_lines(direction))) cycle
       if (misses(deck, lines_along(deck, direction), direction)) &
         call report(deck%settings, problems, mesh_group, key_lines(direction), 'no line of the mesh can be moved '// &
                   'there; allowed: on the plate, off the patch, with more elements between lines.')
     end do
   end subroutine check_window_lines
+
+  !> Reports doublers and ply drops without a line of the mesh on an edge.
+  subroutine check_zone_lines(deck, direction, problems)
+    type(deck_t), intent(in) :: deck
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    if (allocated(deck%zones%doublers)) then
+      do i = 1, size(deck%zones%doublers)
+        call check(deck%zones%doublers(i), doubler_group)
+      end do
+    end if
+    if (allocated(deck%zones%drops)) then
+      do i = 1, size(deck%zones%drops)
+        call check(deck%zones%drops(i), ply_drop_group)
+      end do
+    end if
+
+  contains
+
+    !> Reports one of them.
+    subroutine check(zone, group)
+      class(ply_zone_t), intent(in) :: zone
+      !> Its group
+      character(len=*), intent(in) :: group
+
+      if (misses(deck, zone%edges(direction), direction)) &
+        call report(deck%settings, problems, group, key_zone_at, 'no line of the mesh can be moved to its edges at '// &
+                    merge('x', 'y', direction == 1)//' = '//to_text(zone%at(direction) - zone%size(direction)/2)// &
+                    ' and '//to_text(zone%at(direction) + zone%size(direction)/2)//'; give more elements, or keep '// &
+                    'the patch off the edge.', i)
+    end subroutine check
+  end subroutine check_zone_lines
 
   !> Lines required along a direction.
   pure function lines_along(deck, direction) result(lines)

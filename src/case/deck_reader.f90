@@ -51,6 +51,7 @@ module deck_reader
   use mesh_deck, only: fill_mesh, check_mesh
   use output_deck, only: fill_output
   use plate_deck, only: fill_plate, check_plate
+  use ply_zones, only: ply_zones_t
   use ply_damage_deck, only: fill_ply_damage, ply_damage_group
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
@@ -60,6 +61,7 @@ module deck_reader
   use thermal_deck, only: fill_thermal, check_thermal, thermal_group
   use time_deck, only: fill_time, check_time, time_group
   use unit_systems, only: units_in_metre
+  use zone_deck, only: check_zones, doubler_group, fill_zones, ply_drop_group
   implicit none
   private
   public :: deck_t, problems_t, read_deck, read_deck_text
@@ -174,6 +176,10 @@ contains
     call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
     call fill_materials(deck%settings, deck%materials, problems)
     call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
+    call fill_zones(deck%settings, deck%materials, deck%zones, problems)
+    call check_zones(deck%settings, deck%zones, plies_of_laminate(deck), deck%plate%length, problems)
+    ! Checks that follow are those of the plate without invalid zones.
+    if (problems%concern(doubler_group) .or. problems%concern(ply_drop_group)) deck%zones = ply_zones_t()
     call fill_ply_damage(deck%settings, units_in_metre(deck%units), deck%ply_damage)
     call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck), changes_of_angle(deck), &
                             deck%delaminations)
@@ -192,6 +198,14 @@ contains
       between = interfaces_between(deck%laminate%angle, [(first_alike(deck%materials, deck%laminate%material(ply)), &
                                                           ply=1, size(deck%laminate%material))])
   end function changes_of_angle
+
+  !> Number of plies of the laminate; 0: it is not valid.
+  pure integer function plies_of_laminate(deck) result(plies)
+    type(deck_t), intent(in) :: deck
+
+    plies = 0
+    if (allocated(deck%laminate%material)) plies = size(deck%laminate%material)
+  end function plies_of_laminate
 
   !> Strengths of the plies that are defaults of their interfaces.
   pure function ply_strengths(deck) result(strengths)

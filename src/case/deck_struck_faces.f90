@@ -4,6 +4,7 @@ module deck_struck_faces
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, report
   use held_plies, only: held_modulus, held_strength
+  use laminate_parameters, only: laminate_t
   use impact_parameters, only: law_thornton
   use indentation_deck, only: indentation_group, key_face, key_k, key_yield, key_alpha_critical, struck_face_t, &
                               takes_laminate
@@ -20,14 +21,16 @@ contains
     !> The deck, with its laminate
     type(deck_t), intent(in) :: deck
     type(struck_face_t) :: face
+    type(laminate_t) :: local
     integer :: ply
 
     if (.not. allocated(deck%laminate%material)) return
     if (size(deck%laminate%material) == 0) return
-    associate (materials => deck%materials, used => deck%laminate%material)
+    local = deck%struck_laminate()
+    associate (materials => deck%materials, used => local%material)
       face%compliance = normal_compliance(deck%settings, used(1), materials(used(1)))
       if (.not. takes_laminate(deck%settings)) return
-      if (is_complete(deck)) face%modulus = held_modulus(deck%laminate, materials)
+      if (is_complete(deck)) face%modulus = held_modulus(local, materials)
       if (is_complete(deck) .and. all(materials(used)%yc > 0)) &
         face%strength = minval([(held_strength(materials(used(ply))), ply=1, size(used))])
     end associate
@@ -38,9 +41,11 @@ contains
   logical function is_complete(deck)
     !> The deck, with its laminate
     type(deck_t), intent(in) :: deck
+    type(laminate_t) :: local
     integer :: ply
 
-    associate (materials => deck%materials, used => deck%laminate%material)
+    local = deck%struck_laminate()
+    associate (materials => deck%materials, used => local%material)
       is_complete = all(materials(used)%e1 > 0 .and. materials(used)%e2 > 0 .and. materials(used)%nu23 > 0)
       do ply = 1, size(used)
         is_complete = is_complete .and. &

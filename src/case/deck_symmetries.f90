@@ -2,6 +2,7 @@
 module deck_symmetries
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
+  use deck_zones, only: zones_are_symmetric
   use deck_remarks, only: report, are_clear
   use delamination_deck, only: key_starter_at, key_strip
   use delamination_parameters, only: delamination_t, law_front
@@ -16,9 +17,11 @@ module deck_symmetries
                              symmetry_quarter
   use plate_deck, only: plate_group, key_symmetry
   use plies, only: ply_t, material_objection
+  use ply_stacks, only: ply_stack_t
   use stacking, only: stacked_plies, section_stiffness
   use support_deck, only: support_group, key_clamps
   use text, only: lower_case
+  use zone_deck, only: doubler_group, key_zone_at, ply_drop_group
   implicit none
   private
   public :: check_symmetry, note_symmetry, symmetry_sentence
@@ -53,6 +56,10 @@ contains
       if (.not. supports_are_symmetric(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
                   '; list all clamps of the full plate, or use ''none''.')
+      if (.not. has_zone_images(deck, symmetry)) &
+        call report(s, problems, trim(merge(doubler_group//' ', ply_drop_group, allocated(deck%zones%doublers))), &
+                    key_zone_at, 'a doubler or ply drop has no image with the same plies under symmetry = '//name// &
+                    '; list all of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
         'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
@@ -162,7 +169,7 @@ contains
                         i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
             .not. is_eccentric(deck%mesh%struck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
-            has_symmetric_imperfection(deck%plate, symmetry)
+            has_symmetric_imperfection(deck%plate, symmetry) .and. has_zone_images(deck, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
       suits = .not. any_front(deck)
@@ -170,6 +177,20 @@ contains
       suits = .not. is_coupled(deck)
     end if
   end function suits
+
+  !> True if the image of each doubler and ply drop is one with the same plies.
+  pure logical function has_zone_images(deck, symmetry) result(alike)
+    type(deck_t), intent(in) :: deck
+    !> The symmetry
+    integer, intent(in) :: symmetry
+    logical :: mirrored(2)
+
+    mirrored = is_mirrored(symmetry)
+    alike = .true.
+    if (mirrored(1)) alike = alike .and. zones_are_symmetric(deck, [-1, 1])
+    if (mirrored(2)) alike = alike .and. zones_are_symmetric(deck, [1, -1])
+    if (symmetry == symmetry_point) alike = alike .and. zones_are_symmetric(deck, [-1, -1])
+  end function has_zone_images
 
   !> True if a front releases ties of some interface.
   pure logical function any_front(deck)
@@ -249,7 +270,7 @@ contains
       if (any([(material_objection(deck%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) return
       plies = stacked_plies(laminate, deck%materials)
     end associate
-    is_coupled = couples(plies)
+    is_coupled = couples(plies) .or. zones_are_coupled(deck)
     last = [pack(deck%delaminations%below_ply, deck%delaminations%below_ply > 0 .and. &
                  deck%delaminations%below_ply < size(plies)), size(plies)]
     if (deck%has_ply_damage) last = [(i, i=1, size(plies))]
@@ -261,6 +282,27 @@ contains
       end if
     end do
   end function is_coupled
+
+  !> True if the plies somewhere on the plate couple bending or extension with shear or twist: all, or with damage or
+  !> interfaces a ply of a doubler.
+  pure logical function zones_are_coupled(deck) result(coupled)
+    type(deck_t), intent(in) :: deck
+    logical, allocatable :: known(:, :)
+    real(wp), allocatable :: shares(:)
+    type(ply_stack_t) :: stack
+    integer :: i, k
+
+    coupled = .false.
+    if (deck%zones%is_empty()) return
+    call deck%zones%find_shares(deck%plate%length, known, shares)
+    do i = 1, size(shares)
+      if (.not. shares(i) > 0) cycle
+      stack = deck%zones%stack(deck%laminate, deck%materials, known(:, i))
+      coupled = coupled .or. couples(stack%plies)
+      if (deck%has_ply_damage .or. size(deck%delaminations) > 0) &
+        coupled = coupled .or. any([(couples(stack%plies(k:k)), k=1, size(stack%plies))])
+    end do
+  end function zones_are_coupled
 
   !> True if some plies couple bending or extension with shear or twist.
   pure logical function couples(plies)

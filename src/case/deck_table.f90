@@ -24,6 +24,7 @@ module deck_table
   use support_deck, only: support_group_row, support_rows
   use thermal_deck, only: thermal_group_row, thermal_rows
   use time_deck, only: time_group_row, time_rows
+  use zone_deck, only: zone_group_rows, zone_rows
   implicit none
   private
   public :: load_deck_table
@@ -31,6 +32,7 @@ module deck_table
   !> Groups.
   character(len=*), parameter :: group_rows(*) = [character(len=group_row_length) :: &
     case_group_row, plate_group_row, support_group_row, mesh_group_row, material_group_row, laminate_group_row, &
+    zone_group_rows, &
     impactor_group_row, indentation_group_row, pressure_group_row, line_group_row, thermal_group_row, &
     initial_state_group_row, static_group_row, ply_damage_group_row, &
     delamination_group_row, time_group_row, adapt_group_row, solver_group_row, gauge_group_row, output_group_row, &
@@ -39,6 +41,7 @@ module deck_table
   !> Keys, those of a group together.
   character(len=*), parameter :: key_rows(*) = [character(len=key_row_length) :: &
     case_rows, kinematics_rows, plate_rows, support_rows, mesh_rows, element_rows, material_rows, laminate_rows, &
+    zone_rows, &
     impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, initial_state_rows, static_rows, &
     ply_damage_rows, &
     delamination_rows, time_rows, &

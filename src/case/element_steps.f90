@@ -24,12 +24,32 @@ module element_steps
 
 contains
 
-  !> Longest stable step; 0: not found.
+  !> Longest stable step, of all plies that the plate has somewhere; 0: not found.
   real(wp) function smallest_element_step(deck, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
     !> Slope of the plate, the largest of a half sine, whose membrane strain is the mean of half the squared slope; 0 if
     !> absent
+    real(wp), intent(in), optional :: slope
+    logical, allocatable :: known(:, :)
+    real(wp), allocatable :: shares(:)
+    integer :: i
+
+    call deck%zones%find_shares(deck%plate%length, known, shares)
+    step = huge(step)
+    do i = 1, size(shares)
+      if (shares(i) > 0) step = min(step, step_of_plies(deck, known(:, i), slope))
+    end do
+    if (step >= huge(step)) step = 0
+  end function smallest_element_step
+
+  !> Longest stable step of the smallest element with the plies that the plate has where some zones are; 0: not found.
+  real(wp) function step_of_plies(deck, here, slope) result(step)
+    !> The deck, its mesh checked
+    type(deck_t), intent(in) :: deck
+    !> True for these zones
+    logical, intent(in) :: here(:)
+    !> Slope of the plate; 0 if absent
     real(wp), intent(in), optional :: slope
     type(model_t) :: model
     type(ply_failure_t) :: plies
@@ -41,7 +61,7 @@ contains
     integer :: element, direction
 
     step = 0
-    call create_model(small_setup(deck, 2), alone, model, error)
+    call create_model(small_setup(deck, 2, here), alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
     scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
@@ -53,7 +73,7 @@ contains
       end do
     end if
     if (frequency > 0) step = 2/frequency
-  end function smallest_element_step
+  end function step_of_plies
 
   !> Motion of a plate with a uniform slope along one direction and the membrane strain of a half sine with this largest
   !> slope, a quarter of its square. The uniform slope causes a strain of half the square, the in-plane displacement one
@@ -78,10 +98,12 @@ contains
   end function sloped_motion
 
   !> A free plate of the smallest elements, layered wherever an interface may delaminate.
-  pure function small_setup(deck, cells) result(setup)
+  pure function small_setup(deck, cells, here) result(setup)
     type(deck_t), intent(in) :: deck
     !> Elements along each side
     integer, intent(in) :: cells
+    !> True for the doublers and ply drops that it has
+    logical, intent(in) :: here(:)
     !> The plate
     type(setup_t) :: setup
     integer :: i
@@ -89,6 +111,7 @@ contains
     setup%kinematics = deck%kinematics
     setup%materials = deck%materials
     setup%laminate = deck%laminate
+    setup%zones = deck%zones%everywhere(here)
     setup%delaminations = deck%delaminations
     setup%plate%length = cells*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
     setup%plate%edges = edge_free

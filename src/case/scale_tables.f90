@@ -62,7 +62,8 @@ contains
       call append(lines, 'Scales of the case:')
     end if
     associate (o => deck%expected, scales => deck%expected%scales)
-      call put('thickness of the laminate', scales%thickness, length)
+      call put(trim(merge('thickness of the laminate    ', 'thickness at the struck point', deck%zones%is_empty())), &
+               scales%thickness, length)
       call put_sub_plies(stacked_plies(deck%laminate, deck%materials))
       call put('mass of the plate', scales%plate_mass, mass)
       call put('period of the first bending mode', scales%first_period, time)

@@ -13,6 +13,7 @@ module shortest_cells
   use support_deck, only: key_window, support_group
   use support_parameters, only: window_rectangle
   use text, only: counted, rounded_text
+  use zone_deck, only: doubler_group, key_zone_size, ply_drop_group
   implicit none
   private
   public :: check_narrow_cells, shortest_cell_text
@@ -143,6 +144,24 @@ contains
       place = i
       return
     end do
+    if (allocated(deck%zones%doublers)) then
+      do i = 1, size(deck%zones%doublers)
+        if (.not. any(is_side(deck%zones%doublers(i)%edges(row%direction)))) cycle
+        group = doubler_group
+        key = key_zone_size
+        place = i
+        return
+      end do
+    end if
+    if (allocated(deck%zones%drops)) then
+      do i = 1, size(deck%zones%drops)
+        if (.not. any(is_side(deck%zones%drops(i)%edges(row%direction)))) cycle
+        group = ply_drop_group
+        key = key_zone_size
+        place = i
+        return
+      end do
+    end if
     if (row%direction == 1) then
       if (.not. any([(has_side(deck%mesh%x_lines(i)), i=1, size(deck%mesh%x_lines))])) return
     else
@@ -160,5 +179,15 @@ contains
 
       has_side = any(abs(abs(row%sides) - abs(distance)) <= rounding*deck%plate%length(row%direction))
     end function has_side
+
+    !> True if the row has a side at this coordinate within the plate.
+    elemental logical function is_side(at)
+      !> The coordinate
+      real(wp), intent(in) :: at
+
+      associate (length => deck%plate%length(row%direction))
+        is_side = any(abs(row%sides - at) <= rounding*length) .and. abs(at) < length/2*(1 - rounding)
+      end associate
+    end function is_side
   end subroutine find_line
 end module shortest_cells

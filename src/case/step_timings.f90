@@ -36,7 +36,8 @@ contains
     integer :: steps
 
     seconds = 0
-    setup = small_setup(deck, ceiling(sqrt(real(elements, wp)/(1 + size(deck%delaminations)))))
+    setup = small_setup(deck, ceiling(sqrt(real(elements, wp)/(1 + size(deck%delaminations)))), &
+                        deck%zones%at(deck%mesh%struck))
     setup%has_ply_damage = deck%has_ply_damage
     setup%ply_damage = deck%ply_damage
     call create_model(setup, alone, model, error)

@@ -202,16 +202,18 @@ contains
   end function text_of
 
   !> Texts of a key.
-  pure function texts_of(self, group, key) result(words)
+  pure function texts_of(self, group, key, place) result(words)
     class(settings_t), intent(in) :: self
     !> Names of group and key
     character(len=*), intent(in) :: group, key
+    !> Index among the groups of this name
+    integer, intent(in), optional :: place
     !> The texts
     type(line_t), allocatable :: words(:)
     type(value_t), allocatable :: values(:)
     integer :: i
 
-    call self%take_values(group, key, values)
+    call self%take_values(group, key, values, place)
     allocate (words(0))
     do i = 1, size(values)
       call append(words, values(i)%text)

@@ -13,16 +13,18 @@ contains
 
   !> Strengths of the interface below each ply: those of its cohesive law, otherwise S12 and YT of the weaker adjacent
   !> ply; none between plies of equal material and angle.
-  pure function interlaminar_strengths(plies, materials, delaminations) result(strengths)
+  pure function interlaminar_strengths(plies, number, materials, delaminations) result(strengths)
     !> All plies, from the struck face
     type(ply_t), intent(in) :: plies(:)
+    !> Their numbers among those of the plate
+    integer, intent(in) :: number(:)
     !> Materials that they refer to
     type(material_t), intent(in) :: materials(:)
     !> Interfaces that may delaminate; not allocated: none
     type(delamination_t), allocatable, intent(in) :: delaminations(:)
     !> In shear and opening; 0: not known, or equal plies, (2, plies - 1)
     real(wp) :: strengths(2, size(plies) - 1)
-    integer :: i
+    integer :: i, place
 
     strengths = 0
     do i = 1, size(strengths, 2)
@@ -36,9 +38,10 @@ contains
     do i = 1, size(delaminations)
       associate (interface => delaminations(i))
         ! A deck that is not yet checked may name a ply that does not exist.
-        if (interface%below_ply < 1 .or. interface%below_ply > size(strengths, 2)) cycle
-        if (interface%strength_shear > 0) strengths(1, interface%below_ply) = interface%strength_shear
-        if (interface%strength_opening > 0) strengths(2, interface%below_ply) = interface%strength_opening
+        place = findloc(number, interface%below_ply, dim=1)
+        if (place < 1 .or. place > size(strengths, 2)) cycle
+        if (interface%strength_shear > 0) strengths(1, place) = interface%strength_shear
+        if (interface%strength_opening > 0) strengths(2, place) = interface%strength_opening
       end associate
     end do
   end function interlaminar_strengths

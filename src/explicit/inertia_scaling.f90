@@ -105,18 +105,18 @@ contains
     !> Laminate and materials
     class(setup_t), intent(in) :: setup
 
-    associate (used => setup%materials(setup%laminate%material))
+    associate (used => setup%materials(setup%used_materials()))
       ratio = maxval([used%g13, used%g23])/maxval([used%e1, used%e2])
     end associate
   end function ratio_of_moduli
 
-  !> Square of the laminate's radius of gyration about its centre of mass.
+  !> Square of the radius of gyration of the laminate at the struck point about its centre of mass.
   pure real(wp) function laminate_radius_square(setup) result(square)
     !> Laminate and materials
     class(setup_t), intent(in) :: setup
     real(wp) :: mass(3)
 
-    mass = section_mass(stacked_plies(setup%laminate, setup%materials))
+    mass = section_mass(stacked_plies(setup%struck_laminate(), setup%materials))
     square = mass(3)/mass(1) - (mass(2)/mass(1))**2
   end function laminate_radius_square
 

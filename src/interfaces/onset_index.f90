@@ -6,18 +6,27 @@ module onset_index
   use joined_stacks, only: joined_stacks_t
   use kinds, only: wp
   use models, only: model_t
+  use ply_stacks, only: ply_stack_t
   implicit none
   private
   public :: onset_of_elements, onset_of_joined_cells
+
+  !> A laminate with strengths of its interfaces and stresses under unit shear forces.
+  type :: strengths_t
+    !> Its plies
+    type(ply_stack_t) :: stack
+    !> In shear and opening, of the interface below each ply, (2, plies - 1)
+    real(wp), allocatable :: values(:, :)
+    !> The stresses
+    type(unit_stresses_t) :: unit
+  end type strengths_t
 
   !> Data for the index of a stack.
   type :: onset_t
     !> The stacks
     type(joined_stacks_t) :: stacks
-    !> Strengths in shear and opening of the interface below each ply, (2, plies - 1)
-    real(wp), allocatable :: strengths(:, :)
-    !> Stresses of the different laminates
-    type(unit_stresses_t), allocatable :: whole(:)
+    !> The different laminates, their strengths and stresses
+    type(strengths_t), allocatable :: laminates(:)
   contains
     procedure :: indices
   end type onset_t
@@ -86,10 +95,14 @@ contains
     integer :: i
 
     self%stacks = stacks
-    self%strengths = interlaminar_strengths(model%laminates(1)%plies, model%setup%materials, model%setup%delaminations)
-    allocate (self%whole(size(model%laminates)))
-    do i = 1, size(self%whole)
-      self%whole(i) = unit_stresses_of(model%laminates(i)%plies)
+    allocate (self%laminates(size(model%laminates)))
+    do i = 1, size(self%laminates)
+      associate (own => self%laminates(i))
+        own%stack = model%laminates(i)
+        own%values = interlaminar_strengths(own%stack%plies, own%stack%number, model%setup%materials, &
+                                            model%setup%delaminations)
+        own%unit = unit_stresses_of(own%stack%plies)
+      end associate
     end do
   end function new_onset
 
@@ -104,18 +117,28 @@ contains
     !> Index below each
     real(wp) :: indices(range(2) - range(1) + 1)
     real(wp), allocatable :: all(:)
+    type(ply_stack_t) :: joined
     type(unit_stresses_t) :: unit
+    integer :: places(2), i
 
     associate (first => self%stacks%plies(1, element), last => self%stacks%plies(2, element), &
                force => self%stacks%force(:, element), gradient => self%stacks%gradient(:, :, element), &
-               laminate => model%mesh%layers(model%mesh%element_layer(element))%laminate)
+               own => self%laminates(model%mesh%layers(model%mesh%element_layer(element))%laminate))
       if (last - first + 1 == model%mesh%plies) then
-        all = self%whole(laminate)%onset_indices(self%strengths, force, gradient)
+        all = own%unit%onset_indices(own%values, force, gradient)
+        places = [1, size(own%stack%plies)]
       else
-        unit = unit_stresses_of(model%laminates(laminate)%plies(first:last))
-        all = unit%onset_indices(self%strengths(:, first:last - 1), force, gradient)
+        joined = own%stack%layer(first, last)
+        unit = unit_stresses_of(joined%plies)
+        places = joined%places()
+        all = unit%onset_indices(own%values(:, places(1):places(2) - 1), force, gradient)
       end if
-      indices = all(range(1) - first + 1:range(2) - first + 1)
+      indices = 0
+      do i = 1, size(indices)
+        associate (place => own%stack%place(range(1) + i - 1) - places(1) + 1)
+          if (place >= 1 .and. place <= size(all)) indices(i) = all(place)
+        end associate
+      end do
     end associate
   end function indices
 end module onset_index

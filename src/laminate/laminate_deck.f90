@@ -16,7 +16,7 @@ module laminate_deck
   use text, only: line_t, append, counted, joined, nearest_name, to_text, words_of
   implicit none
   private
-  public :: fill_laminate
+  public :: fill_laminate, find_material
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: laminate_group = 'laminate', key_thicknesses = 'thicknesses', &
@@ -66,7 +66,7 @@ contains
     plies = size(angles)
     allocate (indices(size(names)))
     do i = 1, size(names)
-      call find_material(settings, materials, trim(names(i)%text), problems, indices(i))
+      call find_material(settings, materials, trim(names(i)%text), problems, indices(i), laminate_group)
     end do
     if (plies > max_plies) call report(settings, problems, laminate_group, key_angles, &
                                       'more than '//to_text(max_plies)//' plies.')
@@ -201,7 +201,7 @@ contains
   end subroutine check_number
 
   !> Index of a material by its name, 0 if there is none.
-  subroutine find_material(settings, materials, name, problems, index)
+  subroutine find_material(settings, materials, name, problems, index, group, place)
     type(settings_t), intent(in) :: settings
     type(material_t), intent(in) :: materials(:)
     !> Name of the material
@@ -209,6 +209,10 @@ contains
     type(problems_t), intent(inout) :: problems
     !> The index
     integer, intent(out) :: index
+    !> Group of the plies that name it
+    character(len=*), intent(in) :: group
+    !> Index among the groups of this name
+    integer, intent(in), optional :: place
     type(line_t), allocatable :: names(:)
 
     allocate (names(0))
@@ -218,15 +222,15 @@ contains
     end do
     index = 0
     ! Only with valid names of materials, and once for the same list.
-    if (problems%concern(material_group, 'name') .or. problems%concern(laminate_group, 'materials')) return
+    if (problems%concern(material_group, 'name') .or. problems%concern(group, 'materials', place)) return
     if (problems%concern(material_group) .and. size(names) == 0) return
     if (nearest_name(name, names) /= '') then
-      call report(settings, problems, laminate_group, 'materials', 'no &material is named '''//name// &
-                '''; did you mean '''//nearest_name(name, names)//'''?')
+      call report(settings, problems, group, 'materials', 'no &material is named '''//name// &
+                '''; did you mean '''//nearest_name(name, names)//'''?', place)
     else
-      call report(settings, problems, laminate_group, 'materials', 'no &material is named '''//name// &
+      call report(settings, problems, group, 'materials', 'no &material is named '''//name// &
                   '''; allowed: '''// &
-                joined(names, ''', ''')//'''.')
+                joined(names, ''', ''')//'''.', place)
     end if
   end subroutine find_material
 end module laminate_deck

@@ -2,6 +2,7 @@
 !> same plies at the same heights refer to one stack.
 module ply_stacks
   use kinds, only: wp
+  use material_parameters, only: material_t
   use mean_stiffnesses, only: in_bending
   use ply_shear, only: shear_of_plies, shear_shares_of
   use plies, only: elasticity_t, ply_t
@@ -12,8 +13,11 @@ module ply_stacks
 
   !> Plies from the struck face down.
   type :: ply_stack_t
-    !> Number of each ply among those of the plate, ascending
+    !> Number of each ply among those of the plate
     integer, allocatable :: number(:)
+    !> Ply of the plate's laminate whose layer each ply belongs to, ascending: itself, or for a ply added on a face the
+    !> outermost one on that side
+    integer, allocatable, private :: station(:)
     !> The plies, with their heights here
     type(ply_t), allocatable :: plies(:)
     !> All plies through the thickness here
@@ -26,6 +30,8 @@ module ply_stacks
     integer, private :: shear_correction = 0
   contains
     procedure :: layer
+    procedure :: set_thermal_strains
+    procedure :: places
     procedure :: place
     procedure :: has
     procedure :: section
@@ -36,23 +42,28 @@ module ply_stacks
 contains
 
   !> The plies through the thickness of the plate.
-  pure function whole_stack(number, plies, shear_correction) result(self)
-    !> Number of each ply among those of the plate, ascending
+  pure function whole_stack(number, plies, shear_correction, station) result(self)
+    !> Number of each ply among those of the plate
     integer, intent(in) :: number(:)
     !> The plies, with their heights
     type(ply_t), intent(in) :: plies(:)
     !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
+    !> Ply of the plate's laminate whose layer each ply belongs to, ascending; absent: itself
+    integer, intent(in), optional :: station(:)
     type(ply_stack_t) :: self
 
     self%number = number
+    self%station = number
+    if (present(station)) self%station = station
     self%plies = plies
     self%through = plies
     self%shear_shares = shear_shares_of(in_bending(plies))
     self%shear_correction = shear_correction
   end function whole_stack
 
-  !> The plies of a stack from one number to another: a layer of it.
+  !> The plies of a stack from one ply of the plate's laminate to another, with those added on their faces: a layer of
+  !> it.
   pure function layer(self, first, last)
     class(ply_stack_t), intent(in) :: self
     !> Smallest and largest number
@@ -60,11 +71,34 @@ contains
     type(ply_stack_t) :: layer
     integer :: from, to
 
-    from = count(self%number < first) + 1
-    to = count(self%number <= last)
-    layer = ply_stack_t(self%number(from:to), self%plies(from:to), self%through, self%first + from - 1, &
-                        self%shear_shares(:, :, from:to), self%shear_correction)
+    from = count(self%station < first) + 1
+    to = count(self%station <= last)
+    layer = ply_stack_t(self%number(from:to), self%station(from:to), self%plies(from:to), self%through, &
+                        self%first + from - 1, self%shear_shares(:, :, from:to), self%shear_correction)
   end function layer
+
+  !> Sets the stress-free strains of the plies for a change of temperature.
+  pure subroutine set_thermal_strains(self, materials, change)
+    class(ply_stack_t), intent(inout) :: self
+    !> Materials of the plies
+    type(material_t), intent(in) :: materials(:)
+    !> Temperature minus the stress-free one
+    real(wp), intent(in) :: change
+    integer :: i
+
+    do i = 1, size(self%plies)
+      self%plies(i)%free_strain(:2) = change*materials(self%plies(i)%material)%expansion
+    end do
+    self%through = self%plies
+  end subroutine set_thermal_strains
+
+  !> First and last ply of a stack among all plies through the thickness.
+  pure function places(self)
+    class(ply_stack_t), intent(in) :: self
+    integer :: places(2)
+
+    places = self%first + [0, size(self%plies) - 1]
+  end function places
 
   !> Place in the stack of a ply of the plate; 0: it is not one of the stack.
   pure integer function place(self, ply)

@@ -41,8 +41,11 @@ module layered_meshes
     integer, allocatable :: element_cell(:)
     !> First element of each cell, elements of a cell following each other downwards, (cells + 1)
     integer, allocatable :: first_element(:)
-    !> Number of plies of the plate
+    !> Number of plies of the plate's laminate
     integer :: plies = 0
+    !> Ply of the laminate whose layer each ply of the plate belongs to: itself, or for plies added on a face the
+    !> outermost one on that side
+    integer, allocatable :: stations(:)
     !> The different layers of the plate
     type(layer_t), allocatable :: layers(:)
     !> Layer of each element, (elements)
@@ -64,22 +67,27 @@ module layered_meshes
 contains
 
   !> Builds the mesh of the modelled part.
-  pure function create_mesh(plate, mesh, plies, zones, laminates) result(self)
+  pure function create_mesh(plate, mesh, plies, zones, laminates, stations) result(self)
     !> Plate and symmetry
     type(plate_t), intent(in) :: plate
     !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
-    !> Number of plies
+    !> Number of plies of the plate's laminate
     integer, intent(in) :: plies
     !> Layered rectangles, from the struck face downwards
     type(zone_t), intent(in) :: zones(:)
     !> Laminate of each cell among the different ones of the plate; absent: there is one
     integer, intent(in), optional :: laminates(:)
+    !> Ply of the laminate whose layer each ply of the plate belongs to; absent: itself
+    integer, intent(in), optional :: stations(:)
     type(layered_mesh_t) :: self
+    integer :: ply
 
     call create_grid(plate, mesh, self)
     self%zones = zones
     self%plies = plies
+    self%stations = [(ply, ply=1, plies)]
+    if (present(stations)) self%stations = stations
     call number_points(self)
     if (present(laminates)) then
       call build_elements(self, laminates)

@@ -192,7 +192,7 @@ contains
 
     cell = self%new%place_of(self%new%element_cell(element))
     rows = size(values)
-    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/self%new%plies
+    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/size(self%new%stations)
     associate (x => self%cells_x(cell(1)), y => self%cells_y(cell(2)), old => self%old, &
                range => self%new%plies_of(element))
       allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))
@@ -204,9 +204,11 @@ contains
           weights(n) = x%length(i)*y%length(j)
           terms(:, n) = saved(:, old%element_at(old%cell_at(place(1), place(2)), range(1)))
           if (rows == size(values)) cycle
-          do ply = range(1), range(2)
+          do ply = 1, size(self%new%stations)
+            if (self%new%stations(ply) < range(1) .or. self%new%stations(ply) > range(2)) cycle
             terms((ply - 1)*rows + 1:ply*rows, n) = &
-              saved((ply - 1)*rows + 1:ply*rows, old%element_at(old%cell_at(place(1), place(2)), ply))
+              saved((ply - 1)*rows + 1:ply*rows, old%element_at(old%cell_at(place(1), place(2)), &
+                                                                self%new%stations(ply)))
           end do
           if (name == shear_field .and. (turned(1) .neqv. turned(2))) terms(1::2, n) = -terms(1::2, n)
         end do

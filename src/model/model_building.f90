@@ -8,12 +8,11 @@ module model_building
   use free_strains, only: free_resultants
   use plate_options, only: kinematics_linear, mass_lumped
   use mean_stiffnesses, only: in_bending
-  use ply_stacks, only: ply_stack_t, whole_stack
-  use stacking, only: section_t, stacked_plies, section_of
-  use plies, only: ply_t
+  use ply_stacks, only: ply_stack_t
+  use stacking, only: section_t, section_of
   use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
                              initial_deflection, is_flat, plate_t, symmetry_quarter
-  use cell_grids, only: cells_from_struck
+  use cell_grids, only: cells_along, cells_from_struck
   use cell_lines, only: cell_line_t
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
@@ -53,16 +52,20 @@ contains
     !> Set if the mesh cannot be distributed or an element is ill-shaped; the same on every rank
     type(error_t), allocatable, intent(out) :: error
     type(zone_t), allocatable :: zones(:)
+    integer, allocatable :: laminate_of(:)
+    integer :: ply
 
     self%setup = setup
     self%communicator = communicator
-    self%laminates = laminates_of(setup)
+    call find_laminates(setup, self%laminates, laminate_of)
+    self%plies = setup%plies()
     self%thickness = sum(setup%laminate%thickness)
     associate (skin => self%laminates(1)%plies)
       self%section = section_of(skin, setup%laminate%shear_correction)
       self%bending_section = section_of(in_bending(skin), setup%laminate%shear_correction)
       zones = zones_of(setup)
-      self%mesh = create_mesh(setup%plate, setup%mesh, size(skin), zones)
+      self%mesh = create_mesh(setup%plate, setup%mesh, size(skin), zones, laminate_of, &
+                              [[(ply, ply=1, size(skin))], setup%zones%stations(size(skin))])
     end associate
     self%stacks = stacks_of(self%mesh, self%laminates)
     self%membrane_idle = is_membrane_idle(setup, size(zones), self%section)
@@ -95,7 +98,7 @@ contains
 
     idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
              .or. setup%has_thermal)
-    idle = idle .and. is_flat(setup%plate)
+    idle = idle .and. is_flat(setup%plate) .and. setup%zones%is_empty()
     if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)
     idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
   end function is_membrane_idle
@@ -198,21 +201,28 @@ contains
     if (self%setup%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
   end subroutine build_elements
 
-  !> The different laminates of the plate, the skin's first.
-  pure function laminates_of(setup) result(laminates)
+  !> The different laminates of the plate, the skin's first, and that of each cell.
+  pure subroutine find_laminates(setup, laminates, laminate_of)
     type(setup_t), intent(in) :: setup
-    type(ply_stack_t), allocatable :: laminates(:)
-    type(ply_t), allocatable :: plies(:)
-    integer :: i
+    !> The laminates
+    type(ply_stack_t), allocatable, intent(out) :: laminates(:)
+    !> Number of that of each cell, columns first
+    integer, allocatable, intent(out) :: laminate_of(:)
+    type(cell_line_t) :: columns, rows
+    integer :: i, j
 
-    plies = stacked_plies(setup%laminate, setup%materials)
-    if (setup%has_thermal) then
-      do i = 1, size(plies)
-        plies(i)%free_strain(:2) = setup%temperature_change*setup%materials(plies(i)%material)%expansion
-      end do
-    end if
-    laminates = [whole_stack([(i, i=1, size(plies))], plies, setup%laminate%shear_correction)]
-  end function laminates_of
+    columns = cells_along(setup%plate, setup%mesh, 1)
+    rows = cells_along(setup%plate, setup%mesh, 2)
+    associate (x => columns%middles(), y => rows%middles())
+      call setup%zones%find_stacks(setup%laminate, setup%materials, &
+                                   reshape([(([x(i), y(j)], i=1, size(x)), j=1, size(y))], [2, size(x)*size(y)]), &
+                                   laminates, laminate_of)
+    end associate
+    if (.not. setup%has_thermal) return
+    do i = 1, size(laminates)
+      call laminates(i)%set_thermal_strains(setup%materials, setup%temperature_change)
+    end do
+  end subroutine find_laminates
 
   !> The stack of each layer of the mesh.
   pure function stacks_of(mesh, laminates) result(stacks)

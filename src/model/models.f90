@@ -24,10 +24,13 @@ module models
   !> residuals, the corrections of elastic modes are then exact to a thousandth.
   real(wp), parameter :: negligible_share = 1.0e-3_wp
 
-  !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run.
+  !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run. It has many components
+  !> because plies, interfaces and the nose each have theirs.
   type, extends(loaded_plate_t) :: model_t
     !> The setup of the deck
     type(setup_t) :: setup
+    !> Number of plies, those of doublers included
+    integer :: plies = 0
     !> The different laminates of the plate, the skin's first
     type(ply_stack_t), allocatable :: laminates(:)
     !> The different stacks of elements, one for each layer of the mesh

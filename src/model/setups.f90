@@ -9,6 +9,7 @@ module setups
   use material_parameters, only: material_t, modulus_differs
   use laminate_parameters, only: laminate_t
   use ply_damage_parameters, only: ply_damage_t
+  use ply_zones, only: ply_zones_t
   use delamination_parameters, only: delamination_t
   implicit none
   private
@@ -26,6 +27,8 @@ module setups
     type(material_t), allocatable :: materials(:)
     !> Stacking
     type(laminate_t) :: laminate
+    !> Rectangles with further or missing plies
+    type(ply_zones_t) :: zones
     !> Strain gauges; unallocated: none
     type(gauge_t), allocatable :: gauges(:)
     !> True: plies can fail
@@ -35,6 +38,10 @@ module setups
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
     type(delamination_t), allocatable :: delaminations(:)
   contains
+    procedure :: plies
+    procedure :: used_materials
+    procedure :: all_plies
+    procedure :: struck_laminate
     procedure :: has_crack_bands
     procedure :: is_bimodular
     procedure :: has_rates
@@ -45,6 +52,48 @@ module setups
 
 contains
 
+  !> Number of plies, those of doublers included.
+  pure integer function plies(self)
+    class(setup_t), intent(in) :: self
+
+    plies = size(self%laminate%material) + self%zones%plies()
+  end function plies
+
+  !> Index of the material of each ply, those of doublers included.
+  pure function used_materials(self) result(indices)
+    class(setup_t), intent(in) :: self
+    integer, allocatable :: indices(:)
+
+    allocate (indices(0))
+    if (allocated(self%laminate%material)) indices = [self%laminate%material, self%zones%material()]
+  end function used_materials
+
+  !> All plies in the order of their numbers, those of doublers included, as one list.
+  pure function all_plies(self) result(list)
+    class(setup_t), intent(in) :: self
+    type(laminate_t) :: list
+    integer :: i
+
+    list = self%laminate
+    if (.not. allocated(self%zones%doublers)) return
+    do i = 1, size(self%zones%doublers)
+      associate (added => self%zones%doublers(i)%laminate)
+        list%material = [list%material, added%material]
+        list%angle = [list%angle, added%angle]
+        list%thickness = [list%thickness, added%thickness]
+      end associate
+    end do
+  end function all_plies
+
+  !> Plies at the struck point, or at the plate's centre without an impactor, as a laminate of their own.
+  pure function struck_laminate(self) result(laminate)
+    class(setup_t), intent(in) :: self
+    type(laminate_t) :: laminate
+
+    laminate = self%laminate
+    if (.not. self%zones%is_empty()) laminate = self%zones%laminate_of(laminate, self%zones%at(self%mesh%struck))
+  end function struck_laminate
+
   !> True: plies soften by their fracture energies, instead of sudden failure.
   pure logical function has_crack_bands(self)
     class(setup_t), intent(in) :: self
@@ -52,8 +101,9 @@ contains
 
     has_crack_bands = .false.
     if (.not. self%has_ply_damage) return
-    has_crack_bands = all([(all(self%materials(self%laminate%material(i))%toughness > 0), &
-                            i=1, size(self%laminate%material))])
+    associate (used => self%used_materials())
+      has_crack_bands = all([(all(self%materials(used(i))%toughness > 0), i=1, size(used))])
+    end associate
   end function has_crack_bands
 
   !> True: the moduli along the fibres in tension and in compression of a ply differ.
@@ -63,8 +113,9 @@ contains
 
     is_bimodular = .false.
     if (.not. (allocated(self%laminate%material) .and. allocated(self%materials))) return
-    is_bimodular = any([(modulus_differs(self%materials(self%laminate%material(i))), &
-                         i=1, size(self%laminate%material))])
+    associate (used => self%used_materials())
+      is_bimodular = any([(modulus_differs(self%materials(used(i))), i=1, size(used))])
+    end associate
   end function is_bimodular
 
   !> True: the matrix strengths of softening plies depend on the strain rate.

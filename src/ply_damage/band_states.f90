@@ -14,12 +14,19 @@ module band_states
   type :: band_states_t
     !> The last accepted state, and the trial
     type(band_state_t), allocatable :: accepted(:), trial(:)
-    !> First and last ply of each element, (2, elements)
+    !> First and last ply of each element among those of the different laminates one after the other, (2, elements)
     integer, allocatable :: range(:, :)
-    !> The state of a ply of an element has this index plus the number of the ply, (elements)
+    !> The state of a ply of an element has this index plus the index of the ply among these, (elements)
     integer, allocatable :: offset(:)
+    !> Number of each of these plies among those of the plate
+    integer, allocatable :: number(:)
+    !> Laminate of each element
+    integer, allocatable, private :: laminate(:)
+    !> Index of a ply of the plate in each laminate; 0: it has not this ply, (plies, laminates)
+    integer, allocatable, private :: entry(:, :)
   contains
     procedure :: accept
+    procedure :: at
     !> Accepted states of an element; true if one has damage.
     procedure :: of_element
     procedure :: damaged
@@ -35,12 +42,27 @@ module band_states
 contains
 
   !> Plies without damage.
-  pure function new_band_states(range) result(self)
-    !> First and last ply of each element, (2, elements)
-    integer, intent(in) :: range(:, :)
+  pure function new_band_states(model) result(self)
+    type(model_t), intent(in) :: model
     type(band_states_t) :: self
-    integer :: i, next
+    integer :: range(2, model%elements%elements), i, place, next
 
+    allocate (self%laminate(size(range, 2)), self%number(0))
+    allocate (self%entry(model%plies, size(model%laminates)), source=0)
+    do i = 1, size(model%laminates)
+      associate (numbers => model%laminates(i)%number)
+        do place = 1, size(numbers)
+          self%entry(numbers(place), i) = size(self%number) + place
+        end do
+        self%number = [self%number, numbers]
+      end associate
+    end do
+    do i = 1, size(range, 2)
+      self%laminate(i) = model%mesh%layers(model%stack(i))%laminate
+      associate (numbers => model%stacks(model%stack(i))%number)
+        range(:, i) = self%entry(numbers([1, size(numbers)]), self%laminate(i))
+      end associate
+    end do
     self%range = range
     allocate (self%offset(size(range, 2)), self%accepted(sum(range(2, :) - range(1, :) + 1)))
     next = 1
@@ -50,6 +72,15 @@ contains
     end do
     self%trial = self%accepted
   end function new_band_states
+
+  !> Index of the state of a ply of an element.
+  pure integer function at(self, ply, element)
+    class(band_states_t), intent(in) :: self
+    !> Number of the ply, and element of this rank whose cell has it
+    integer, intent(in) :: ply, element
+
+    at = self%offset(element) + self%entry(ply, self%laminate(element))
+  end function at
 
   !> Accepts the trial states of one element.
   pure subroutine accept(self, element)
@@ -91,8 +122,10 @@ contains
     integer, intent(in) :: ply, element
     !> True for failed modes
     logical :: failed(failure_modes)
+    integer :: at
 
-    associate (state => self%trial(self%offset(element) + ply))
+    at = self%at(ply, element)
+    associate (state => self%trial(at))
       failed = [state%damage(1) >= 1, state%damage(2) >= 1, state%damage(2) >= 1]
       if (.not. failed(matrix_cracking)) return
       failed(matrix_crushing) = state%dissipated(matrix_compression) > state%dissipated(matrix_tension)
@@ -106,8 +139,10 @@ contains
     class(band_states_t), intent(in) :: self
     !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
+    integer :: at
 
-    associate (state => self%trial(self%offset(element) + ply))
+    at = self%at(ply, element)
+    associate (state => self%trial(at))
       fibres_crushed = state%damage(1) >= 1 .and. state%dissipated(fibre_compression) > state%dissipated(fibre_tension)
     end associate
   end function fibres_crushed
@@ -120,7 +155,7 @@ contains
     !> From 0 to 1
     real(wp) :: damage(2)
 
-    damage = self%accepted(self%offset(element) + ply)%damage
+    damage = self%accepted(self%at(ply, element))%damage
   end function accepted_damage
 
   !> Stresses along and across the fibres that closed cracks of a ply of an element carry in the trial.
@@ -131,7 +166,7 @@ contains
     !> Negative in compression
     real(wp) :: stresses(2)
 
-    stresses = self%trial(self%offset(element) + ply)%recovered(:2)
+    stresses = self%trial(self%at(ply, element))%recovered(:2)
   end function carried_by_cracks
 
   !> Permanent shear strain of a ply of an element in the trial.
@@ -140,7 +175,7 @@ contains
     !> Ply and element of this rank that has it
     integer, intent(in) :: ply, element
 
-    strain = self%trial(self%offset(element) + ply)%permanent
+    strain = self%trial(self%at(ply, element))%permanent
   end function permanent_shear
 
   !> Saves or loads the accepted states. Collective.
@@ -150,17 +185,18 @@ contains
     type(model_t), intent(in) :: model
     integer, parameter :: numbers = 3 + energy_modes
     real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked, cracked
-    integer :: element, ply
+    integer :: element, entry, ply
 
-    ! A column has all plies of the laminate, so that, when an element is split into layers, each layer can read its
+    ! A column has all plies of the plate, so that, when an element is split into layers, each layer can read its
     ! plies from the column of the undivided element.
-    allocate (table(numbers*model%mesh%plies, size(self%offset)), strains(2*model%mesh%plies, size(self%offset)), &
-              closed(2*model%mesh%plies, size(self%offset)), kinked(model%mesh%plies, size(self%offset)), &
-              cracked(model%mesh%plies, size(self%offset)), &
+    allocate (table(numbers*model%plies, size(self%offset)), strains(2*model%plies, size(self%offset)), &
+              closed(2*model%plies, size(self%offset)), kinked(model%plies, size(self%offset)), &
+              cracked(model%plies, size(self%offset)), &
               source=0.0_wp)
     do element = 1, size(self%offset)
-      do ply = self%range(1, element), self%range(2, element)
-        associate (state => self%accepted(self%offset(element) + ply))
+      do entry = self%range(1, element), self%range(2, element)
+        ply = self%number(entry)
+        associate (state => self%accepted(self%offset(element) + entry))
           table((ply - 1)*numbers + 1:ply*numbers, element) = [state%damage, state%shear_damage, state%dissipated]
           strains(2*ply - 1:2*ply, element) = [state%permanent, state%accumulated]
           closed(2*ply - 1:2*ply, element) = state%closed
@@ -180,10 +216,11 @@ contains
       call archive%field('ply_failure/strengthened', model%distribution%elements, model%mesh%elements(), cracked)
     if (.not. archive%loading) return
     do element = 1, size(self%offset)
-      do ply = self%range(1, element), self%range(2, element)
+      do entry = self%range(1, element), self%range(2, element)
+        ply = self%number(entry)
         associate (values => table((ply - 1)*numbers + 1:ply*numbers, element), &
                    shear => strains(2*ply - 1:2*ply, element))
-          self%accepted(self%offset(element) + ply) = &
+          self%accepted(self%offset(element) + entry) = &
             band_state_t(damage=values(1:2), shear_damage=values(3), dissipated=values(4:), permanent=shear(1), &
                          accumulated=shear(2), closed=closed(2*ply - 1:2*ply, element), kinked=kinked(ply, element), &
                          strengthened=cracked(ply, element))

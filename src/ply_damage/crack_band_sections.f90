@@ -48,7 +48,7 @@ module crack_band_sections
     logical :: keeps_damage = .false.
     !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
     real(wp), allocatable, private :: tensile(:, :, :)
-    !> Plies of the laminate
+    !> Plies of the different laminates, one after the other
     type(ply_t), allocatable, private :: plies(:)
     !> Their laws
     type(crack_band_t), allocatable, private :: bands(:)
@@ -84,13 +84,16 @@ contains
   function new_crack_band_sections(model) result(self)
     type(model_t), intent(in) :: model
     type(crack_band_sections_t) :: self
-    integer :: i
+    integer :: i, ply
 
-    self%plies = model%laminates(1)%plies
-    allocate (self%bands(size(self%plies)))
-    do i = 1, size(self%bands)
-      self%bands(i) = create_crack_band(material_in_place(self%plies, i, model%setup%materials, &
-                                                          model%setup%ply_damage), model%setup%ply_damage)
+    allocate (self%plies(0), self%bands(0))
+    do i = 1, size(model%laminates)
+      associate (plies => model%laminates(i)%plies, setup => model%setup)
+        self%plies = [self%plies, plies]
+        self%bands = [self%bands, [(create_crack_band(material_in_place(plies, ply, setup%materials, &
+                                                                        setup%ply_damage), setup%ply_damage), &
+                                    ply=1, size(plies))]]
+      end associate
     end do
     if (allocated(model%free)) then
       self%free = model%free
@@ -104,10 +107,9 @@ contains
     end if
     self%onset = [(onset_strain(self%bands(i)), i=1, size(self%bands))]
     self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
-    self%states = new_band_states(reshape([(model%mesh%plies_of(model%distribution%elements(i)), &
-                                            i=1, model%elements%elements)], [2, model%elements%elements]))
+    self%states = new_band_states(model)
     if (model%setup%ply_damage%weibull_modulus > 0) then
-      self%volumes = new_stressed_volumes(model, self%bands, size(self%states%trial))
+      self%volumes = new_stressed_volumes(model, self%bands, self%states)
       self%onset = min(self%onset, self%volumes%smallest_strain(self%bands))
     end if
     if (model%setup%has_rates()) self%rates = new_loading_rates(model, size(self%states%trial))
@@ -350,13 +352,16 @@ contains
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)
     class(crack_band_sections_t), intent(in) :: self
-    !> Ply of the laminate, and element of this rank
+    !> Number of the ply, and element of this rank whose cell has it
     integer, intent(in) :: ply, element
     type(elasticity_t) :: elasticity
+    integer :: at
 
-    elasticity = self%bands(ply)%elasticity
-    if (self%touched(element)) &
-      elasticity = degraded_elasticity(self%bands(ply), self%states%trial(self%states%offset(element) + ply))
+    at = self%states%at(ply, element)
+    associate (band => self%bands(at - self%states%offset(element)))
+      elasticity = band%elasticity
+      if (self%touched(element)) elasticity = degraded_elasticity(band, self%states%trial(at))
+    end associate
   end function elasticity
 
   !> Saves or loads the accepted state.
@@ -367,7 +372,8 @@ contains
     integer :: element
 
     call self%states%visit(archive, model)
-    if (allocated(self%rates)) call self%rates%visit(archive, model, self%states%range, self%states%offset)
+    if (allocated(self%rates)) call self%rates%visit(archive, model, self%states%range, self%states%offset, &
+                                                          self%states%number)
     if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return
     if (allocated(self%volumes)) self%bands%along(1) = self%volumes%strengths()

@@ -33,7 +33,7 @@ contains
     type(failed_modes_t) :: self
 
     if (.not. model%setup%has_ply_damage) return
-    allocate (self%occurred(failure_modes, model%mesh%plies, model%elements%elements), source=.false.)
+    allocate (self%occurred(failure_modes, model%plies, model%elements%elements), source=.false.)
   end function new_failed_modes
 
   !> Finds the modes whose criteria are met for the first time.

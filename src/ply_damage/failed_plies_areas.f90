@@ -17,10 +17,10 @@ contains
     type(model_t), intent(in) :: model
     type(ply_failure_t), intent(in) :: failures
     !> (modes, plies)
-    real(wp) :: areas(failure_modes, model%mesh%plies)
+    real(wp) :: areas(failure_modes, model%plies)
     real(wp) :: area
     logical :: failed(failure_modes)
-    type(exact_sum_t) :: sums(failure_modes, model%mesh%plies)
+    type(exact_sum_t) :: sums(failure_modes, model%plies)
     integer :: k, mode, i
 
     areas = 0

@@ -62,7 +62,7 @@ contains
     type(joined_elements_t) :: self
     integer, allocatable :: numbers(:), parts(:, :)
     logical, allocatable :: joined(:, :), mine(:)
-    integer :: element
+    integer :: element, plies
 
     associate (mesh => model%mesh, elements => model%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
@@ -81,8 +81,10 @@ contains
         self%area(numbers(element)) = mesh%cell_area(mesh%place_of(mesh%element_cell(element)))
       end do
     end associate
-    allocate (self%moments(moment_values + 1 + merge(model%mesh%plies, 0, model%setup%ply_damage%permanent_shear), &
-                           size(self%area)), source=0.0_wp)
+    plies = 0
+    if (model%setup%ply_damage%permanent_shear) &
+      plies = sum([(size(model%laminates(element)%plies), element=1, size(model%laminates))])
+    allocate (self%moments(moment_values + 1 + plies, size(self%area)), source=0.0_wp)
     allocate (self%concerned(model%elements%batches), source=.false.)
     do element = 1, size(self%number)
       if (self%number(element) > 0) self%concerned(batch_of(element)) = .true.

@@ -88,27 +88,31 @@ contains
   end subroutine accept
 
   !> Saves or loads the accepted rates. Collective.
-  subroutine visit(self, archive, model, range, offset)
+  subroutine visit(self, archive, model, range, offset, number)
     class(loading_rates_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
     !> First and last ply of each element, and what its number is less than the place of its state
     integer, intent(in) :: range(:, :), offset(:)
+    !> Number of each ply among those of the plate
+    integer, intent(in) :: number(:)
     real(wp), allocatable :: table(:, :)
-    integer :: element, ply
+    integer :: element, ply, row
 
-    ! A column has all plies of the laminate, as those of the states.
-    allocate (table(values*model%mesh%plies, size(offset)), source=0.0_wp)
+    ! A column has all plies of the plate, as those of the states.
+    allocate (table(values*model%plies, size(offset)), source=0.0_wp)
     do element = 1, size(offset)
       do ply = range(1, element), range(2, element)
-        table(values*(ply - 1) + 1:values*ply, element) = self%accepted(:, offset(element) + ply)
+        row = values*(number(ply) - 1)
+        table(row + 1:row + values, element) = self%accepted(:, offset(element) + ply)
       end do
     end do
     call archive%field('ply_failure/loading_rates', model%distribution%elements, model%mesh%elements(), table)
     if (.not. archive%loading) return
     do element = 1, size(offset)
       do ply = range(1, element), range(2, element)
-        self%accepted(:, offset(element) + ply) = table(values*(ply - 1) + 1:values*ply, element)
+        row = values*(number(ply) - 1)
+        self%accepted(:, offset(element) + ply) = table(row + 1:row + values, element)
       end do
     end do
     self%trial = self%accepted

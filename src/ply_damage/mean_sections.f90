@@ -39,7 +39,7 @@ contains
   function new_mean_sections(model) result(self)
     type(model_t), intent(in) :: model
     type(mean_sections_t) :: self
-    integer :: first(model%mesh%plies + 1, size(model%laminates)), range(2), k, element
+    integer :: first(model%plies + 1, size(model%laminates)), range(2), k, element
 
     call number_sub_plies(self, model%laminates, first)
     associate (batches => model%elements%batches)
@@ -52,7 +52,7 @@ contains
     end associate
     do element = 1, model%elements%elements
       k = model%mesh%layers(model%stack(element))%laminate
-      range = model%mesh%layers(model%stack(element))%plies
+      range = model%stacks(model%stack(element))%places()
       self%range(lane_of(element), :, batch_of(element)) = [first(range(1), k), first(range(2) + 1, k) - 1]
     end do
   end function new_mean_sections
@@ -62,25 +62,24 @@ contains
     type(mean_sections_t), intent(inout) :: self
     !> The laminates
     type(ply_stack_t), intent(in) :: laminates(:)
-    !> First sub-ply of each ply of the plate or of the next one of the laminate, (plies + 1, laminates)
+    !> First sub-ply of each ply of a laminate and after its last one, (plies + 1, laminates)
     integer, intent(out) :: first(:, :)
-    integer :: i, ply, place, number, next
+    integer :: i, place, number, next
 
     next = 1
     do i = 1, size(laminates)
-      do ply = 1, size(first, 1) - 1
-        first(ply, i) = next
-        place = laminates(i)%place(ply)
-        if (place > 0) next = next + laminates(i)%plies(place)%sub_plies
+      do place = 1, size(laminates(i)%plies)
+        first(place, i) = next
+        next = next + laminates(i)%plies(place)%sub_plies
       end do
-      first(size(first, 1), i) = next
+      first(size(laminates(i)%plies) + 1:, i) = next
     end do
     allocate (self%factors(7, next - 1), self%contributions(change_values, next - 1))
     do i = 1, size(laminates)
       do place = 1, size(laminates(i)%number)
         associate (ply => laminates(i)%plies(place))
           do number = 1, ply%sub_plies
-            next = first(laminates(i)%number(place), i) + number - 1
+            next = first(place, i) + number - 1
             self%factors(:, next) = uniaxial_factors(ply, sub_ply_middle(ply, number))
             self%contributions(:, next) = mean_change(ply, ply%elasticity, compressed(ply%elasticity), &
                                                       sub_ply_middle(ply, number))

@@ -62,7 +62,7 @@ contains
 
     requested = [output%requests(field_stress), output%requests(field_face_stress), output%requests(field_face_stress)]
     if (any(requested)) strains = element_strains(model, plies, displacement)
-    do ply = 1, model%mesh%plies
+    do ply = 1, model%plies
       associate (name => 'ply_'//to_text(ply)//'_')
         if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
           call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
@@ -116,10 +116,13 @@ contains
     lost = 0
     do element = 1, size(lost, 2)
       ! Softening plies show the damage of the cell in all of its layers.
-      if (.not. (allocated(plies%bands) .or. model%stacks(model%stack(element))%has(ply))) cycle
-      left = plies%elasticity(model, ply, element)
-      associate (whole => model%laminates(1)%plies(ply)%elasticity)
-        lost(:, element) = 1 - [left%e1, left%e2]/[whole%e1, whole%e2]
+      associate (laminate => model%laminates(model%mesh%layers(model%stack(element))%laminate))
+        if (.not. laminate%has(ply)) cycle
+        if (.not. (allocated(plies%bands) .or. model%stacks(model%stack(element))%has(ply))) cycle
+        left = plies%elasticity(model, ply, element)
+        associate (whole => laminate%plies(laminate%place(ply))%elasticity)
+          lost(:, element) = 1 - [left%e1, left%e2]/[whole%e1, whole%e2]
+        end associate
       end associate
     end do
   end function stiffness_lost

@@ -15,15 +15,14 @@ module separated_elements
 contains
 
   !> Separates joined elements with different damage. Collective.
-  subroutine separate_unequal(sections, model)
+  subroutine separate_unequal(sections)
     type(crack_band_sections_t), intent(inout) :: sections
-    type(model_t), intent(in) :: model
     real(wp) :: lost(3, size(sections%area))
     logical :: unequal(size(sections%area))
     integer :: ply, element, i
 
     unequal = .false.
-    do ply = 1, model%mesh%plies
+    do ply = 1, size(sections%states%number)
       lost = 0
       do element = 1, size(sections%area)
         if (ply < sections%states%range(1, element) .or. ply > sections%states%range(2, element)) cycle

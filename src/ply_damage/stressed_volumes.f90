@@ -35,7 +35,9 @@ module stressed_volumes
     real(wp), private :: plate = 0
     !> Strength of each ply for that volume
     real(wp), allocatable, private :: xt(:)
-    !> First ply of the block of each ply
+    !> Number of each ply among those of the plate
+    integer, allocatable, private :: number(:)
+    !> First ply of the block of each ply, the same one in all laminates
     integer, allocatable, private :: block(:)
     !> Stressed volume of the block that begins with each ply, of the full plate; 0: its fibres are not in tension
     real(wp), allocatable, private :: volume(:)
@@ -59,19 +61,24 @@ contains
     type(model_t), intent(in) :: model
     !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
-    !> Number of plies of all elements
-    integer, intent(in) :: states
+    !> States of the plies of all elements
+    type(band_states_t), intent(in) :: states
     type(stressed_volumes_t) :: self
-    integer :: ply, range(2)
+    integer :: i, ply, entry, range(2)
 
     self%damage = model%setup%ply_damage
     self%plate = product(model%setup%plate%length)*model%thickness
     self%xt = bands%along(1)
-    allocate (self%stress(states), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
+    allocate (self%stress(size(states%trial)), self%volume(size(bands)), self%failed(size(bands)), source=0.0_wp)
     allocate (self%block(size(bands)))
-    do ply = 1, size(bands)
-      range = block_of(model%laminates(1)%plies, ply)
-      self%block(ply) = range(1)
+    self%number = states%number
+    entry = 0
+    do i = 1, size(model%laminates)
+      do ply = 1, size(model%laminates(i)%plies)
+        entry = entry + 1
+        range = block_of(model%laminates(i)%plies, ply)
+        self%block(entry) = findloc(states%number, model%laminates(i)%number(range(1)), dim=1)
+      end do
     end do
   end function new_stressed_volumes
 
@@ -132,7 +139,9 @@ contains
     !> The ply
     integer, intent(in) :: ply
 
-    volume = self%failed(self%block(ply))*self%volume(self%block(ply))
+    associate (block => self%block(findloc(self%number, ply, dim=1)))
+      volume = self%failed(block)*self%volume(block)
+    end associate
   end function volume_at_failure
 
   !> Sets the stresses of an element to zero.

@@ -5,11 +5,13 @@ module setup_scales
   use interface_strengths, only: interlaminar_strengths
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
   use kinds, only: wp
+  use laminate_parameters, only: laminate_t
   use mathematical_constants, only: pi
   use mesh_parameters, only: curvatures, edge_free, edge_simple, in_plane_fixed
   use modal_plates, only: modal_plate_t, modal_plate_of
   use packed_matrices, only: unpacked, inverse
   use plies, only: ply_t
+  use ply_stacks, only: ply_stack_t
   use setups, only: setup_t
   use mean_stiffnesses, only: in_bending
   use stacking, only: section_t, stacked_plies, section_of
@@ -56,12 +58,15 @@ contains
     type(setup_t), intent(in) :: setup
     !> Its scales
     type(setup_scales_t) :: scales
-    type(section_t) :: section
+    type(section_t) :: section, struck
+    type(laminate_t) :: local
     type(modal_plate_t) :: plate
     real(wp) :: bent
 
     section = bending_section(setup)
-    scales%thickness = sum(setup%laminate%thickness)
+    local = setup%struck_laminate()
+    struck = section_of_laminate(setup, local)
+    scales%thickness = sum(local%thickness)
     scales%area_mass = section%mass(1)
     scales%bending = (section%stiffness(13) + section%stiffness(16))/2
     scales%plate_mass = section%mass(1)*product(setup%plate%length)
@@ -71,7 +76,7 @@ contains
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
     if (allocated(setup%delaminations)) &
-      scales%threshold = growth_threshold(setup, effective_bending_stiffness(section%stiffness))
+      scales%threshold = growth_threshold(setup, effective_bending_stiffness(struck%stiffness))
     scales%onset = onset_force(setup)
     if (.not. setup%is_impact()) return
     associate (m => setup%impactor%mass, v => setup%impactor%velocity, k => setup%indentation%k)
@@ -83,20 +88,44 @@ contains
     end associate
   end function scales_of
 
-  !> Bending section of the laminate whose membrane strains are free: D - B inverse(A) B (Reissner and Stavsky).
+  !> Bending section of the plate: mean over its area where it has doublers or ply drops.
   pure function bending_section(setup) result(section)
     type(setup_t), intent(in) :: setup
     !> Stiffness and mass
     type(section_t) :: section
+    type(section_t) :: part
+    logical, allocatable :: known(:, :)
+    real(wp), allocatable :: shares(:)
+    integer :: i
+
+    if (setup%zones%is_empty()) then
+      section = section_of_laminate(setup, setup%laminate)
+      return
+    end if
+    call setup%zones%find_shares(setup%plate%length, known, shares)
+    do i = 1, size(shares)
+      if (.not. shares(i) > 0) cycle
+      part = section_of_laminate(setup, setup%zones%laminate_of(setup%laminate, known(:, i)))
+      section%stiffness = section%stiffness + shares(i)*part%stiffness
+      section%mass = section%mass + shares(i)*part%mass
+    end do
+  end function bending_section
+
+  !> Bending section of a laminate whose membrane strains are free: D - B inverse(A) B (Reissner and Stavsky).
+  pure function section_of_laminate(setup, laminate) result(section)
+    type(setup_t), intent(in) :: setup
+    type(laminate_t), intent(in) :: laminate
+    !> Stiffness and mass
+    type(section_t) :: section
     real(wp) :: extension(3, 3), coupling(3, 3), bending(3, 3)
 
-    section = section_of(in_bending(stacked_plies(setup%laminate, setup%materials)), setup%laminate%shear_correction)
+    section = section_of(in_bending(stacked_plies(laminate, setup%materials)), laminate%shear_correction)
     extension = unpacked(section%stiffness(1:6))
     coupling = unpacked(section%stiffness(7:12))
     bending = unpacked(section%stiffness(13:18)) - matmul(coupling, matmul(inverse(extension), coupling))
     section%stiffness(13:18) = [bending(1, 1), bending(1, 2), bending(1, 3), bending(2, 2), bending(2, 3), &
                                 bending(3, 3)]
-  end function bending_section
+  end function section_of_laminate
 
   !> Modes of the setup's plate up to a frequency.
   pure function plate_modes(setup, cutoff, scaling) result(plate)
@@ -162,9 +191,11 @@ contains
   !> Side of the loaded square; without a patch in the deck, as small as plate theory can resolve.
   pure real(wp) function loaded_side(setup) result(side)
     type(setup_t), intent(in) :: setup
+    type(laminate_t) :: local
 
+    local = setup%struck_laminate()
     side = setup%mesh%patch
-    if (.not. side > 0) side = min(sum(setup%laminate%thickness), minval(setup%plate%length))
+    if (.not. side > 0) side = min(sum(local%thickness), minval(setup%plate%length))
   end function loaded_side
 
   !> Side of the square in the mid-plane that carries the contact force. Its area is that of Hertz's contact circle,
@@ -175,12 +206,14 @@ contains
     !> Largest indentation
     real(wp), intent(in) :: indentation
     real(wp) :: radius
+    type(laminate_t) :: local
 
+    local = setup%struck_laminate()
     radius = setup%contact_radius()
     ! If the radius is not given: the radius of a rigid sphere for which Sun's formula gives this k.
     if (.not. radius > 0) &
-      radius = (0.75_wp*setup%indentation%k/setup%materials(setup%laminate%material(1))%e2)**2
-    side = sqrt(pi*radius*indentation) + sum(setup%laminate%thickness)
+      radius = (0.75_wp*setup%indentation%k/setup%materials(local%material(1))%e2)**2
+    side = sqrt(pi*radius*indentation) + sum(local%thickness)
   end function contact_side
 
   !> Delamination threshold force of the interfaces with the smallest toughness.
@@ -205,16 +238,19 @@ contains
   pure real(wp) function onset_force(setup) result(force)
     type(setup_t), intent(in) :: setup
     type(ply_t), allocatable :: plies(:)
+    type(ply_stack_t) :: stack
     type(unit_stresses_t) :: unit
     real(wp) :: decrease, index
 
     force = 0
-    plies = in_bending(stacked_plies(setup%laminate, setup%materials))
+    plies = in_bending(stacked_plies(setup%struck_laminate(), setup%materials))
     if (size(plies) < 2 .or. .not. setup%mesh%patch > 0) return
+    stack = setup%zones%stack(setup%laminate, setup%materials, setup%zones%at(setup%mesh%struck))
     unit = unit_stresses_of(plies)
     ! Q = P/(2 pi r): its derivative is -Q/r along the radius, and +Q/r for the component normal to it.
     decrease = pi/(2*setup%mesh%patch)
-    associate (strengths => interlaminar_strengths(plies, setup%materials, setup%delaminations), &
+    associate (strengths => interlaminar_strengths(plies, stack%number, setup%materials, &
+                                                      setup%delaminations), &
                gradient => reshape([-decrease, 0.0_wp, 0.0_wp, decrease], [2, 2]))
       index = max(maxval(unit%onset_indices(strengths, [1.0_wp, 0.0_wp], gradient)), &
                   maxval(unit%onset_indices(strengths, [0.0_wp, 1.0_wp], -gradient)))

@@ -157,7 +157,7 @@ contains
       call move_with_plate(model, transfer, now%motion%velocity)
       if (motion == motion_rest) now%motion%velocity = 0
       call now%plies%restack(model, transfer%is_split(model%distribution%elements))
-      if (allocated(now%plies%bands)) call separate_unequal(now%plies%bands, model)
+      if (allocated(now%plies%bands)) call separate_unequal(now%plies%bands)
       call method%lines%start_from(model, method%inertia, model%motion_of(now%motion%displacement))
       call method%resume(model, now)
       call method%renew_forces(model, now)

@@ -1,0 +1,72 @@
+!> Parameters of doublers, which are plies added on a face of the laminate, and of ply drops, in which plies of it are
+!> missing.
+module ply_zone_parameters
+  use kinds, only: wp
+  use laminate_parameters, only: laminate_t
+  implicit none
+  private
+  public :: ply_zone_t, doubler_t, ply_drop_t
+
+  !> The faces of the laminate: the struck one, and the opposite one.
+  integer, parameter, public :: front_face = 1, back_face = 2
+
+  !> A rectangle.
+  type :: ply_zone_t
+    !> Its centre from the plate's centre, and its sides along x and y
+    real(wp) :: at(2) = 0, size(2) = 0
+  contains
+    procedure :: contains => zone_contains
+    procedure :: overlaps
+    procedure :: edges
+  end type ply_zone_t
+
+  !> Plies bonded rigidly to a face of the laminate.
+  type, extends(ply_zone_t) :: doubler_t
+    !> Name
+    character(len=:), allocatable :: name
+    !> Face that they are on
+    integer :: face = back_face
+    !> The plies, from the struck face towards the back
+    type(laminate_t) :: laminate
+  end type doubler_t
+
+  !> Plies of the laminate that are missing.
+  type, extends(ply_zone_t) :: ply_drop_t
+    !> Their numbers
+    integer, allocatable :: plies(:)
+    !> Face of the laminate that remains where it is; the plies on the other side of the missing ones move towards it
+    integer :: flat_face = front_face
+  end type ply_drop_t
+
+contains
+
+  !> True if a point lies within a zone.
+  pure logical function zone_contains(self, point) result(contained)
+    class(ply_zone_t), intent(in) :: self
+    !> From the plate's centre
+    real(wp), intent(in) :: point(2)
+
+    contained = all(abs(point - self%at) < self%size/2)
+  end function zone_contains
+
+  !> True if two zones have an area in common.
+  pure logical function overlaps(self, other, distance)
+    class(ply_zone_t), intent(in) :: self
+    !> The other one
+    class(ply_zone_t), intent(in) :: other
+    !> Overlap that is round-off
+    real(wp), intent(in) :: distance
+
+    overlaps = all(abs(self%at - other%at) < (self%size + other%size)/2 - distance)
+  end function overlaps
+
+  !> Coordinates of the two edges of a zone across a direction.
+  pure function edges(self, direction)
+    class(ply_zone_t), intent(in) :: self
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    real(wp) :: edges(2)
+
+    edges = self%at(direction) + [-self%size(direction), self%size(direction)]/2
+  end function edges
+end module ply_zone_parameters
