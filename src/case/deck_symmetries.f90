@@ -18,6 +18,8 @@ module deck_symmetries
   use plies, only: ply_t, material_objection
   use stacking, only: stacked_plies, section_stiffness
   use support_deck, only: support_group, key_clamps
+  use stringer_deck, only: key_stringer_at, stringer_group
+  use stringers, only: have_images
   use text, only: lower_case
   implicit none
   private
@@ -53,6 +55,10 @@ contains
       if (.not. supports_are_symmetric(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
                   '; list all clamps of the full plate, or use ''none''.')
+      if (.not. have_images(deck%stringers, deck%plate, symmetry, same_place) .and. &
+          .not. problems%concern(stringer_group)) &
+        call report(s, problems, stringer_group, key_stringer_at, 'a stringer has no image under symmetry = '// &
+                    name//'; give all stringers of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
         'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
@@ -162,6 +168,7 @@ contains
                         i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
             .not. is_eccentric(deck%mesh%struck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
+            have_images(deck%stringers, deck%plate, symmetry, same_place) .and. &
             has_symmetric_imperfection(deck%plate, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then

@@ -31,6 +31,22 @@ contains
     !> Slope of the plate, the largest of a half sine, whose membrane strain is the mean of half the squared slope; 0 if
     !> absent
     real(wp), intent(in), optional :: slope
+    integer :: stringer
+
+    step = step_with_stringer(deck, 0, slope)
+    do stringer = 1, size(deck%stringers)
+      step = min(step, step_with_stringer(deck, stringer, slope))
+    end do
+  end function smallest_element_step
+
+  !> Longest stable step with one of the stringers on the smallest elements; 0: not found.
+  real(wp) function step_with_stringer(deck, stringer, slope) result(step)
+    type(deck_t), intent(in) :: deck
+    !> The stringer; 0: none
+    integer, intent(in) :: stringer
+    !> Slope of the plate; 0 if absent
+    real(wp), intent(in), optional :: slope
+    type(setup_t) :: setup
     type(model_t) :: model
     type(ply_failure_t) :: plies
     type(communicator_t) :: alone
@@ -41,7 +57,14 @@ contains
     integer :: element, direction
 
     step = 0
-    call create_model(small_setup(deck, 2), alone, model, error)
+    setup = small_setup(deck, 2)
+    if (stringer > 0) then
+      setup%stringers = [deck%stringers(stringer)]
+      setup%stringers(1)%at = 0
+      setup%stringers(1)%ends = [-setup%plate%length(setup%stringers(1)%along), &
+                                 setup%plate%length(setup%stringers(1)%along)]/2
+    end if
+    call create_model(setup, alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
     scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
@@ -53,7 +76,7 @@ contains
       end do
     end if
     if (frequency > 0) step = 2/frequency
-  end function smallest_element_step
+  end function step_with_stringer
 
   !> Motion of a plate with a uniform slope along one direction and the membrane strain of a half sine with this largest
   !> slope, a quarter of its square. The uniform slope causes a strain of half the square, the in-plane displacement one

@@ -24,6 +24,8 @@ OTHERS = (
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
     ("app/summary_file.f90", "angle at", "a name in NAME_summary.json"),
+    ("app/summary_file.f90", "thickness", "a name in NAME_summary.json"),
+    ("scales/unit_systems.f90", "g", "a unit of mass"),
     ("app/summary_file.f90", "case", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "title", "a name in NAME_summary.json"),
     ("app/summary_provenance.f90", "library", "a name in NAME_summary.json"),
