@@ -12,6 +12,7 @@ module result_rows
   use operator_columns, only: operator_rows, operator_values
   use output_clocks, only: shown_time
   use placed_gauges, only: gauge_column_rows, gauge_strains
+  use stringer_columns, only: stringer_column_rows, stringer_values
   use ply_columns, only: permanent_rows, permanent_values, ply_rows, ply_values
   use result_tables, only: cell, column_name, column_type, name_with_number, result_name_length, result_row_length
   use run_records, only: run_record_t
@@ -36,7 +37,8 @@ module result_rows
     border_rows, rig_rows, heat_rows, limit_rows, contact_rows, damping_rows, permanent_rows, dent_rows]
   !> The table of columns in their order.
   character(len=*), parameter, public :: column_rows(*) = [character(len=result_row_length) :: &
-    plate_rows, interface_rows, line_column_rows, end_rows, gauge_column_rows, filter_rows]
+    plate_rows, interface_rows, line_column_rows, end_rows, gauge_column_rows, &
+    stringer_column_rows, filter_rows]
 
 contains
 
@@ -45,7 +47,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> In the order of the table
     character(len=result_name_length), allocatable :: names(:)
-    integer :: zone, line, gauge
+    integer :: zone, line, gauge, stringer
 
     names = pack(names_of(plate_rows), apply_to(deck))
     do zone = 1, size(deck%delaminations)
@@ -58,6 +60,9 @@ contains
     if (has_ends(deck%plate, deck%lines)) names = [names, names_of(end_rows)]
     do gauge = 1, size(deck%gauges)
       names = [names, numbered(gauge_column_rows, gauge)]
+    end do
+    do stringer = 1, size(deck%stringers)
+      names = [names, numbered(stringer_column_rows, stringer)]
     end do
     if (deck%output%force_filter > 0) names = [names, names_of(filter_rows)]
   end function column_names
@@ -134,7 +139,8 @@ contains
     if (size(deck%lines) > 0) &
       whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%lines))]
     if (has_ends(deck%plate, deck%lines)) whole = [whole, are_whole(end_rows)]
-    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%gauges))]
+    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%gauges)), &
+             (are_whole(stringer_column_rows), i=1, size(deck%stringers))]
     if (deck%output%force_filter > 0) whole = [whole, are_whole(filter_rows)]
   end function column_whole
 
@@ -173,7 +179,8 @@ contains
              dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent]
       row = [pack(row, apply_to(model%setup)), interface_values(model, now%interfaces)]
       lines = line_values(model, now)
-      row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement)]
+      row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement), &
+             stringer_values(model, now%motion%displacement)]
     end associate
     if (record%filter%frequency > 0) row = [row, record%filter%force]
     row(1) = shown_time(row(1))

@@ -24,12 +24,12 @@ module run_records
   !> membrane strains; a hole; adaptive layers beyond the core; steps of the smallest length with too large an error;
   !> energy error; kinetic energy in slow motion; kinetic energy of motions with scaled inertia; energy
   !> dissipated by contact of surfaces; a struck point deeper than the impactor; strain energy
-  !> raised by mapping to another mesh.
+  !> raised by mapping to another mesh; a stringer beyond its strength.
   integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
                                 warning_slopes = 5, warning_membrane = 6, warning_perforation = 7, warning_core = 8, &
                                 warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
                                 warning_scaled = 12, warning_contact = 13, warning_below_nose = 14, &
-                                warning_mapping = 15
+                                warning_mapping = 15, warning_stringer = 16
 
   !> Time of an event before the run.
   real(wp), parameter :: before_run = -1

@@ -17,10 +17,11 @@ module run_warnings
   use run_records, only: run_record_t, warning_border, warning_contact, warning_core, warning_energy, &
                          warning_perforation, warning_indentation, warning_kinetic, warning_ledger, warning_loss, &
                          warning_scaled, warning_slopes, warning_steps, warning_membrane, warning_below_nose, &
-                         warning_mapping
+                         warning_mapping, warning_stringer
   use run_moments, only: moment
   use slow_motions, only: has_developed
   use states, only: state_t
+  use stringer_columns, only: weakest_stringer
   use text, only: line_t, append
   use steppers, only: stepper_t
   use warning_texts, only: warning_text, max_contact, max_deflection_ratio, max_hollow, &
@@ -120,6 +121,9 @@ contains
     if (record%mapping%raises_strain()) call add(warning_mapping, 0)
     if (.not. record%has_warned(warning_slopes, 0)) then
       if (is_steep(model, now)) call add(warning_slopes, 0)
+    end if
+    if (.not. record%has_warned(warning_stringer, 0) .and. have_strengths(deck)) then
+      if (weakest_stringer(model, now%motion%displacement) > 0) call add(warning_stringer, 0)
     end if
     if (.not. record%has_warned(warning_membrane, 0) .and. abs(now%deflection) > max_deflection_ratio*thickness) then
       if (has_fibre_failure(deck, model, now)) call add(warning_membrane, 0)
@@ -229,6 +233,14 @@ contains
 
     is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > max_slope)
   end function is_steep
+
+  !> True: the strength of a stringer is known.
+  pure logical function have_strengths(deck)
+    type(deck_t), intent(in) :: deck
+    integer :: i
+
+    have_strengths = any([(any(deck%stringers(i)%failure_strains > 0), i=1, size(deck%stringers))])
+  end function have_strengths
 
   !> True: the fibres of every ply have failed over an area as large as patch and contact, so that the contact force has
   !> no support. Collective.

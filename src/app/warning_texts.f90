@@ -7,7 +7,7 @@ module warning_texts
   use run_records, only: warning_border, warning_contact, warning_core, warning_energy, warning_perforation, &
                          warning_indentation, warning_kinetic, warning_ledger, warning_loss, warning_scaled, &
                          warning_slopes, warning_steps, warning_membrane, warning_below_nose, &
-                         warning_mapping
+                         warning_mapping, warning_stringer
   use plate_options, only: max_slope
   use short_numbers, only: short_text
   use steppers, only: stepper_t
@@ -92,6 +92,9 @@ contains
     case (warning_mapping)
       text = 'The mapping to this mesh has raised the strain energy by more than 1 % of what was stored '// &
              '(energy_strain of `mapping` in the summary): '//mapping_remedy(deck)
+    case (warning_stringer)
+      text = 'The free edge of a stringer has exceeded its strength (XT, XC of &stringer) since '//at// &
+             ': stringers do not fail in this model; later results are not valid where it would.'
     case (warning_perforation)
       text = 'The fibres of every ply have failed over an area as large as the contact since '//at// &
              ': the impactor perforates the plate, which is not modelled; later results are not valid.'

@@ -25,6 +25,7 @@ module deck_initial_states
   use static_deck, only: static_group
   use stepping_parameters, only: is_explicit
   use support_deck, only: support_group, key_unilateral
+  use stringers, only: differ_at
   use text, only: to_text
   use time_deck, only: key_settle, time_group
   implicit none
@@ -95,6 +96,7 @@ contains
     end if
     if (objection == '') objection = laminate_objection(deck, old)
     if (objection == '') objection = zones_objection(deck, old)
+    if (objection == '') objection = stringer_objection(deck, old)
     if (objection == '') objection = damage_objection(deck, old)
     if (objection == '') objection = interface_objection(deck, old)
     if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck, old)
@@ -138,6 +140,29 @@ contains
                   trim(merge('the same &mesh in both decks', 'these energies              ', &
                              has_same_length(deck, old)))
   end function mapping_objection
+
+  !> First difference of stringers. They are not cut.
+  pure function stringer_objection(deck, old) result(objection)
+    !> The deck, and that of the other run
+    type(deck_t), intent(in) :: deck, old
+    !> One clause; empty: no difference
+    character(len=:), allocatable :: objection
+    integer :: first
+
+    objection = ''
+    if (size(deck%stringers) + size(old%stringers) == 0) return
+    if (.not. has_same_length(deck, old)) then
+      objection = 'the plates differ in size, and a plate with stringers is not cut; allowed: the same &plate length'
+      return
+    end if
+    first = differ_at(deck%stringers, old%stringers)
+    if (first == 0) return
+    if (size(deck%stringers) /= size(old%stringers)) then
+      objection = both('the number of &stringer', to_text(size(deck%stringers)), to_text(size(old%stringers)))
+    else
+      objection = 'stringer '//to_text(first)//' differs in place or section'
+    end if
+  end function stringer_objection
 
   !> First difference of plies and materials.
   function laminate_objection(deck, old) result(objection)

@@ -14,6 +14,8 @@ module deck_mesh_lines
   use rigs, only: window_lines
   use roundings, only: rounding
   use short_numbers, only: short_text
+  use stringer_deck, only: key_ends, key_stringer_at, stringer_group
+  use stringers, only: lines_of_stringers, move_line
   use support_deck, only: key_window, support_group
   use support_parameters, only: window_rectangle
   use text, only: to_text
@@ -97,15 +99,17 @@ contains
     !> The lines
     real(wp), allocatable, intent(out) :: lines(:)
     type(problems_t), intent(inout) :: problems
-    real(wp), allocatable :: given(:), places(:)
+    real(wp), allocatable :: given(:), places(:), stiffened(:)
     integer :: i, windows
 
     allocate (given(0), lines(0))
     if (deck%settings%is_known(mesh_group, key_lines(direction))) &
       given = abs(deck%settings%reals_of(mesh_group, key_lines(direction)))
     windows = size(deck%supports)
+    stiffened = lines_of_stringers(deck%stringers, deck%plate%length(direction), direction)
     associate (mesh => deck%mesh, half => deck%plate%length(direction)/2)
-      places = [merge(deck%supports%window(direction)/2, 0.0_wp, deck%supports%shape == window_rectangle), given]
+      places = [merge(deck%supports%window(direction)/2, 0.0_wp, deck%supports%shape == window_rectangle), given, &
+                abs(stiffened)]
       places = merged_lines(places, [abs(mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2), half], &
                             merging_distance*2*half)
       do i = 1, windows
@@ -116,8 +120,16 @@ contains
       do i = 1, size(given)
         call remark_moved(given(i), places(windows + i), mesh_group, key_lines(direction))
       end do
+      do i = 1, size(stiffened)
+        associate (place => sign(places(windows + size(given) + i), stiffened(i)))
+          call remark_moved(abs(stiffened(i)), abs(place), stringer_group, '')
+          call move_line(deck%stringers, direction, stiffened(i), place)
+          stiffened(i) = place
+        end associate
+      end do
     end associate
-    given = places(windows + 1:)
+    given = places(windows + 1:windows + size(given))
+    call add_lines(lines, stiffened)
     call add_lines(lines, [-given, given])
     call add_lines(lines, window_lines(deck%supports, direction))
     call take_zone_lines(deck, direction, lines, problems)
@@ -215,6 +227,7 @@ contains
                 'of the window; give more elements, or keep the patch off the edge.')
       return
     end if
+    call check_stringer_lines(deck, problems)
     do direction = 1, 2
       call check_zone_lines(deck, direction, problems)
       if (.not. deck%settings%is_given(mesh_group, key_lines(direction))) cycle
@@ -258,6 +271,27 @@ contains
                     'the patch off the edge.', i)
     end subroutine check
   end subroutine check_zone_lines
+  !> Reports stringers without a line in the mesh.
+  subroutine check_stringer_lines(deck, problems)
+    !> The deck, filled and checked
+    type(deck_t), intent(in) :: deck
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    if (problems%concern(stringer_group)) return
+    do i = 1, size(deck%stringers)
+      associate (stringer => deck%stringers(i), across => 3 - deck%stringers(i)%along)
+        if (misses(deck, [stringer%at], across)) then
+          call report(deck%settings, problems, stringer_group, key_stringer_at, 'no line of the mesh can be moved '// &
+                      'to the stringer; give more elements, or keep it off the patch.', i)
+        else if (misses(deck, stringer%ends, stringer%along)) then
+          call report(deck%settings, problems, stringer_group, trim(key_ends(1)), &
+                      'no line of the mesh can be moved to an end of the stringer; give more elements, or keep it '// &
+                      'off the patch.', i)
+        end if
+      end associate
+    end do
+  end subroutine check_stringer_lines
 
   !> Lines required along a direction.
   pure function lines_along(deck, direction) result(lines)

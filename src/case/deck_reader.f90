@@ -55,6 +55,7 @@ module deck_reader
   use ply_damage_deck, only: fill_ply_damage, ply_damage_group
   use pressure_deck, only: fill_pressure, check_pressure, pressure_group
   use static_deck, only: fill_static, static_group
+  use stringer_deck, only: check_stringers, fill_stringers
   use stepping_parameters, only: is_error_controlled, is_explicit
   use support_deck, only: fill_supports, check_rigs
   use deck_struck_faces, only: check_struck_face, struck_face_of
@@ -172,6 +173,7 @@ contains
     call fill_kinematics(deck%settings, deck%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
+    call fill_stringers(deck%settings, deck%plate%length, deck%stringers)
     call fill_mesh(deck%settings, deck%mesh)
     call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
     call fill_materials(deck%settings, deck%materials, problems)
@@ -286,6 +288,7 @@ contains
     call check_plate(deck%settings, deck%plate, problems)
     call check_rigs(deck%settings, deck%plate, deck%supports, problems)
     call check_mesh(deck%settings, deck%mesh, problems)
+    call check_stringers(deck%settings, deck%plate%length, deck%stringers, problems)
     call check_delaminations(deck%settings, deck%delaminations, problems)
     if (allocated(deck%laminate%angle)) &
       call remark_left_out(deck%settings, size(deck%laminate%angle), changes_of_angle(deck), problems)

@@ -20,6 +20,8 @@ module deck_symmetries
   use ply_stacks, only: ply_stack_t
   use stacking, only: stacked_plies, section_stiffness
   use support_deck, only: support_group, key_clamps
+  use stringer_deck, only: key_stringer_at, stringer_group
+  use stringers, only: have_images
   use text, only: lower_case
   use zone_deck, only: doubler_group, key_zone_at, ply_drop_group
   implicit none
@@ -60,6 +62,10 @@ contains
         call report(s, problems, trim(merge(doubler_group//' ', ply_drop_group, allocated(deck%zones%doublers))), &
                     key_zone_at, 'a doubler or ply drop has no image with the same plies under symmetry = '//name// &
                     '; list all of the full plate, or use ''none''.')
+      if (.not. have_images(deck%stringers, deck%plate, symmetry, same_place) .and. &
+          .not. problems%concern(stringer_group)) &
+        call report(s, problems, stringer_group, key_stringer_at, 'a stringer has no image under symmetry = '// &
+                    name//'; give all stringers of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
         'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
@@ -169,6 +175,7 @@ contains
                         i=1, size(deck%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
             .not. is_eccentric(deck%mesh%struck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
+            have_images(deck%stringers, deck%plate, symmetry, same_place) .and. &
             has_symmetric_imperfection(deck%plate, symmetry) .and. has_zone_images(deck, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then

@@ -13,6 +13,7 @@ module deck_table
   use initial_state_deck, only: initial_state_group_row, initial_state_rows
   use laminate_deck, only: laminate_group_row, laminate_rows
   use line_deck, only: line_group_row, line_rows
+  use stringer_deck, only: stringer_group_row, stringer_rows
   use solver_deck, only: solver_group_row, solver_rows
   use material_deck, only: material_group_row, material_rows
   use mesh_deck, only: mesh_group_row, mesh_rows
@@ -32,8 +33,8 @@ module deck_table
   !> Groups.
   character(len=*), parameter :: group_rows(*) = [character(len=group_row_length) :: &
     case_group_row, plate_group_row, support_group_row, mesh_group_row, material_group_row, laminate_group_row, &
-    zone_group_rows, &
-    impactor_group_row, indentation_group_row, pressure_group_row, line_group_row, thermal_group_row, &
+    zone_group_rows, stringer_group_row, impactor_group_row, indentation_group_row, pressure_group_row, &
+    line_group_row, thermal_group_row, &
     initial_state_group_row, static_group_row, ply_damage_group_row, &
     delamination_group_row, time_group_row, adapt_group_row, solver_group_row, gauge_group_row, output_group_row, &
     controls_group_row]
@@ -41,8 +42,8 @@ module deck_table
   !> Keys, those of a group together.
   character(len=*), parameter :: key_rows(*) = [character(len=key_row_length) :: &
     case_rows, kinematics_rows, plate_rows, support_rows, mesh_rows, element_rows, material_rows, laminate_rows, &
-    zone_rows, &
-    impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, initial_state_rows, static_rows, &
+    zone_rows, stringer_rows, impactor_rows, indentation_rows, pressure_rows, line_rows, thermal_rows, &
+    initial_state_rows, static_rows, &
     ply_damage_rows, &
     delamination_rows, time_rows, &
     adapt_rows, solver_rows, gauge_rows, output_rows, controls_rows]

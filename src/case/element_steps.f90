@@ -33,24 +33,31 @@ contains
     real(wp), intent(in), optional :: slope
     logical, allocatable :: known(:, :)
     real(wp), allocatable :: shares(:)
-    integer :: i
+    integer :: i, stringer
 
     call deck%zones%find_shares(deck%plate%length, known, shares)
     step = huge(step)
     do i = 1, size(shares)
-      if (shares(i) > 0) step = min(step, step_of_plies(deck, known(:, i), slope))
+      if (.not. shares(i) > 0) cycle
+      do stringer = 0, size(deck%stringers)
+        step = min(step, step_of_plies(deck, known(:, i), stringer, slope))
+      end do
     end do
     if (step >= huge(step)) step = 0
   end function smallest_element_step
 
-  !> Longest stable step of the smallest element with the plies that the plate has where some zones are; 0: not found.
-  real(wp) function step_of_plies(deck, here, slope) result(step)
+  !> Longest stable step of the smallest element with the plies that the plate has where some zones are, and with one of
+  !> the stringers on it; 0: not found.
+  real(wp) function step_of_plies(deck, here, stringer, slope) result(step)
     !> The deck, its mesh checked
     type(deck_t), intent(in) :: deck
     !> True for these zones
     logical, intent(in) :: here(:)
+    !> The stringer; 0: none
+    integer, intent(in) :: stringer
     !> Slope of the plate; 0 if absent
     real(wp), intent(in), optional :: slope
+    type(setup_t) :: setup
     type(model_t) :: model
     type(ply_failure_t) :: plies
     type(communicator_t) :: alone
@@ -61,7 +68,14 @@ contains
     integer :: element, direction
 
     step = 0
-    call create_model(small_setup(deck, 2, here), alone, model, error)
+    setup = small_setup(deck, 2, here)
+    if (stringer > 0) then
+      setup%stringers = [deck%stringers(stringer)]
+      setup%stringers(1)%at = 0
+      setup%stringers(1)%ends = [-setup%plate%length(setup%stringers(1)%along), &
+                                 setup%plate%length(setup%stringers(1)%along)]/2
+    end if
+    call create_model(setup, alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
     scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)

@@ -13,6 +13,7 @@ module scale_tables
   use roundings, only: rounding
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
+  use stringers, only: mass_of
   use text, only: line_t, append, to_text
   use unit_systems, only: base_units, system_named
   implicit none
@@ -66,6 +67,7 @@ contains
                scales%thickness, length)
       call put_sub_plies(stacked_plies(deck%laminate, deck%materials))
       call put('mass of the plate', scales%plate_mass, mass)
+      call put('mass of the stringers', mass_of(deck%stringers), mass)
       call put('period of the first bending mode', scales%first_period, time)
       call put('delamination threshold force (closed form)', scales%threshold, force)
       call put('force at interlaminar shear failure beside the contact', scales%onset, force)

@@ -10,11 +10,12 @@
 module inertia_scaling
   use cell_grids, only: cells_along
   use cell_lines, only: cell_line_t
-  use element_batches, only: batch_of, lane_of
+  use element_batches, only: batch_of, first_element, lane_of
   use kinds, only: wp
   use models, only: model_t
   use setups, only: setup_t
   use stacking, only: section_mass, stacked_plies
+  use stiffened_elements, only: beam_mass
   implicit none
   private
   public :: inertia_scaling_t, create_inertia_scaling
@@ -32,6 +33,7 @@ module inertia_scaling
     real(wp) :: radius_square = 0
   contains
     procedure :: sections
+    procedure :: beams
     procedure :: factor
   end type inertia_scaling_t
 
@@ -132,13 +134,44 @@ contains
 
     masses = model%elements%mass
     do i = 1, model%elements%elements
-      sides = model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
+      sides = sides_of(model, i)
       associate (mass => masses(lane_of(i), :, batch_of(i)))
         mass = self%factor(sides)*mass
         mass(3) = mass(3) + self%radius_square*model%elements%mass(lane_of(i), 1, batch_of(i))
       end associate
     end do
   end function sections
+
+  !> Scaled masses of the beams of a model, by the factors of their elements.
+  function beams(self, model) result(masses)
+    class(inertia_scaling_t), intent(in) :: self
+    type(model_t), intent(in) :: model
+    !> I0, I1, I2, (3, beams)
+    real(wp), allocatable :: masses(:, :)
+    integer :: b, k
+
+    masses = beam_mass(model%elements)
+    if (.not. allocated(model%elements%beams)) return
+    do b = 1, model%elements%batches
+      do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
+        associate (unscaled => model%elements%beams(k)%mass)
+          masses(:, k) = self%factor(sides_of(model, first_element(b) + model%elements%beams(k)%lane - 1))*unscaled
+          masses(3, k) = masses(3, k) + self%radius_square*unscaled(1)
+        end associate
+      end do
+    end do
+  end function beams
+
+  !> Sides of the cell of an element.
+  function sides_of(model, element) result(sides)
+    type(model_t), intent(in) :: model
+    !> Position among this rank's elements
+    integer, intent(in) :: element
+    !> Along x and y
+    real(wp) :: sides(2)
+
+    sides = model%mesh%cell_sides(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(element))))
+  end function sides_of
 
   !> Factor of in-plane and rotary inertia of an element.
   pure real(wp) function factor(self, sides)

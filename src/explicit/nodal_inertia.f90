@@ -55,7 +55,7 @@ contains
     points = size(model%distribution%points)
     allocate (self%mass(4, points), self%inverse(7, points))
     allocate (scaled(3, model%borders%columns), source=0.0_wp)
-    call add_lumped_mass(model%elements, scaling%sections(model), scaled)
+    call add_lumped_mass(model%elements, scaling%sections(model), scaling%beams(model), scaled)
     call model%borders%add(scaled)
     self%mass(1:3, :) = scaled(:, :points)
     self%mass(4, :) = model%lumped(1, :)

@@ -7,6 +7,7 @@
 module stable_steps
   use batch_resultants, only: in_plane_resultants
   use batch_strains, only: strains_of_batch
+  use edge_beams, only: lumped_inertia
   use element_batches, only: element_batches_t, lanes
   use inertia_scaling, only: inertia_scaling_t
   use internal_forces, only: batch_force
@@ -30,6 +31,8 @@ module stable_steps
   !> lumped by Simpson's rule, in an element of sides 2: 6 by the derivative along one side, 1.2 by that along the
   !> other.
   real(wp), parameter :: gradient_bound = 7.2_wp
+  !> The same on a line of three nodes.
+  real(wp), parameter :: line_gradient_bound = 6
 
 contains
 
@@ -60,16 +63,17 @@ contains
     integer, intent(out) :: element
     !> Square of the highest frequency of each element, (lanes, batches)
     real(wp), allocatable, intent(out), optional :: of_elements(:, :)
-    real(wp), allocatable :: sections(:, :, :)
+    real(wp), allocatable :: sections(:, :, :), beams(:, :)
     real(wp) :: squares(lanes), largest
     integer :: b, lane
 
     largest = 0
     element = 0
     sections = scaling%sections(model)
+    beams = scaling%beams(model)
     if (present(of_elements)) allocate (of_elements(lanes, model%elements%batches), source=0.0_wp)
     do b = 1, model%elements%batches
-      squares = batch_frequencies(model, b, stiffness(:, :, b), sections(:, :, b))
+      squares = batch_frequencies(model, b, stiffness(:, :, b), sections(:, :, b), beams)
       if (present(of_elements)) of_elements(:model%elements%lanes_used(b), b) = squares(:model%elements%lanes_used(b))
       do lane = 1, model%elements%lanes_used(b)
         if (.not. squares(lane) > largest) cycle
@@ -114,11 +118,33 @@ contains
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
       added = gradient_bound*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), &
                                                  slopes, strains)/max(smallest_divisor, model%elements%mass(:, 1, b))
+      if (model%elements%has_beams(b)) call raise_by_beams(model, b, r, added)
       omega = max(omega, maxval(of_elements(:, b) + added))
     end do
     call model%communicator%maximum(omega)
     omega = sqrt(omega)
   end function stiffened_frequency
+
+  !> Raises the bound of elements with beams to that of their beams, if it is larger: the frequency of both together is
+  !> at most the higher of those of each with its own inertia.
+  pure subroutine raise_by_beams(model, b, r, added)
+    type(model_t), intent(in) :: model
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Unknowns of the nodes
+    real(wp), intent(in) :: r(lanes, 9, 5)
+    !> Squares of frequencies by slopes, of each lane
+    real(wp), intent(inout) :: added(lanes)
+    integer :: k
+
+    do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
+      associate (beam => model%elements%beams(k), lane => model%elements%beams(k)%lane)
+        added(lane) = max(added(lane), line_gradient_bound/beam%mass(1)*beam%length()* &
+                          beam%slope_stiffness(model%setup%kinematics /= kinematics_linear, &
+                                               reshape(transpose(r(lane, :, :)), [45])))
+      end associate
+    end do
+  end subroutine raise_by_beams
 
   !> Subtracts the slopes of the surface along which u and v are measured.
   pure subroutine take_surface_slopes(elements, b, slopes)
@@ -167,7 +193,7 @@ contains
   end function geometric_stiffness
 
   !> Squares of the highest frequencies of the elements of a batch: largest eigenvalue of K M^-1 by Lanczos iteration.
-  function batch_frequencies(model, b, stiffness, section) result(squares)
+  function batch_frequencies(model, b, stiffness, section, beams) result(squares)
     type(model_t), intent(in) :: model
     !> Number of the batch
     integer, intent(in) :: b
@@ -175,6 +201,8 @@ contains
     real(wp), intent(in) :: stiffness(lanes, 21)
     !> Scaled I0, I1, I2
     real(wp), intent(in) :: section(lanes, 3)
+    !> Scaled I0, I1, I2 of the beams, (3, beams)
+    real(wp), intent(in) :: beams(:, :)
     !> (lane)
     real(wp) :: squares(lanes)
     real(wp) :: inverse(lanes, 9, 4), r(lanes, 9, 5), before(lanes, 9, 5), force(lanes, 9, 5), response(lanes, 9, 5)
@@ -182,6 +210,7 @@ contains
     integer :: lanczos_step
 
     inverse = inverse_inertia(model, b, section)
+    if (model%elements%has_beams(b)) call add_beams(model, b, section, beams, inverse)
     force = start_vector(inverse)
     call batch_force(model%elements, b, stiffness, force)
     before = 0
@@ -242,6 +271,42 @@ contains
       inverse(:, a, 4) = 1/(share*max(smallest_divisor, model%elements%mass(:, 1, b)))
     end do
   end function inverse_inertia
+
+  !> Computes the inverse inertia of elements with beams anew.
+  subroutine add_beams(model, b, section, beams, inverse)
+    type(model_t), intent(in) :: model
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Scaled I0, I1, I2 of the sections, and of the beams, (3, beams)
+    real(wp), intent(in) :: section(lanes, 3), beams(:, :)
+    !> (lane, node, kind)
+    real(wp), intent(inout) :: inverse(lanes, 9, 4)
+    real(wp) :: mass(4, 9, lanes), lumped(3, 3), share
+    integer :: k, a, lane
+
+    do lane = 1, lanes
+      do a = 1, 9
+        share = dot_product(model%elements%weight(lane, :, b), gauss_shapes(a, :))
+        mass(:, a, lane) = share*[section(lane, :), model%elements%mass(lane, 1, b)]
+      end do
+    end do
+    do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
+      associate (beam => model%elements%beams(k))
+        lumped = lumped_inertia(beams(:, k))
+        mass(:3, beam%nodes, beam%lane) = mass(:3, beam%nodes, beam%lane) + lumped
+        lumped = lumped_inertia(beam%mass)
+        mass(4, beam%nodes, beam%lane) = mass(4, beam%nodes, beam%lane) + lumped(1, :)
+      end associate
+    end do
+    do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
+      lane = model%elements%beams(k)%lane
+      do a = 1, 9
+        associate (m => mass(:, a, lane))
+          inverse(lane, a, :) = [[m(3), -m(2), m(1)]/(m(1)*m(3) - m(2)**2), 1/m(4)]
+        end associate
+      end do
+    end do
+  end subroutine add_beams
 
   !> Start vector with components of all modes.
   pure function start_vector(inverse) result(r)

@@ -24,6 +24,7 @@ module model_building
   use rig_models, only: new_rig_model, fix_by_rigs
   use line_loads, only: along_y
   use placed_lines, only: place_line
+  use placed_stringers, only: place_stringers
   use model_loads, only: build_borders, build_loads, nodal_areas
   use models, only: model_t
   use setups, only: setup_t
@@ -99,6 +100,7 @@ contains
     idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
              .or. setup%has_thermal)
     idle = idle .and. is_flat(setup%plate) .and. setup%zones%is_empty()
+    if (allocated(setup%stringers)) idle = idle .and. size(setup%stringers) == 0
     if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)
     idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
   end function is_membrane_idle
@@ -198,6 +200,7 @@ contains
         end associate
       end do
     end associate
+    call place_stringers(self)
     if (self%setup%mesh%mass == mass_lumped) allocate (self%lumped(3, size(self%distribution%points)), source=0.0_wp)
   end subroutine build_elements
 

@@ -8,6 +8,7 @@ module model_loads
   use models, only: model_t
   use pressure_loads, only: distribution_sine
   use rank_totals, only: total_of
+  use stiffened_elements, only: beam_mass
   implicit none
   private
   public :: build_borders, build_loads, nodal_areas
@@ -59,7 +60,7 @@ contains
     if (self%setup%has_pressure) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
-      call add_lumped_mass(self%elements, self%elements%mass, mass)
+      call add_lumped_mass(self%elements, self%elements%mass, beam_mass(self%elements), mass)
       call self%borders%add(mass)
       self%lumped = mass(:, :self%halo%points)
     end if

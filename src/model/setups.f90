@@ -5,6 +5,7 @@ module setups
   use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t, curvatures
   use gauges, only: gauge_t
+  use stringers, only: stringer_t
   use load_cases, only: load_case_t
   use material_parameters, only: material_t, modulus_differs
   use laminate_parameters, only: laminate_t
@@ -29,6 +30,8 @@ module setups
     type(laminate_t) :: laminate
     !> Rectangles with further or missing plies
     type(ply_zones_t) :: zones
+    !> Stringers; unallocated: none
+    type(stringer_t), allocatable :: stringers(:)
     !> Strain gauges; unallocated: none
     type(gauge_t), allocatable :: gauges(:)
     !> True: plies can fail

@@ -2,6 +2,7 @@
 !> nodes, geometry at the integration points and section of each element, lane first.
 module element_batches
   use kinds, only: wp
+  use edge_beams, only: edge_beam_t
   use errors, only: error_t, fail, exit_deck
   use lagrange9, only: gauss2, gauss_weights, gauss_xi_slopes, gauss_eta_slopes, &
     gauss2_xi_slopes, gauss2_eta_slopes, shape_gradients
@@ -21,7 +22,8 @@ module element_batches
   integer, parameter, public :: shear_size = lanes*9*2
 
   !> A set of 9-node elements. Element e is in batch `batch_of(e)`, lane `lane_of(e)`; the unused lanes of the last
-  !> batch repeat the last element with zero weights and zero section stiffness.
+  !> batch repeat the last element with zero weights and zero section stiffness. It has many components because shear,
+  !> shape and beams have theirs.
   type, public :: element_batches_t
     !> Number of elements
     integer :: elements = 0
@@ -55,11 +57,16 @@ module element_batches
     !> Slopes along x and y at the nodes of a surface along which u and v are measured (lanes, 9, 2, batches);
     !> unallocated: they are measured along the plan
     real(wp), allocatable :: surface_slopes(:, :, :, :)
+    !> Beams on edges of elements, those of a batch together in the order of its elements; unallocated: none
+    type(edge_beam_t), allocatable :: beams(:)
+    !> First beam of each batch, (batches + 1); allocated with the beams
+    integer, allocatable :: first_beam(:)
   contains
     procedure :: create
     procedure :: set_section
     procedure :: set_targets
     procedure :: lanes_used
+    procedure :: has_beams
   end type element_batches_t
 
 contains
@@ -129,6 +136,16 @@ contains
 
     lanes_used = min(lanes, self%elements - (b - 1)*lanes)
   end function lanes_used
+
+  !> True if there are beams on edges of a batch.
+  pure logical function has_beams(self, b)
+    class(element_batches_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+
+    has_beams = .false.
+    if (allocated(self%beams)) has_beams = self%first_beam(b + 1) > self%first_beam(b)
+  end function has_beams
 
   !> Batch that holds an element.
   elemental integer function batch_of(element)

@@ -6,6 +6,7 @@ module element_tangents
   use element_batches, only: element_batches_t, lanes
   use reference_fields, only: gather
   use batch_strains, only: depends_on_slopes, strains_of_batch
+  use stiffened_elements, only: add_beam_matrices
   use batch_resultants, only: in_plane_resultants, take_free_resultants
   use slope_operators, only: slopes_and_values
   use geometric_tangents, only: add_geometric_tangent
@@ -53,6 +54,9 @@ contains
     if (allocated(batches%surface_slopes)) call turn_matrix(batches%surface_slopes(:, :, :, b), k)
     if (abs(mass_factor) > 0.0_wp) call add_mass(mass_factor*batches%mass(:, :, b), batches%weight(:, :, b), k)
     call copy_upper_triangle(k)
+    if (.not. batches%has_beams(b)) return
+    call gather(batches%points(:, :, b), u, r)
+    call add_beam_matrices(batches, b, kinematics, r, stiffness_factor, mass_factor, k)
   end subroutine tangent
 
   !> Makes a matrix symmetric, of which the blocks of node pairs a <= b are known.

@@ -3,7 +3,9 @@ module inertia_forces
   use kinds, only: wp
   use lagrange9, only: gauss_shapes
   use element_batches, only: element_batches_t, lanes
+  use edge_beams, only: lumped_inertia
   use reference_fields, only: gather, scatter, reference_values, add_value_forces
+  use stiffened_elements, only: add_beam_inertia
   implicit none
   private
   public :: add_inertia_force, add_lumped_mass
@@ -17,11 +19,15 @@ contains
     real(wp), contiguous, intent(in) :: a(:, :)
     !> Forces (5, columns that the batches add to)
     real(wp), contiguous, intent(inout) :: f(:, :)
-    real(wp) :: r(lanes, 9, 5), values(lanes, 9, 5)
+    real(wp) :: r(lanes, 9, 5), values(lanes, 9, 5), of_beams(lanes, 9, 5)
     integer :: b, component
 
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), a, r)
+      if (batches%has_beams(b)) then
+        of_beams = 0
+        call add_beam_inertia(batches, b, r, of_beams)
+      end if
       do component = 1, 5
         call reference_values(r(:, :, component), values(:, :, component))
       end do
@@ -30,6 +36,7 @@ contains
       do component = 1, 5
         call add_value_forces(values(:, :, component), r(:, :, component))
       end do
+      if (batches%has_beams(b)) r = r + of_beams
       call scatter(batches%targets(:, :, b), r, f)
     end do
   end subroutine add_inertia_force
@@ -66,21 +73,29 @@ contains
 
   !> Adds the mass of all elements lumped at their nodes by summing the rows of the consistent mass; for this element
   !> this is Simpson's nodal quadrature, so that every nodal mass is positive.
-  subroutine add_lumped_mass(batches, sections, mass)
+  subroutine add_lumped_mass(batches, sections, of_beams, mass)
     type(element_batches_t), intent(in) :: batches
-    !> I0, I1, I2 of their sections, (lanes, 3, batches)
-    real(wp), intent(in) :: sections(:, :, :)
+    !> I0, I1, I2 of their sections, (lanes, 3, batches), and of their beams, (3, beams)
+    real(wp), intent(in) :: sections(:, :, :), of_beams(:, :)
     !> Integrals of I0, I1, I2 that belong to each point (3, columns)
     real(wp), intent(inout) :: mass(:, :)
-    real(wp) :: share
-    integer :: b, lane, a, target
+    real(wp) :: nodal(3, 9)
+    integer :: b, lane, a, k, target
 
     do b = 1, batches%batches
       do lane = 1, batches%lanes_used(b)
         do a = 1, 9
+          nodal(:, a) = dot_product(gauss_shapes(a, :), batches%weight(lane, :, b))*sections(lane, :, b)
+        end do
+        if (batches%has_beams(b)) then
+          do k = batches%first_beam(b), batches%first_beam(b + 1) - 1
+            if (batches%beams(k)%lane /= lane) cycle
+            nodal(:, batches%beams(k)%nodes) = nodal(:, batches%beams(k)%nodes) + lumped_inertia(of_beams(:, k))
+          end do
+        end if
+        do a = 1, 9
           target = batches%targets(lane, a, b)
-          share = dot_product(gauss_shapes(a, :), batches%weight(lane, :, b))
-          mass(:, target) = mass(:, target) + share*sections(lane, :, b)
+          mass(:, target) = mass(:, target) + nodal(:, a)
         end do
       end do
     end do

@@ -8,6 +8,7 @@ module internal_forces
                            add_shear_forces, turn_into_surface
   use batch_resultants, only: in_plane_resultants, shear_resultants, add_free_energy, take_free_resultants
   use section_laws, only: section_law_t
+  use stiffened_elements, only: add_beam_forces
   implicit none
   private
   public :: add_internal_force, batch_force, turn_into_forces
@@ -34,8 +35,8 @@ contains
     !> Strain energy of each element, whose exact sum does not depend on ranks, (lanes, batches); 0 in unused lanes
     real(wp), contiguous, intent(out), optional :: energies(:, :)
     real(wp) :: r(lanes, 9, 5), strains(lanes, 9, 6), slopes(lanes, 9, 2), c(lanes, 21), stored(lanes)
-    real(wp) :: resultants(lanes, 7)
-    logical :: sloped
+    real(wp) :: resultants(lanes, 7), of_beams(lanes, 9, 5)
+    logical :: sloped, is_stiffened
     integer :: b
 
     sloped = depends_on_slopes(batches, kinematics)
@@ -43,6 +44,11 @@ contains
     stored = 0.0_wp
     do b = 1, batches%batches
       call gather(batches%points(:, :, b), u, r)
+      is_stiffened = batches%has_beams(b)
+      if (is_stiffened) then
+        of_beams = 0
+        call add_beam_forces(batches, b, kinematics, r, of_beams, stored)
+      end if
       call strains_of_batch(batches, b, kinematics, r, strains, slopes)
       if (present(law)) then
         c = stiffness(:, :, b)
@@ -59,6 +65,7 @@ contains
       else
         call turn_into_forces(batches, b, stiffness(:, :, b), sloped, slopes, strains, r, stored)
       end if
+      if (is_stiffened) r = r + of_beams
       call scatter(batches%targets(:, :, b), r, f)
       if (.not. present(energies)) cycle
       energies(:, b) = stored
@@ -98,15 +105,20 @@ contains
     real(wp), intent(in) :: c(lanes, 21)
     !> Unknowns of the nodes on entry, forces on them on return (lane, node, component)
     real(wp), intent(inout) :: r(lanes, 9, 5)
-    real(wp) :: strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes)
+    real(wp) :: strains(lanes, 9, 6), slopes(lanes, 9, 2), energies(lanes), of_beams(lanes, 9, 5)
 
     energies = 0
+    if (batches%has_beams(b)) then
+      of_beams = 0
+      call add_beam_forces(batches, b, kinematics_linear, r, of_beams, energies)
+    end if
     if (allocated(batches%surface_slopes)) then
       call strains_of_batch(batches, b, kinematics_linear, r, strains, slopes)
     else
       call in_plane_strains(batches%inverse_jacobian(:, :, :, b), kinematics_linear, r, strains, slopes)
     end if
     call turn_into_forces(batches, b, c, allocated(batches%surface_slopes), slopes, strains, r, energies)
+    if (batches%has_beams(b)) r = r + of_beams
   end subroutine batch_force
 
   !> Computes the nodal forces of a batch from its unknowns and in-plane strains, or from a motion and the change of the

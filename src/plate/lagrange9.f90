@@ -12,7 +12,7 @@ module lagrange9
   real(wp), parameter, public :: gauss2 = 1.0_wp/sqrt(3.0_wp)
 
   !> Weights of the 3-point rule.
-  real(wp), parameter :: weights3(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
+  real(wp), parameter, public :: weights3(3) = [5.0_wp, 8.0_wp, 5.0_wp]/9.0_wp
   !> Quadratics of the three nodes of a line at the 3-point rule (node, point), and their slopes.
   real(wp), parameter, public :: values3(3, 3) = reshape( &
     [0.3_wp + 0.5_wp*gauss3, 0.4_wp, 0.3_wp - 0.5_wp*gauss3, 0.0_wp, 1.0_wp, 0.0_wp, &

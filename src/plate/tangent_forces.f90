@@ -7,6 +7,7 @@ module tangent_forces
   use internal_forces, only: turn_into_forces
   use reference_fields, only: gather, scatter, add_gradient_forces
   use batch_strains, only: depends_on_slopes, in_plane_strains, strains_of_batch, turn_into_plan
+  use stiffened_elements, only: add_beam_tangent_forces
   use batch_resultants, only: in_plane_resultants, take_free_resultants, element_means, mean_resultants
   implicit none
   private
@@ -30,7 +31,7 @@ contains
     !> Changes of the sections against mean strains, packed as the section stiffness, (lanes, 18 or more, batches)
     real(wp), contiguous, intent(in), optional :: mean_change(:, :, :)
     real(wp) :: at(lanes, 9, 5), r(lanes, 9, 5), forces(lanes, 9, 6), strains(lanes, 9, 6)
-    real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes), means(lanes, 7)
+    real(wp) :: slopes(lanes, 9, 2), change(lanes, 9, 2), unused(lanes), means(lanes, 7), of_beams(lanes, 9, 5)
     logical :: sloped
     integer :: b
 
@@ -40,6 +41,11 @@ contains
     do b = 1, batches%batches
       associate (inverse => batches%inverse_jacobian(:, :, :, b), weight => batches%weight(:, :, b))
         call gather(batches%points(:, :, b), v, r)
+        if (batches%has_beams(b)) then
+          of_beams = 0
+          call gather(batches%points(:, :, b), u, at)
+          call add_beam_tangent_forces(batches, b, kinematics, at, r, of_beams)
+        end if
         if (kinematics == kinematics_von_karman) then
           call gather(batches%points(:, :, b), u, at)
           call strains_of_batch(batches, b, kinematics, at, forces, slopes)
@@ -61,6 +67,7 @@ contains
           call turn_into_forces(batches, b, stiffness(:, :, b), sloped, slopes, strains, r, unused)
         end if
         if (kinematics == kinematics_von_karman) call add_turned_forces(inverse, forces, change, r(:, :, 3))
+        if (batches%has_beams(b)) r = r + of_beams
         call scatter(batches%targets(:, :, b), r, f)
       end associate
     end do

@@ -37,7 +37,7 @@ contains
     real(wp), intent(in) :: displacement(:, :)
 
     separate = .not. (model%membrane_idle .or. model%map%layered .or. size(model%lines) > 0 .or. &
-                      allocated(model%elements%initial_slopes))
+                      allocated(model%elements%initial_slopes) .or. allocated(model%elements%beams))
     if (model%setup%kinematics == kinematics_von_karman) separate = separate .and. all(abs(displacement(3, :)) <= 0)
     separate = model%communicator%all(separate .and. uncoupled(stiffness, model%elements%mass))
   end function has_separate_membrane

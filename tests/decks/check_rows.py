@@ -26,6 +26,8 @@ OTHERS = (
     ("app/summary_file.f90", "angle at plies", "a name in NAME_summary.json"),
     ("case/deck_integrators.f90", "plies", "a part of the model that softens"),
     ("deck/allowed_values.f90", "plies", "a number of values"),
+    ("app/summary_file.f90", "thickness", "a name in NAME_summary.json"),
+    ("scales/unit_systems.f90", "g", "a unit of mass"),
     ("app/summary_file.f90", "case", "a name in NAME_summary.json"),
     ("app/summary_file.f90", "title", "a name in NAME_summary.json"),
     ("app/summary_provenance.f90", "library", "a name in NAME_summary.json"),

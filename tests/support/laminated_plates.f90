@@ -10,9 +10,11 @@ module laminated_plates
   use models, only: model_t
   use plate_options, only: kinematics_linear, mass_lumped
   use setups, only: setup_t
+  use stringer_sections, only: section_of_sizes
+  use stringers, only: face_back, face_front, stringer_t
   implicit none
   private
-  public :: laminated_plate, add_interfaces, scattered, build
+  public :: laminated_plate, add_interfaces, add_stringers, scattered, build
 
 contains
 
@@ -65,6 +67,25 @@ contains
       setup%delaminations(i)%zone = 2*setup%plate%length
     end do
   end subroutine add_interfaces
+
+  !> Adds a blade along x on the back and a T along y on the front, of aluminium, through the middle of the plate.
+  pure subroutine add_stringers(setup)
+    !> The setup
+    type(setup_t), intent(inout) :: setup
+    type(stringer_t) :: all(2)
+    integer :: i
+
+    do i = 1, 2
+      all(i)%name = merge('blade', 'T    ', i == 1)
+      all(i)%along = i
+      all(i)%ends = [-setup%plate%length(i), setup%plate%length(i)]/2
+      all(i)%face = merge(face_back, face_front, i == 1)
+      all(i)%section = section_of_sizes([5.0e-3_wp, 1.0e-3_wp], &
+                                        merge([4.0e-3_wp, 1.0e-3_wp], [0.0_wp, 0.0_wp], i == 2), &
+                                        70.0e9_wp, 27.0e9_wp, 2700.0_wp)
+    end do
+    setup%stringers = all
+  end subroutine add_stringers
 
   !> A pseudo-random number between -1 and 1 computed from another one.
   elemental real(wp) function scattered(number)

@@ -1,0 +1,125 @@
+!> Places the stringers of the deck on edges of this rank's elements.
+module placed_stringers
+  use edge_beams, only: edge_beam_t, new_edge_beam
+  use element_batches, only: batch_of, lane_of
+  use kinds, only: wp
+  use mesh_parameters, only: curvatures, initial_deflection
+  use models, only: model_t
+  use roundings, only: rounding
+  use stringers, only: face_front, is_covered, stringer_t
+  implicit none
+  private
+  public :: place_stringers
+
+contains
+
+  !> Adds the beams to the elements. Both cells at an edge have a half of its stringer, so that a stringer on a line of
+  !> symmetry counts half in the modelled part; at an edge of the plate its only cell has all of it.
+  subroutine place_stringers(model)
+    !> The model, with its elements; receives their beams
+    type(model_t), intent(inout) :: model
+    type(edge_beam_t), allocatable :: beams(:), found(:)
+    integer :: element, total, pass, batch
+
+    if (.not. allocated(model%setup%stringers)) return
+    if (size(model%setup%stringers) == 0) return
+    do pass = 1, 2
+      total = 0
+      do element = 1, model%elements%elements
+        call find_beams(model, element, found)
+        if (pass == 2) beams(total + 1:total + size(found)) = found
+        total = total + size(found)
+      end do
+      if (pass == 1) allocate (beams(total))
+    end do
+    allocate (model%elements%first_beam(model%elements%batches + 1), source=1)
+    total = 0
+    do element = 1, model%elements%elements
+      call find_beams(model, element, found)
+      total = total + size(found)
+      batch = batch_of(element)
+      model%elements%first_beam(batch + 1:) = total + 1
+    end do
+    call move_alloc(beams, model%elements%beams)
+  end subroutine place_stringers
+
+  !> Beams on the edges of an element, in the order of the deck.
+  subroutine find_beams(model, element, beams)
+    type(model_t), intent(in) :: model
+    !> Position among this rank's elements
+    integer, intent(in) :: element
+    type(edge_beam_t), allocatable, intent(out) :: beams(:)
+    integer :: place(2), number, cell, i, side, count
+    real(wp) :: ends(2, 2)
+
+    associate (mesh => model%mesh, stringers => model%setup%stringers)
+      number = model%distribution%elements(element)
+      cell = mesh%element_cell(number)
+      place = mesh%place_of(cell)
+      ends(:, 1) = mesh%along(1)%ends(place(1))
+      ends(:, 2) = mesh%along(2)%ends(place(2))
+      allocate (beams(2*size(stringers)))
+      count = 0
+      do i = 1, size(stringers)
+        associate (stringer => stringers(i), along => stringers(i)%along)
+          if (stringer%face == face_front .and. .not. mesh%is_top(number)) cycle
+          if (stringer%face /= face_front .and. number /= mesh%first_element(cell + 1) - 1) cycle
+          do side = -1, 1, 2
+            if (.not. is_covered(stringer, ends((side + 3)/2, 3 - along), ends(:, along), &
+                                 rounding*maxval(model%setup%plate%length))) cycle
+            count = count + 1
+            beams(count) = beam_of(model, element, stringer, side, ends(2, :) - ends(1, :), &
+                                   1.0_wp/cells_beside(model, place(3 - along), 3 - along, side))
+            beams(count)%lane = lane_of(element)
+            beams(count)%stringer = i
+            beams(count)%outwards = merge(-1, 1, stringer%face == face_front)
+          end do
+        end associate
+      end do
+      beams = beams(:count)
+    end associate
+  end subroutine find_beams
+
+  !> A beam on one edge of an element.
+  function beam_of(model, element, stringer, side, sides, share) result(beam)
+    type(model_t), intent(in) :: model
+    !> Position among this rank's elements
+    integer, intent(in) :: element
+    type(stringer_t), intent(in) :: stringer
+    !> Side of the element, -1 or 1
+    integer, intent(in) :: side
+    !> Sides of the element along x and y, and share of the stringer
+    real(wp), intent(in) :: sides(2), share
+    type(edge_beam_t) :: beam
+    real(wp) :: places(2, 9), deflection(9), slopes(9, 2), height
+    integer :: a
+
+    associate (partition => model%distribution, plate => model%setup%plate, &
+               plies => model%stacks(model%stack(element))%plies)
+      places = model%mesh%node_coordinates(:, model%mesh%point_node( &
+                                           partition%points(partition%connectivity(:, element))))
+      deflection = [(initial_deflection(plate, places(:, a)), a=1, 9)]
+      slopes = 0
+      if (any(abs(plate%curvature_radius) > 0)) slopes = transpose(spread(curvatures(plate), 2, 9)*places)
+      if (stringer%face == face_front) then
+        height = plies(1)%z_top - stringer%section%eccentricity
+      else
+        height = plies(size(plies))%z_bottom + stringer%section%eccentricity
+      end if
+    end associate
+    beam = new_edge_beam(stringer%section, height, stringer%along, side, sides, deflection, slopes, share)
+  end function beam_of
+
+  !> Cells of the full plate beside an edge.
+  pure integer function cells_beside(model, cell, direction, side) result(cells)
+    type(model_t), intent(in) :: model
+    !> Column or row of a cell, direction across the edge: 1 for x, 2 for y
+    integer, intent(in) :: cell, direction
+    !> Side of the cell on which the edge lies, -1 or 1
+    integer, intent(in) :: side
+
+    cells = 2
+    if (side < 0 .and. cell == 1 .and. .not. model%mesh%halved(direction)) cells = 1
+    if (side > 0 .and. cell == model%mesh%cells(direction)) cells = 1
+  end function cells_beside
+end module placed_stringers

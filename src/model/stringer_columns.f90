@@ -1,0 +1,122 @@
+!> Forces, moments and strains of stringers, as columns of the history.
+module stringer_columns
+  use edge_beams, only: axial_row, beam_strains, bending_row, twist_row
+  use element_batches, only: lanes
+  use kinds, only: wp
+  use models, only: model_t
+  use reference_fields, only: gather
+  use result_tables, only: result_row_length
+  use stiffened_elements, only: strains_of_beam
+  implicit none
+  private
+  public :: stringer_values, weakest_stringer
+
+  !> Columns of the history, once per stringer: N is its number in the deck.
+  character(len=*), parameter, public :: stringer_column_rows(*) = [character(len=result_row_length) :: &
+    'stringer_force_N | real | force | Axial force of the N-th &stringer, the largest in magnitude along it, positive &
+      &in tension.', &
+    'stringer_moment_N | real | energy | Bending moment about its centroid, the largest in magnitude.', &
+    'stringer_torque_N | real | energy | Torsional moment, the largest in magnitude.', &
+    'stringer_strain_N | real | - | Strain along it at its free edge, at the centroid where the section is given, the &
+      &largest in magnitude, positive in tension.']
+  !> Number of these columns.
+  integer, parameter :: columns = size(stringer_column_rows)
+
+contains
+
+  !> Values of all stringers, the same on every rank. Collective.
+  function stringer_values(model, displacement) result(values)
+    type(model_t), intent(in) :: model
+    !> Unknowns, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> Those of the first, then those of the next
+    real(wp), allocatable :: values(:)
+    real(wp), allocatable :: ranges(:, :)
+    integer :: i
+
+    allocate (values(0))
+    if (.not. allocated(model%setup%stringers)) return
+    if (size(model%setup%stringers) == 0) return
+    ranges = ranges_of(model, displacement)
+    values = [(merge(ranges(1, i), -ranges(2, i), ranges(1, i) >= ranges(2, i)), i=1, size(ranges, 2))]
+  end function stringer_values
+
+  !> First stringer whose strain at the free edge exceeds its strength; 0: none. Collective.
+  integer function weakest_stringer(model, displacement) result(weakest)
+    type(model_t), intent(in) :: model
+    !> Unknowns, ghosts up to date, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    real(wp), allocatable :: ranges(:, :)
+
+    ranges = ranges_of(model, displacement)
+    do weakest = 1, size(model%setup%stringers)
+      associate (allowed => model%setup%stringers(weakest)%failure_strains)
+        if (any(allowed > 0 .and. ranges(:, columns*weakest) > allowed)) return
+      end associate
+    end do
+    weakest = 0
+  end function weakest_stringer
+
+  !> Largest value of each column, and largest value with the other sign; at least 0. Collective.
+  function ranges_of(model, displacement) result(ranges)
+    type(model_t), intent(in) :: model
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: displacement(:, :)
+    !> (sign, column)
+    real(wp), allocatable :: ranges(:, :)
+    real(wp), allocatable :: motion(:, :), flat(:)
+    real(wp) :: r(lanes, 9, 5)
+    integer :: b, k, i
+
+    allocate (ranges(2, columns*size(model%setup%stringers)), source=0.0_wp)
+    motion = model%motion_of(displacement)
+    if (allocated(model%elements%beams)) then
+      do b = 1, model%elements%batches
+        if (.not. model%elements%has_beams(b)) cycle
+        call gather(model%elements%points(:, :, b), motion, r)
+        do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
+          i = columns*(model%elements%beams(k)%stringer - 1)
+          call widen(ranges(:, i + 1:i + columns), resultants(model, k, strains_of_beam(model%elements, k, &
+                                                                                        model%setup%kinematics, r)))
+        end do
+      end do
+    end if
+    flat = reshape(ranges, [size(ranges)])
+    do i = 1, size(flat)
+      call model%communicator%maximum(flat(i))
+    end do
+    ranges = reshape(flat, shape(ranges))
+  end function ranges_of
+
+  !> Columns of a beam at its three points.
+  pure function resultants(model, k, strains) result(values)
+    type(model_t), intent(in) :: model
+    !> Number of the beam
+    integer, intent(in) :: k
+    !> Its strains
+    real(wp), intent(in) :: strains(beam_strains)
+    !> (column, point)
+    real(wp) :: values(columns, 3)
+
+    associate (section => model%setup%stringers(model%elements%beams(k)%stringer)%section, &
+               outwards => model%elements%beams(k)%outwards)
+      values(1, :) = section%axial*strains(axial_row:axial_row + 2)
+      values(2, :) = section%bending*strains(bending_row:bending_row + 2)
+      values(3, :) = section%torsion*strains(twist_row:twist_row + 2)
+      values(4, :) = strains(axial_row:axial_row + 2) &
+                     + outwards*max(0.0_wp, section%depth - section%eccentricity)*strains(bending_row:bending_row + 2)
+      if (.not. section%depth > 0) values(4, :) = strains(axial_row:axial_row + 2)
+    end associate
+  end function resultants
+
+  !> Widens ranges by values.
+  pure subroutine widen(ranges, values)
+    !> (sign, column)
+    real(wp), intent(inout) :: ranges(:, :)
+    !> (column, point)
+    real(wp), intent(in) :: values(:, :)
+
+    ranges(1, :) = max(ranges(1, :), maxval(values, 2))
+    ranges(2, :) = max(ranges(2, :), -minval(values, 2))
+  end subroutine widen
+end module stringer_columns
