@@ -33,7 +33,7 @@ module exact_sums
   integer, parameter :: columns = 64, width = 8, block_bits = 10
   !> Largest number of leading parts: the rest of a double whose exponent is at least 76 below the largest, or of one in
   !> the range of denormal numbers, is added by itself
-  integer, parameter :: most_parts = 3
+  integer, parameter :: max_parts = 3
   !> Largest number in a place, and fraction, as masks
   integer(long), parameter :: place_mask = 2_long**place_bits - 1, fraction_mask = 2_long**fraction_bits - 1
 
@@ -114,8 +114,9 @@ contains
   !> Adds the terms of a block by their leading parts.
   pure subroutine add_block(self, terms, values)
     type(exact_sum_t), intent(inout) :: self
-    !> The terms, as many as in a block at most
+    !> Number of terms, that of a block at most
     integer, intent(in) :: terms
+    !> The terms
     real(wp), intent(in) :: values(terms)
     real(wp) :: rest(width*columns), sums(width), unit, leading
     integer(long) :: bits(terms), largest
@@ -133,7 +134,7 @@ contains
     ! The power of two above the largest magnitude, unless that is denormal or close to overflow or infinite.
     if (i > 0 .and. i < not_finite - 1 - block_bits) then
       unit = 2*real(transfer(shiftl(int(i, long), fraction_bits), unit), wp)
-      do part = 1, most_parts
+      do part = 1, max_parts
         unit = unit*2.0_wp**block_bits
         sums = 0
         do i = 1, width*columns, width

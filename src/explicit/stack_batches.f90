@@ -51,8 +51,9 @@ module stack_batches
 
   !> The batches of all stacks of this rank, in a step of the present length.
   type :: stack_batches_t
-    !> The batches, of which this number has stacks, or had until they became damaged
+    !> The batches, with room for further ones
     type(stack_batch_t), allocatable :: list(:)
+    !> Number of batches that have stacks, or had until these became damaged
     integer :: filled = 0
     !> Batch with free lanes for each number of layers and kind: 1 if constrained plus 2 if damaged; 0: none
     integer, allocatable, private :: open(:, :)

@@ -23,15 +23,15 @@ def plate(kinematics, elements, steps):
     return DECK.format(kinematics=kinematics, elements=elements, step=1e-6, end=steps*1e-6, more='')
 
 
-def stored(name, *settings):
+def stored(folder, name, *settings):
     """A deck of the folder input, readable by older programs."""
-    text = INPUT.joinpath(name).read_text().replace("  units='SI' /", ' /').replace('mass_scaling=6', '')
+    text = folder.joinpath(name).read_text().replace("  units='SI' /", ' /').replace('mass_scaling=6', '')
     return change_deck(text, settings)
 
 
-def impact(name, *settings):
+def impact(folder, name, *settings):
     """A deck of the folder input with changed keys, by central differences."""
-    return change_deck(INPUT.joinpath(name).read_text(), ["time%integrator='central_difference'", *settings])
+    return change_deck(folder.joinpath(name).read_text(), ["time%integrator='central_difference'", *settings])
 
 
 PANEL, ANGLES = 'experiments/t700_m21_25J.nml', 'experiments/im7_8552_d7136_30J.nml'
@@ -40,23 +40,23 @@ PLIES_32 = ["laminate%stacking='[45/0/-45/90]4s'", 'impactor%energy=27', 'time%e
 
 # Name: deck, whether only the steps are compared, and the limit of the ratio; for sun_chen that of the difference, s.
 CASES = {
-    'plate, linear, a step': (lambda: plate('linear', 71, 100), True, 1.4),
-    'plate, von Karman, a step': (lambda: plate('von_karman', 55, 100), True, 1.4),
-    'sun_chen': (lambda: stored('sun_chen.nml'), False, 0.2),
-    'dcb': (lambda: stored('verify/dcb.nml'), False, 2),
-    'enf': (lambda: stored('verify/enf.nml'), False, 2),
-    'mmb': (lambda: stored('verify/mmb.nml'), False, 2),
-    'li2002': (lambda: stored('li2002.nml'), False, 2),
-    'peanut, implicit': (lambda: stored('peanut.nml', *IMPLICIT_PEANUT), False, 2),
-    'crossply_threshold': (lambda: stored('crossply_threshold.nml'), False, 2),
-    'peanut': (lambda: impact('peanut.nml'), False, 0.5),
-    '22 interfaces': (lambda: impact(ANGLES), False, 0.65),
-    '32 plies, 2 ms': (lambda: impact(ANGLES, *PLIES_32), False, 0.65),
-    '25 J, cells of 1.5 mm': (lambda: impact(PANEL), False, 0.65),
-    '25 J, cells of 3 mm': (lambda: impact(PANEL, *COARSE), False, 0.7),
-    'breaking rounds': (lambda: impact('small/breaking_rounds.nml'), False, 0.7),
-    'breaking panel': (lambda: impact('breaking_panel.nml'), False, 0.7),
-    'sun_chen, central differences': (lambda: impact('sun_chen.nml'), False, 1),
+    'plate, linear, a step': (lambda folder: plate('linear', 71, 100), True, 1.4),
+    'plate, von Karman, a step': (lambda folder: plate('von_karman', 55, 100), True, 1.4),
+    'sun_chen': (lambda folder: stored(folder, 'sun_chen.nml'), False, 0.2),
+    'dcb': (lambda folder: stored(folder, 'verify/dcb.nml'), False, 2),
+    'enf': (lambda folder: stored(folder, 'verify/enf.nml'), False, 2),
+    'mmb': (lambda folder: stored(folder, 'verify/mmb.nml'), False, 2),
+    'li2002': (lambda folder: stored(folder, 'li2002.nml'), False, 2),
+    'peanut, implicit': (lambda folder: stored(folder, 'peanut.nml', *IMPLICIT_PEANUT), False, 2),
+    'crossply_threshold': (lambda folder: stored(folder, 'crossply_threshold.nml'), False, 2),
+    'peanut': (lambda folder: impact(folder, 'peanut.nml'), False, 0.5),
+    '22 interfaces': (lambda folder: impact(folder, ANGLES), False, 0.65),
+    '32 plies, 2 ms': (lambda folder: impact(folder, ANGLES, *PLIES_32), False, 0.65),
+    '25 J, cells of 1.5 mm': (lambda folder: impact(folder, PANEL), False, 0.65),
+    '25 J, cells of 3 mm': (lambda folder: impact(folder, PANEL, *COARSE), False, 0.7),
+    'breaking rounds': (lambda folder: impact(folder, 'small/breaking_rounds.nml'), False, 0.7),
+    'breaking panel': (lambda folder: impact(folder, 'breaking_panel.nml'), False, 0.7),
+    'sun_chen, central differences': (lambda folder: impact(folder, 'sun_chen.nml'), False, 1),
 }
 
 
@@ -78,6 +78,8 @@ def main():
     parser.add_argument('program')
     parser.add_argument('old', help='path of the older implam')
     parser.add_argument('--only', nargs='+', choices=CASES, default=list(CASES))
+    parser.add_argument('--input', type=pathlib.Path, default=INPUT,
+                        help='folder of the decks, such as that of the older version where later decks have later keys')
     parser.add_argument('--until', type=float, help='end of the impacts by central differences, s; default: their own')
     parser.add_argument('--repeat', type=int, default=3, help='runs of each; the median of the ratios is printed')
     arguments = parser.parse_args()
@@ -86,7 +88,7 @@ def main():
     print('|---|---|---|---|---|---|')
     for name in arguments.only:
         deck, steps_alone, limit = CASES[name]
-        text = deck()
+        text = deck(arguments.input)
         if arguments.until and "'central_difference'" in text:
             text = change_deck(text, [f'time%end={arguments.until}'])
         pairs = [[measure(program, text, steps_alone) for program in programs] for _ in range(arguments.repeat)]
