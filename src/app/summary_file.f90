@@ -134,6 +134,8 @@ contains
     do ply = 1, size(list%angle)
       call json%open_object('')
       call json%put('ply', ply)
+      if (deck%zones%doubler_of(ply - size(deck%laminate%angle)) > 0) call json%put('doubler', &
+        deck%zones%doublers(deck%zones%doubler_of(ply - size(deck%laminate%angle)))%name)
       call json%put('made_of', deck%materials(list%material(ply))%name)
       call json%put('angle', list%angle(ply))
       call json%put('thickness', list%thickness(ply))

@@ -24,6 +24,7 @@ module ply_zones
     procedure :: at
     procedure :: plies
     procedure :: material
+    procedure :: doubler_of
     procedure :: stations
     procedure :: find_stacks
     procedure :: find_combinations
@@ -67,6 +68,23 @@ contains
       plies = plies + size(self%doublers(i)%laminate%material)
     end do
   end function plies
+
+  !> Doubler of a ply; 0: there is none.
+  pure integer function doubler_of(self, ply) result(doubler)
+    class(ply_zones_t), intent(in) :: self
+    !> Number of the ply, counted from the first one of the first doubler
+    integer, intent(in) :: ply
+    integer :: last
+
+    doubler = 0
+    if (ply < 1 .or. .not. allocated(self%doublers)) return
+    last = 0
+    do doubler = 1, size(self%doublers)
+      last = last + size(self%doublers(doubler)%laminate%material)
+      if (ply <= last) return
+    end do
+    doubler = 0
+  end function doubler_of
 
   !> Outermost ply of the laminate on the side of each ply of all doublers, in the order of their numbers.
   pure function stations(self, skin)

@@ -23,7 +23,7 @@ OTHERS = (
     ("app/interface_summary.f90", "at energy force", "names in NAME_summary.json"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
-    ("app/summary_file.f90", "angle at plies", "a name in NAME_summary.json"),
+    ("app/summary_file.f90", "angle at plies doubler", "a name in NAME_summary.json"),
     ("case/deck_integrators.f90", "plies", "a part of the model that softens"),
     ("deck/allowed_values.f90", "plies", "a number of values"),
     ("app/summary_file.f90", "thickness", "a name in NAME_summary.json"),

@@ -88,7 +88,8 @@ def try_beams(implam, folder):
         mean = force / (MODULUS * area[0])
         pulled = [mean * half + force / (MODULUS * area[1]) * half + offset * curvature * half,
                   mean - sign * curvature * PLY, mean + sign * curvature * PLY, sign * curvature * half * half / 2]
-        compare("pulled, " + name, beam(folder, implam, "pulled " + name, plies, f"component='u' force={force}"), pulled)
+        found = beam(folder, implam, "pulled " + name, plies, f"component='u' force={force}")
+        compare("pulled, " + name, found, pulled)
 
 
 # Plies of the laminate, face and plies of the doubler, and the interface that may delaminate, in the plate of all plies

@@ -12,7 +12,7 @@ from implam_post.io.deck import Deck, read_deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
 from implam_post.io.shapes import curvatures_of
-from implam_post.laminate.decks import plies_of
+from implam_post.laminate.decks import uniform_plies_of
 from implam_post.laminate.sections import Ply
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
@@ -42,7 +42,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
         if deck.has(group) and field not in written:
             raise FileError(f"{path} does not hold the state of &{group}: run again with '{group}' among the fields of "
                             f"&output.")
-    plies = plies_of(deck)
+    plies = uniform_plies_of(deck)
     if snapshot.mesh.last_ply.max() != len(plies):
         raise FileError(f"{path} is damaged: it has {snapshot.mesh.last_ply.max()} plies, but its deck {len(plies)}.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
@@ -105,7 +105,7 @@ def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...
 
 def _from_deck(deck: Deck) -> Panel:
     """Return the panel with the starters of a deck, in equal cells, as many as the full plate has elements."""
-    plies = plies_of(deck)
+    plies = uniform_plies_of(deck)
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
         raise deck.error("mesh", "elements must be two integers greater than zero.")

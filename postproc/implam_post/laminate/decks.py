@@ -29,9 +29,18 @@ def plies_of(deck: Deck) -> list[Ply]:
     return plies
 
 
+def uniform_plies_of(deck: Deck) -> list[Ply]:
+    """Return the stacking sequence of a plate that has the same plies everywhere."""
+    for group in ("doubler", "ply_drop"):
+        if deck.has(group):
+            raise deck.error(group, "a plate with different plies in different places is not supported here; leave "
+                                    "doublers and ply drops out.")
+    return plies_of(deck)
+
+
 def section_of_deck(deck: Deck) -> Section:
     """Return stiffness and mass of the laminate."""
-    plies = plies_of(deck)
+    plies = uniform_plies_of(deck)
     allowed = dict.fromkeys((natural_shear_correction(plies), "5/6", "energy"))
     return section_of(plies, deck.choice("laminate", "shear_correction", allowed))
 

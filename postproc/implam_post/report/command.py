@@ -240,8 +240,11 @@ def _rounded_deck(summary: Mapping[str, Any]) -> str:
 def _plate(summary: Mapping[str, Any], style: PictureStyle) -> str:
     """Return the size of the plate."""
     along, across = (shown(style, "length", length) for length in summary["plate_size"])
-    thickness = shown(style, "length", sum(ply["thickness"] for ply in summary["plies"]))
-    return f"{along} by {across}, {thickness} thick, {counted(len(summary['plies']), 'ply', 'plies')}."
+    plies = [ply for ply in summary["plies"] if "doubler" not in ply]
+    thickness = shown(style, "length", sum(ply["thickness"] for ply in plies))
+    added = counted(len(summary["plies"]) - len(plies), "ply", "plies")
+    doublers = f", {added} in doublers" if len(plies) < len(summary["plies"]) else ""
+    return f"{along} by {across}, {thickness} thick, {counted(len(plies), 'ply', 'plies')}{doublers}."
 
 
 def _failure_areas(summary: Mapping[str, Any]) -> list[str]:
@@ -258,7 +261,8 @@ def _plies_head(summary: Mapping[str, Any]) -> tuple[str, ...]:
 
 def _plies(summary: Mapping[str, Any], style: PictureStyle) -> list[tuple[object, ...]]:
     """Return the rows of lay-up and failures of the plies."""
-    return [(ply["ply"], material_of(ply), ply["angle"], shown(style, "length", ply["thickness"]),
+    return [(ply["ply"], ", doubler ".join([material_of(ply), *([ply["doubler"]] if "doubler" in ply else [])]),
+             ply["angle"], shown(style, "length", ply["thickness"]),
              *(shown(style, "area", ply[key]) for key in _failure_areas(summary))) for ply in summary["plies"]]
 
 

@@ -20,7 +20,7 @@ def impact_rows(run: Run, style: PictureStyle) -> list[Row]:
         deck = run.deck
         if not deck.has("impactor"):
             return []
-        plies = run.summary["plies"]
+        plies = [ply for ply in run.summary["plies"] if "doubler" not in ply]
         thickness = float(sum(ply["thickness"] for ply in plies))
         sides = " by ".join(style.shown("length", side) for side in deck.lengths())
         return [*_impactor(deck, run.summary, thickness, style),

@@ -37,7 +37,7 @@ _ENTRY = 0.22  # height of a line of a small legend, inches
 
 def layup_figure(summary: Mapping[str, Any]) -> Figure:
     """Draw the plies from the struck face, with lines at the fibre angle; interfaces that may delaminate as lines."""
-    plies = summary["plies"]
+    plies = [ply for ply in summary["plies"] if "doubler" not in ply]
     total = sum(ply["thickness"] for ply in plies)
     height = min(max(1.6, 0.34 * len(plies)), 8.5)
     figure = Figure(figsize=(7, height + 0.5), layout="constrained")
