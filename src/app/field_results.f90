@@ -16,6 +16,7 @@ module field_results
   use result_tables, only: result_row_length
   use text, only: lower_case
   use steppers, only: stepper_t
+  use stringer_fields, only: stringer_field_rows, write_stringer_fields
   implicit none
   private
   public :: part_of, write_fields, write_mesh
@@ -28,7 +29,8 @@ module field_results
 
   !> The table of fields.
   character(len=*), parameter, public :: field_rows(*) = [character(len=result_row_length) :: &
-    mesh_field_rows, motion_field_rows, interface_field_rows, ply_field_rows]
+    mesh_field_rows, motion_field_rows, interface_field_rows, stringer_field_rows, &
+    ply_field_rows]
 
 contains
 
@@ -117,6 +119,7 @@ contains
       call fields%begin(shown_time(now%time), now%step, error)
       call write_motion_fields(model, now%motion, output, fields, error)
       call write_interface_fields(model, now%plies%stiffness, now%interfaces, now%motion, output, fields, error)
+      call write_stringer_fields(model, now%motion%displacement, output, fields, error)
       call write_ply_fields(model, now%plies, now%motion%displacement, output, fields, error)
       call fields%finish(error)
     end associate

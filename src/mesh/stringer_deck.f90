@@ -2,7 +2,7 @@
 module stringer_deck
   use deck_choices, only: code_of
   use deck_problems, only: problems_t
-  use deck_remarks, only: are_clear, report
+  use deck_remarks, only: are_clear, remark, report
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
@@ -156,14 +156,18 @@ contains
   end function section_of
 
   !> Checks names, places and sections.
-  subroutine check_stringers(settings, length, all, problems)
+  subroutine check_stringers(settings, length, is_heated, all, problems)
     type(settings_t), intent(in) :: settings
     !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
+    !> True: the plate expands with temperature
+    logical, intent(in) :: is_heated
     type(stringer_t), intent(in) :: all(:)
     type(problems_t), intent(inout) :: problems
     integer :: place, other
 
+    if (is_heated .and. size(all) > 0) &
+      call remark(settings, problems, group, '', 'stringers do not expand with temperature and hold the plate.', 1)
     do place = 1, size(all)
       do other = 1, place - 1
         if (lower_case(all(other)%name) == lower_case(all(place)%name) .and. all(place)%name /= '') then

@@ -24,7 +24,7 @@ module model_building
   use rig_models, only: new_rig_model, fix_by_rigs
   use line_loads, only: along_y
   use placed_lines, only: place_line
-  use placed_stringers, only: place_stringers
+  use placed_stringers, only: place_stringers, stiffness_on_line
   use model_loads, only: build_borders, build_loads, nodal_areas
   use models, only: model_t
   use setups, only: setup_t
@@ -269,6 +269,9 @@ contains
     self%lines = [(place_line(self%setup%lines(i), self%mesh, self%distribution, self%map, &
                               self%fixed(:, self%distribution%points), self%laminates(1)%plies, &
                               self%section, self%setup%plate%symmetry), i=1, size(self%setup%lines))]
+    do i = 1, size(self%lines)
+      self%lines(i)%stiffness = self%lines(i)%stiffness + stiffness_on_line(self, self%setup%lines(i))
+    end do
   end subroutine build_lines
 
   !> Finds the struck node's first point if this rank owns it, and the elements around it.

@@ -20,7 +20,7 @@ module placed_lines
   !> Total stiffness of a line's springs over that of the section. The plate is mostly more compliant than its section,
   !> so that the relative error of the displacement is 1e-5 at most; round-off of the force decreases with the
   !> stiffness.
-  real(wp), parameter :: relative_stiffness = 1.0e5_wp
+  real(wp), parameter, public :: relative_stiffness = 1.0e5_wp
 
   !> A line on this rank's points.
   type :: placed_line_t

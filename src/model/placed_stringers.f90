@@ -3,13 +3,18 @@ module placed_stringers
   use edge_beams, only: edge_beam_t, new_edge_beam
   use element_batches, only: batch_of, lane_of
   use kinds, only: wp
+  use line_loads, only: along_x, line_load_t
   use mesh_parameters, only: curvatures, initial_deflection
   use models, only: model_t
+  use placed_lines, only: relative_stiffness
   use roundings, only: rounding
   use stringers, only: face_front, is_covered, stringer_t
   implicit none
   private
-  public :: place_stringers
+  public :: place_stringers, stiffness_on_line
+
+  !> Smallest share of a node in a side of a cell: Simpson's rule.
+  real(wp), parameter :: smallest_share = 1/6.0_wp
 
 contains
 
@@ -42,6 +47,50 @@ contains
     end do
     call move_alloc(beams, model%elements%beams)
   end subroutine place_stringers
+
+  !> Total stiffness that is added to the springs of a line with a prescribed motion where stringers cross it. All of a
+  !> stringer's reaction acts on the springs of one node, whose fraction of the line is at least a sixth of the shortest
+  !> cell: these are stiff against the stringer over the length of the plate.
+  pure real(wp) function stiffness_on_line(model, load) result(stiffness)
+    type(model_t), intent(in) :: model
+    type(line_load_t), intent(in) :: load
+    integer :: i, along
+
+    stiffness = 0
+    if (.not. (allocated(model%setup%stringers) .and. load%prescribed)) return
+    along = merge(1, 2, load%direction == along_x)
+    associate (length => model%setup%plate%length)
+      do i = 1, size(model%setup%stringers)
+        associate (stringer => model%setup%stringers(i))
+          if (stringer%along == along) cycle
+          if (load%at < stringer%ends(1) - rounding*maxval(length) .or. &
+              load%at > stringer%ends(2) + rounding*maxval(length)) cycle
+          stiffness = max(stiffness, relative_stiffness*stiffness_of(stringer)*length(along)/length(3 - along) &
+                          /(smallest_share*minval(model%mesh%along(along)%sides())))
+        end associate
+      end do
+    end associate
+
+  contains
+
+    !> Stiffness of a section against the component of the line, of all its kinds the largest.
+    pure real(wp) function stiffness_of(stringer)
+      !> One that crosses the line
+      type(stringer_t), intent(in) :: stringer
+
+      associate (section => stringer%section)
+        select case (load%component)
+        case (1, 2)
+          stiffness_of = section%axial
+        case (3)
+          stiffness_of = section%shear
+        case default
+          stiffness_of = max(section%bending + section%axial*(model%thickness/2 + section%eccentricity)**2, &
+                             section%torsion)
+        end select
+      end associate
+    end function stiffness_of
+  end function stiffness_on_line
 
   !> Beams on the edges of an element, in the order of the deck.
   subroutine find_beams(model, element, beams)

@@ -9,7 +9,7 @@ module stringer_columns
   use stiffened_elements, only: strains_of_beam
   implicit none
   private
-  public :: stringer_values, weakest_stringer
+  public :: stringer_values, weakest_stringer, resultants
 
   !> Columns of the history, once per stringer: N is its number in the deck.
   character(len=*), parameter, public :: stringer_column_rows(*) = [character(len=result_row_length) :: &
@@ -20,7 +20,7 @@ module stringer_columns
     'stringer_strain_N | real | - | Strain along it at its free edge, at the centroid where the section is given, the &
       &largest in magnitude, positive in tension.']
   !> Number of these columns.
-  integer, parameter :: columns = size(stringer_column_rows)
+  integer, parameter, public :: columns = size(stringer_column_rows)
 
 contains
 
