@@ -6,10 +6,11 @@ module model_building
   use element_batches, only: lanes, lane_of, batch_of
   use batch_strains, only: set_initial_shape, set_surface
   use free_strains, only: free_resultants
-  use plate_options, only: kinematics_linear, mass_lumped
+  use idle_membranes, only: is_membrane_idle
+  use plate_options, only: mass_lumped
   use mean_stiffnesses, only: in_bending
   use ply_stacks, only: ply_stack_t
-  use stacking, only: section_t, section_of
+  use stacking, only: section_of
   use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
                              initial_deflection, is_flat, plate_t, symmetry_quarter
   use cell_grids, only: cells_along, cells_from_struck
@@ -31,10 +32,7 @@ module model_building
   use symmetry_images, only: find_images
   implicit none
   private
-  public :: create_model, zones_of, is_membrane_idle, uncoupled, unrestrained
-
-  !> Largest coupling of membrane and bending that is round-off, relative to the stiffnesses it couples
-  real(wp), parameter :: round_off = 1.0e-12_wp
+  public :: create_model, zones_of, unrestrained
 
   !> Stiffness of a rigid frame where its edge crosses a cell, relative to that of the laminate through its thickness:
   !> its effect on the deflection is far below round-off and tolerance, and the conditioning of the matrix is that of
@@ -88,42 +86,6 @@ contains
     self%has_point_stiffness = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic
     call find_struck_point(self)
   end subroutine create_model
-
-  !> True if no in-plane motion occurs, so that u and v are zero.
-  pure logical function is_membrane_idle(setup, zones, section) result(idle)
-    type(setup_t), intent(in) :: setup
-    !> Number of zones of layers
-    integer, intent(in) :: zones
-    !> The laminate's section
-    type(section_t), intent(in) :: section
-
-    idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
-             .or. setup%has_thermal)
-    idle = idle .and. is_flat(setup%plate) .and. setup%zones%is_empty()
-    if (allocated(setup%stringers)) idle = idle .and. size(setup%stringers) == 0
-    if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)
-    idle = idle .and. uncoupled(reshape(section%stiffness, [1, 21, 1]), reshape(section%mass, [1, 3, 1]))
-  end function is_membrane_idle
-
-  !> True if membrane and bending are not coupled except by round-off.
-  pure logical function uncoupled(stiffness, mass)
-    !> Stiffness of sections, (any, 21, any)
-    real(wp), intent(in) :: stiffness(:, :, :)
-    !> Their I0, I1, I2, (any, 3, any)
-    real(wp), intent(in) :: mass(:, :, :)
-
-    uncoupled = largest(stiffness(:, 7:12, :)) <= round_off*sqrt(largest(stiffness(:, 1:6, :)) &
-                                                                 *largest(stiffness(:, 13:18, :))) &
-                .and. largest(mass(:, 2:2, :)) <= round_off*sqrt(largest(mass(:, 1:1, :))*largest(mass(:, 3:3, :)))
-  end function uncoupled
-
-  !> Largest magnitude; 0 if there are no values.
-  pure real(wp) function largest(values)
-    !> The values
-    real(wp), intent(in) :: values(:, :, :)
-
-    largest = maxval([0.0_wp, abs(values)])
-  end function largest
 
   !> In-plane rigid-body motions of a static plate without support: along x, along y, rotation.
   pure function unrestrained(setup)

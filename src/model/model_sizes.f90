@@ -3,7 +3,8 @@ module model_sizes
   use kinds, only: wp
   use layer_extents, only: largest_extents
   use layered_meshes, only: zone_t
-  use model_building, only: is_membrane_idle, zones_of
+  use idle_membranes, only: is_membrane_idle
+  use model_building, only: zones_of
   use cell_lines, only: cell_line_t
   use cell_grids, only: cells_along
   use setups, only: setup_t

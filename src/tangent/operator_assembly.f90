@@ -9,7 +9,7 @@ module operator_assembly
   use plate_options, only: kinematics_linear, kinematics_von_karman
   use delamination_parameters, only: law_cohesive
   use numberings, only: numbering_t
-  use model_building, only: uncoupled
+  use idle_membranes, only: uncoupled
   use models, only: model_t
   implicit none
   private
