@@ -10,7 +10,7 @@ module model_building
   use plate_options, only: mass_lumped
   use mean_stiffnesses, only: in_bending
   use ply_stacks, only: ply_stack_t
-  use stacking, only: section_of
+  use stacking, only: section_t, section_of
   use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
                              initial_deflection, is_flat, plate_t, symmetry_quarter
   use cell_grids, only: cells_along, cells_from_struck
