@@ -29,8 +29,7 @@ module field_results
 
   !> The table of fields.
   character(len=*), parameter, public :: field_rows(*) = [character(len=result_row_length) :: &
-    mesh_field_rows, motion_field_rows, interface_field_rows, stringer_field_rows, &
-    ply_field_rows]
+    mesh_field_rows, motion_field_rows, stringer_field_rows, interface_field_rows, ply_field_rows]
 
 contains
 

@@ -15,14 +15,14 @@ module stringer_fields
   public :: write_stringer_fields
 
   !> Columns of a row between unit and meaning.
-  character(len=*), parameter :: requested = ' | '//field_displacement//' | &stringer | '
+  character(len=*), parameter :: requested = field_displacement//' | - | '
   !> The fields.
   character(len=*), parameter, public :: stringer_field_rows(*) = [character(len=result_row_length) :: &
-    'stringer_force | cells | force'//requested//'Axial force of the stringer at the element, the largest in &
+    'stringer_force | cells | force | '//requested//'Axial force of the &stringer at the element, the largest in &
       &magnitude, positive in tension; 0 elsewhere.', &
-    'stringer_moment | cells | energy'//requested//'Its bending moment about the centroid.', &
-    'stringer_torque | cells | energy'//requested//'Its torsional moment.', &
-    'stringer_strain | cells | -'//requested//'Strain along it at its free edge.']
+    'stringer_moment | cells | energy | '//requested//'Its bending moment about the centroid.', &
+    'stringer_torque | cells | energy | '//requested//'Its torsional moment.', &
+    'stringer_strain | cells | - | '//requested//'Strain along it at its free edge.']
   !> Names of the fields.
   character(len=*), parameter :: names(columns) = [character(len=15) :: 'stringer_force', 'stringer_moment', &
                                                    'stringer_torque', 'stringer_strain']
