@@ -88,8 +88,9 @@ class Strip:
         return self.load(self.crack + self.growth)*self.compliance(self.crack + self.growth)
 
     def crack_at(self, displacement):
-        """Return the length of a crack that grows at a displacement."""
-        low, high = self.crack/4, 4*self.crack
+        """Return the length of a crack that grows at a displacement, not shorter than the starter: shorter cracks of
+        bent strips also grow at larger displacements."""
+        low, high = self.crack, 4*self.crack
         for _ in range(60):
             middle = (low + high)/2
             if self.load(middle)*self.compliance(middle) < displacement:
@@ -156,7 +157,7 @@ class Strip:
         crack = self.crack + self.grown(row)
         line = 2 if self.kind == "dcb" else 3
         load = abs(row[f"line_force_{line}"])/self.width
-        growing = max(self.crack, self.crack_at(abs(row[f"line_displacement_{line}"])))
+        growing = self.crack_at(abs(row[f"line_displacement_{line}"]))
         return load/self.load(growing), load/self.load(crack)
 
 

@@ -11,6 +11,11 @@ from growth_strips import Strip
 from growth_table import impact_errors, strip_errors, table_lines
 from onset_share import loads_of
 
+try:
+    from node_releases import bar, beam, released
+except ModuleNotFoundError:
+    released = None  # without NumPy
+
 
 def strip(kind, load, opening="0.2", shear="0.7"):
     """Return a row of strips."""
@@ -63,6 +68,14 @@ class Models(unittest.TestCase):
         # compliance.
         self.assertAlmostEqual((energy[1] - energy[0])/(2*change)/212, 1, delta=.005)
 
+    def test_crack_at_displacement(self):
+        """The crack that grows at a displacement, also where a shorter one than the starter would grow at the same."""
+        for kind in ("dcb", "enf", "slb"):
+            model = Strip(kind, 1e-3, 4e-3)
+            for part in (1.0, 1.05, 1.15, 1.25):
+                crack = part*model.crack
+                self.assertAlmostEqual(model.crack_at(model.load(crack)*model.compliance(crack))/crack, 1, delta=1e-9)
+
     def test_decks(self):
         """The deck's own cells give its own numbers of elements."""
         self.assertIn("elements=31, 17 ", text_of("peanut", .8, "energy"))
@@ -94,6 +107,22 @@ class Onset(unittest.TestCase):
         largest = [max(abs(load - 1) for load in loads_of(k/450)[:2]) for k in range(5, 113)]
         self.assertLess(max(largest[:96]), .02)
         self.assertGreater(largest[-1], .03)
+
+
+@unittest.skipIf(released is None, "NumPy is not installed")
+class Releases(unittest.TestCase):
+    """Energies that the nodes of an element release."""
+
+    def test_shear(self):
+        """The stiffness of a quadratic bar at an end whose other nodes are held is 7/3 of EA/h."""
+        self.assertAlmostEqual(released(bar(20), 1)[0], 3/7, delta=1e-12)
+
+    def test_opening(self):
+        """On any cells nodes release their halves within a seventh, their integrals of shape functions not."""
+        found = [released(beam(cell, 20, shear), 2)[0] for cell in (.25, 1, 4, 16, 128) for shear in (.4, .03)]
+        self.assertGreater(min(found), 3/7)
+        self.assertLess(max(found), 4/7)
+        self.assertGreater(max(found)/(1/3), 1.7)
 
 
 if __name__ == "__main__":
