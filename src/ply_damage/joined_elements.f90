@@ -47,7 +47,7 @@ module joined_elements
     procedure :: shares
     procedure :: accumulate_strains
     procedure :: exchange
-    procedure :: spread
+    procedure :: differences
     procedure :: separate
     procedure :: visit
     procedure :: means_of
@@ -229,27 +229,27 @@ contains
 
   !> Difference between the largest and the smallest value of a quantity among each element and those joined with it.
   !> Collective.
-  function spread(self, quantity)
+  function differences(self, quantity)
     class(joined_elements_t), intent(inout) :: self
     !> Of each element of this rank
     real(wp), intent(in) :: quantity(:)
     !> 0 for an element that shares its state with no other
-    real(wp) :: spread(size(quantity))
+    real(wp) :: differences(size(quantity))
     integer :: element
 
     do element = 1, size(quantity)
       if (self%shares(element)) self%moments(1, self%number(element)) = quantity(element)
     end do
     call self%exchange()
-    spread = 0
+    differences = 0
     do element = 1, size(quantity)
       if (.not. self%shares(element)) cycle
       associate (parts => self%parts(:, self%number(element)))
-        spread(element) = maxval(self%moments(1, pack(parts, parts > 0))) &
-                          - minval(self%moments(1, pack(parts, parts > 0)))
+        differences(element) = maxval(self%moments(1, pack(parts, parts > 0))) &
+                               - minval(self%moments(1, pack(parts, parts > 0)))
       end associate
     end do
-  end function spread
+  end function differences
 
   !> Separates an element from those joined with it, which must be separated as well.
   pure subroutine separate(self, element)

@@ -17,7 +17,7 @@ contains
   !> Separates joined elements with different damage. Collective.
   subroutine separate_unequal(sections)
     type(crack_band_sections_t), intent(inout) :: sections
-    real(wp) :: lost(3, size(sections%area))
+    real(wp) :: lost(3, size(sections%area)), differences(size(sections%area))
     logical :: unequal(size(sections%area))
     integer :: ply, element, i
 
@@ -29,7 +29,8 @@ contains
         lost(:, element) = stiffness_lost(sections%states%accepted(sections%states%offset(element) + ply))
       end do
       do i = 1, size(lost, 1)
-        unequal = unequal .or. sections%joined%spread(lost(i, :)) > rounding
+        differences = sections%joined%differences(lost(i, :))
+        unequal = unequal .or. differences > rounding
       end do
     end do
     call separate(sections, unequal)
