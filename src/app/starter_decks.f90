@@ -12,7 +12,7 @@ module starter_decks
   !> Its default name.
   character(len=*), parameter, public :: starter_name = 'impact.nml'
   !> Its lines. Material and interface are those of input/peanut.nml.
-  character(len=105), parameter :: lines(*) = [character(len=105) :: &
+  character(len=106), parameter :: lines(*) = [character(len=106) :: &
     '! A drop weight strikes the middle of a composite plate. `implam explain GROUP` lists all keys of a group,', &
     '! with their defaults; `implam explain case units` names other units.', &
     '', &

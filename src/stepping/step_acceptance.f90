@@ -47,6 +47,7 @@ contains
   subroutine update_damage(self, model)
     class(implicit_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
+    logical :: reached(size(self%trial%interfaces%border_reached))
 
     call model%profile%enter('ply criteria')
     call self%trial%plies%grow(model, self%trial%motion%displacement)
@@ -55,7 +56,9 @@ contains
     call update_flaws(model, self%trial%plies, self%trial%motion%displacement, self%trial%interfaces)
     call self%kind%complete_trial(self, model)
     associate (interfaces => self%trial%interfaces)
-      interfaces%border_reached = interfaces%border_reached .or. interfaces%cohesive%border_reached(model)
+      ! A call of its own, which all ranks take part in.
+      reached = interfaces%cohesive%border_reached(model)
+      interfaces%border_reached = interfaces%border_reached .or. reached
     end associate
   end subroutine update_damage
 
