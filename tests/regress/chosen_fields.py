@@ -276,6 +276,10 @@ def check_opening(implam, folder):
     require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens the interface under it.")
 
 
+STRINGER = ["stringer%name='web'", "stringer%height=10e-3", "stringer%thickness=1e-3", "stringer%E=70e9",
+            "stringer%density=1600"]
+
+
 def table_of(implam, topic):
     """Return the rows of a table of results, each a list of cells, without the heading."""
     command = [implam, "explain", topic, "--markdown"]
@@ -300,18 +304,19 @@ def check_table(implam, folder):
     rows = table_of(implam, "fields")
     for choice in sorted({row[3] for row in rows} - {"-"}):
         deck = "crack_bands" if choice == "ply_damage" else "damage"  # some fields are of softening plies only
+        stringer = STRINGER if choice == "displacement" else []  # others only with stringers
         history_path = run_deck(implam, write_deck(folder / choice, f"../small/{deck}.nml",
-                                                   [f"output%fields='{choice}'", "time%end=20e-6"]))
+                                                   [f"output%fields='{choice}'", "time%end=20e-6", *stringer]))
         expected = {name: (place, unit, meaning) for name, place, unit, its_choice, _, meaning in rows
                     if its_choice in ("-", choice)}
         found = fields_of(history_path)
         require(found == expected, f"{choice}: there are {found} and not {expected}.")
     columns = list(read_history(history_path))
     # For the only interface, below ply 2.
-    # Columns of lines and of a filter exist only in decks with these (lines.py, restart_growth.py).
+    # Columns of lines, stringers and of a filter exist only in decks with these (lines.py, restart_growth.py).
     in_all = [row for row in table_of(implam, "history")
               if not row[0].startswith(("line_", "load_factor", "force_filtered", "far_field_stress",
-                                           "shortening", "nominal_strain", "gauge_strain"))]
+                                           "shortening", "nominal_strain", "gauge_strain", "stringer_"))]
     expected = [row[0].removesuffix("_N") + "_2" * row[0].endswith("_N") for row in in_all]
     require(columns == expected, f"The columns are {columns} and not {expected}.")
     print(f"{len(rows)} fields and {len(columns)} columns are those of the tables")

@@ -1,5 +1,4 @@
-"""Doublers and ply drops against beam theory, and a doubler over the full plate, also with a stringer on it, against
-the plate of all plies.
+"""Beam theory and the plate of all plies: doublers and ply drops, also with a stringer on a doubler.
 Usage: zones.py IMPLAM FOLDER
 
 Beams bend with the stiffness about the centroid of each part, with 5/6 of the shear stiffness; a force along a strip at
