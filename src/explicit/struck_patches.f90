@@ -12,10 +12,6 @@ module struck_patches
   private
   public :: struck_patch_t, create_struck_patch
 
-  !> Iterations for the position of first contact: one for a patch and for a face without a dent; on a dent the
-  !> indentation changes nearly as the position.
-  integer, parameter :: max_iterations = 50
-
   !> The points within reach.
   type :: struck_patch_t
     !> Index of each point among those of this rank; 0: on another rank, (reached)
@@ -129,19 +125,21 @@ contains
     end if
   end subroutine find_indentation
 
-  !> Chooses the offset with which the impactor in its first position has a given indentation of the deflected face.
+  !> Chooses the offset with which the impactor in its first position has a given indentation of the deflected face. The
+  !> indentation changes nearly as the position, so that the difference decreases until only round-off is left.
   pure subroutine touch(self, w, indentation)
     class(struck_patch_t), intent(inout) :: self
     !> Deflections of the points, (reached)
     real(wp), intent(in) :: w(:)
     !> Depth of an earlier dent; 0: first contact
     real(wp), intent(in) :: indentation
-    real(wp) :: found
-    integer :: iteration
+    real(wp) :: found, difference
 
-    do iteration = 1, max_iterations
+    difference = huge(difference)
+    do
       call self%find_indentation(w, 0.0_wp, found)
-      if (abs(found - indentation) <= epsilon(found)*indentation) exit
+      if (.not. abs(found - indentation) < difference) exit
+      difference = abs(found - indentation)
       self%offset = self%offset + (found - indentation)
     end do
   end subroutine touch

@@ -82,9 +82,7 @@ contains
       end do
     end if
     flat = reshape(ranges, [size(ranges)])
-    do i = 1, size(flat)
-      call model%communicator%maximum(flat(i))
-    end do
+    call model%communicator%maximum(flat)
     ranges = reshape(flat, shape(ranges))
   end function ranges_of
 

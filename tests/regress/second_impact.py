@@ -22,10 +22,10 @@ from solver_runs import EXIT_STOPPED, change_deck, read_history, require, run
 
 SECOND = "second_impact"
 REST_TIME = 0.27e-3
-# Relative. Measured: peak 1e-5, contact 9e-4, as a step is 8e-4 of it.
-REPEATED = 2e-3
+# Relative. Measured: 1.4e-5, 8.7e-4 (a step is 8e-4 of the contact), 8.5e-6, 4.3e-4.
+REPEATED = {"peak_force": 5e-5, "contact_duration": 2e-3, "rebound_velocity": 5e-5, "energy_absorbed": 1e-3}
 # Of the largest energy. Measured: 8e-5 beside the first impact, 5e-5 in ten impacts.
-CLOSED = 5e-4
+CLOSED = 2e-4
 ENERGIES = ("impactor", "kinetic", "strain", "indentation", "delamination", "ply_damage", "contact", "friction",
             "algorithmic", "layers", "damping")
 ELASTIC = "ply_damage", "delamination"
@@ -62,10 +62,10 @@ def check_elastic(implam, folder, _):
     again = ["initial_state%from='first_restart.h5'", "time%settle=0.5e-3", "time%end=1e-3"]
     run([implam, elastic_deck(folder, "again", again)], folder=folder)
     first, second = summary_of(folder, "first"), summary_of(folder, "again")
-    for name in ("peak_force", "contact_duration", "rebound_velocity", "energy_absorbed"):
+    for name, tolerance in REPEATED.items():
         difference = second[name] / first[name] - 1
         print(f"{name} {first[name]:.6g}, again {second[name]:.6g}: {difference:.1e}")
-        require(abs(difference) < REPEATED, f"{name} of an undamaged panel differs.")
+        require(abs(difference) < tolerance, f"{name} of an undamaged panel differs.")
     require(abs(second["peak_force_at"] - first["peak_force_at"] - 0.5e-3) < 1e-6, "The impact begins before rest.")
 
 
