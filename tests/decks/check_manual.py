@@ -18,10 +18,9 @@ import sys
 import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-APP = os.path.join(HERE, "..", "..", "src", "app")
+REPORT = os.path.join(HERE, "..", "..", "src", "report")
 # Members written by the sources; those of a verification are in their own file.
 MEMBER = re.compile(r"json%(?:put|put_null|open_object|open_list)\('(\w+)'")
-OTHER_FILES = ("verifications.f90",)
 MANUAL = os.path.join(HERE, "..", "..", "doc", "manual")
 TABLE = re.compile(r"^\| (?:key|name) \|.*?(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
 RESULTS = ("history", "fields", "summary")
@@ -161,9 +160,9 @@ def members_of(value):
 def written_members():
     """Names of the members that the sources write into a summary, since no single run has all of them."""
     found = set()
-    for name in sorted(os.listdir(APP)):
-        if name.endswith(".f90") and name not in OTHER_FILES:
-            with open(os.path.join(APP, name), encoding="utf-8") as source:
+    for name in sorted(os.listdir(REPORT)):
+        if name.endswith(".f90"):
+            with open(os.path.join(REPORT, name), encoding="utf-8") as source:
                 found |= set(MEMBER.findall(source.read()))
     return found
 

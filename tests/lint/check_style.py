@@ -14,7 +14,7 @@ from pathlib import Path
 MAX_COLUMNS = 120
 MAX_PROCEDURE = 100
 # Lines and branches of a procedure in the folders of the implicit solution, where control flow is hard to follow.
-CORE = {"tangent", "linalg", "steps", "statics", "dynamics", "stepping"}
+CORE = {"newton", "linalg", "statics", "dynamics", "stepping"}
 MAX_CORE_PROCEDURE, MAX_BRANCHES = 60, 15
 BRANCH = re.compile(r"\bif\s*\(|\.and\.|\.or\.|^case\s*\(|^(?:\w+\s*:\s*)?do\b(?!\s*=)")
 MAX_FILE = 400
