@@ -106,9 +106,11 @@ contains
   pure real(wp) function ratio_of_moduli(setup) result(ratio)
     !> Laminate and materials
     class(setup_t), intent(in) :: setup
+    integer, allocatable :: used(:)
 
-    associate (used => setup%materials(setup%used_materials()))
-      ratio = maxval([used%g13, used%g23])/maxval([used%e1, used%e2])
+    used = setup%used_materials() ! not as an index in `associate`, which GNU 14 refuses
+    associate (materials => setup%materials(used))
+      ratio = maxval([materials%g13, materials%g23])/maxval([materials%e1, materials%e2])
     end associate
   end function ratio_of_moduli
 
