@@ -126,15 +126,19 @@ class Breach:
         return f"{self.path}:{self.line}: {self.word}: {self.instead}"
 
 
+def alone(words):
+    """Pattern of any of some words, alone or between underscores."""
+    return re.compile(rf"(?<![^\W_])(?:{'|'.join(words)})(?![^\W_])", re.IGNORECASE)
+
+
 def pattern(words):
-    """Pattern of words alone or between underscores, and the advice for each."""
-    bound = [rf"(?<![^\W_])(?:{word})(?![^\W_])" for word in words]
-    return [(re.compile(word, re.IGNORECASE), advice) for word, advice in zip(bound, words.values(), strict=True)]
+    """Pattern of each word, and the advice for it."""
+    return [(alone([word]), advice) for word, advice in words.items()]
 
 
 EVERYWHERE, IN_NAMES = pattern(WORDS), pattern(NAMES)
 # Any of them, so that most lines are searched only once.
-ANY = re.compile("|".join(word.pattern for word, _ in EVERYWHERE + IN_NAMES), re.IGNORECASE)
+ANY = alone([*WORDS, *NAMES])
 STAYS = re.compile("|".join(f"(?:{name})" for name in PUBLIC))
 STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 
@@ -151,7 +155,7 @@ def check_text(text, path):
     for number, line in enumerate(text.splitlines(), 1):
         if suffix == ".py" and line.count('"""') == 1:
             inside = not inside
-        if not ANY.search(line.replace("_", " ")) and not ANY.search(line):
+        if not ANY.search(line) and not ("_" in line and ANY.search(line.replace("_", " "))):
             continue
         line = STAYS.sub(" ", line)
         for word, instead in EVERYWHERE:
