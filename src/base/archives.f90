@@ -1,6 +1,7 @@
 !> Each type with evolving data has one routine that both saves and loads it, so that checkpoint, repetition of a step
 !> and restart have the same state.
 module archives
+  use field_mappings, only: field_mapping_t
   use kinds, only: wp
   implicit none
   private
@@ -87,8 +88,8 @@ module archives
 
     !> Visits a field: column i of this rank belongs to the global column `columns(i)`, which only
     !> one rank owns. Stored in global order, so a file can be read by another number of ranks.
-    subroutine visit_field(self, name, columns, global_columns, value)
-      import :: archive_t, wp
+    subroutine visit_field(self, name, columns, global_columns, value, mapping)
+      import :: archive_t, field_mapping_t, wp
       class(archive_t), intent(inout) :: self
       !> Name, unique within the archive
       character(len=*), intent(in) :: name
@@ -98,6 +99,8 @@ module archives
       integer, intent(in) :: global_columns
       !> The field; columns after `size(columns)` (ghosts) are not changed
       real(wp), intent(inout) :: value(:, :)
+      !> How it is mapped to another mesh
+      type(field_mapping_t), intent(in) :: mapping
     end subroutine visit_field
   end interface
 end module archives

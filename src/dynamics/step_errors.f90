@@ -5,6 +5,7 @@
 !> alternates.
 module step_errors
   use archives, only: archive_t
+  use field_mappings, only: area_field
   use kinds, only: wp
   use models, only: model_t
   use newmark_integrators, only: plate_integrator_t
@@ -203,7 +204,7 @@ contains
 
     field = transpose(self%deflection)
     call archive%field('step_error/deflection', model%distribution%points(:model%distribution%owned), &
-                       model%mesh%points(), field)
+                       model%mesh%points(), field, area_field)
     self%deflection = transpose(field)
   end subroutine visit_deflections
 end module step_errors

@@ -9,6 +9,7 @@ module central_differences
   use archives, only: archive_t
   use batch_strains, only: depends_on_slopes
   use central_difference_parameters, only: central_difference_parameters_t
+  use field_mappings, only: motion_field
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
   use front_onsets, only: front_onsets_t, create_front_onsets
   use inertia_scaling, only: inertia_scaling_t, create_inertia_scaling
@@ -365,7 +366,7 @@ contains
     call archive%item('explicit/frequency', self%stiffened)
     self%stiffened = max(self%stiffened, self%frequency)
     associate (owned => model%distribution%points(:model%distribution%owned), points => model%mesh%points())
-      call archive%field('explicit/forces', owned, points, self%force)
+      call archive%field('explicit/forces', owned, points, self%force, motion_field)
       call self%rigs%visit(archive, owned, points)
       call self%impact%visit(archive)
       if (size(model%lines) > 0 .or. allocated(model%pressure) .or. model%setup%initial%is_inherited) &

@@ -4,6 +4,7 @@ module interface_stacks
   use archives, only: archive_t
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_laws, only: cohesive_law_t
+  use field_mappings, only: vector_fields
   use kinds, only: wp
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t, along_x, along_y, along_z
@@ -130,7 +131,7 @@ contains
     values(14, :) = self%friction%deficit
     values(15, :) = self%work
     values(16:19, :) = self%sticking
-    call archive%field('explicit/interfaces', owned, points, values)
+    call archive%field('explicit/interfaces', owned, points, values, vector_fields([1, 4, 7, 16, 18]))
     self%forces = values(1:3, :)
     self%change = values(4:6, :)
     self%earlier = values(7:9, :)

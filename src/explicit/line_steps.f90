@@ -8,6 +8,7 @@
 module line_steps
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
+  use field_mappings, only: vector_fields
   use kinds, only: wp
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
@@ -337,7 +338,7 @@ contains
         fields(dof%component + 11, dof%point) = dof%offset
       end associate
     end do
-    call archive%field('explicit/lines', owned, points, fields)
+    call archive%field('explicit/lines', owned, points, fields, vector_fields([1, 4, 6, 9, 12, 15]))
     self%work = fields(11, :)
     if (archive%loading) call add_offset(self, fields(12:, :))
     do i = 1, size(self%dofs)

@@ -14,6 +14,7 @@ module rig_steps
   use dense_systems, only: pseudo_inverse
   use dependent_points, only: find_masters
   use exact_sums, only: exact_sum_t
+  use field_mappings, only: area_field
   use interface_stacks, only: last_layer
   use kinds, only: wp
   use models, only: model_t
@@ -329,7 +330,7 @@ contains
     fields(2, :) = self%approach
     fields(3, :) = self%frame_loss
     fields(4, :) = self%step_loss
-    call archive%field('explicit/frames', owned, points, fields)
+    call archive%field('explicit/frames', owned, points, fields, area_field)
     self%reaction = fields(1, :)
     self%approach = fields(2, :)
     self%frame_loss = fields(3, :)

@@ -4,6 +4,7 @@
 !> undamaged interface, independent of the damage: contact is conservative, and the factored operator does not change
 !> where undamaged surfaces change between pressure and tension.
 module cohesive_interfaces
+  use field_mappings, only: area_field
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: law_cohesive, contact_none
@@ -363,7 +364,7 @@ contains
     fields(2, :) = self%points%dissipated
     fields(3:, :) = self%stiffness
     associate (partition => model%distribution)
-      call archive%field('cohesive/points', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('cohesive/points', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
     end associate
     if (.not. archive%loading) return
     self%points%damage = fields(1, :)

@@ -1,5 +1,6 @@
 !> Friction between the surfaces of cohesive interfaces: friction limits at their points, and frictional heat.
 module cohesive_sliding
+  use field_mappings, only: vector_field
   use kinds, only: wp
   use archives, only: archive_t
   use cohesive_surfaces, only: cohesive_surfaces_t
@@ -86,7 +87,8 @@ contains
       end associate
     end do
     associate (partition => model%distribution)
-      call archive%field('cohesive/sliding', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('cohesive/sliding', partition%points(:partition%owned), model%mesh%points(), fields, &
+                         vector_field)
     end associate
     if (.not. archive%loading) return
     interfaces%points%sliding%limit = fields(3, :)

@@ -3,6 +3,7 @@
 !> The pressure is constant over a step, and complementarity is required at its end. The work of contact is then minus
 !> the pressure times the gap that closed: contact never creates energy, with any integrator of the plate.
 module contact_and_ties
+  use field_mappings, only: area_field
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: contact_augmented_lagrangian
@@ -263,7 +264,7 @@ contains
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
     associate (partition => model%distribution)
-      call archive%field('faces/pressures', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('faces/pressures', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
     end associate
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)

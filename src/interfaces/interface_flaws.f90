@@ -5,6 +5,7 @@
 module interface_flaws
   use archives, only: archive_t
   use cohesive_interfaces, only: cohesive_interfaces_t
+  use field_mappings, only: area_field
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use models, only: model_t
@@ -126,7 +127,7 @@ contains
     fields(2, :) = interfaces%opening
     fields(3, :) = merge(1.0_wp, 0.0_wp, interfaces%by_energy)
     associate (partition => model%distribution)
-      call archive%field('cohesive/law', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('cohesive/law', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
     end associate
     if (.not. archive%loading) return
     interfaces%strength = fields(1, :)

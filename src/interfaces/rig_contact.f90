@@ -4,6 +4,7 @@
 !> A frame is rigid and constrains w at its nodes by an inequality. The law is that of surfaces (`surface_contact`)
 !> with the gap -w and one multiplier per node, updated until it converges.
 module rig_contact
+  use field_mappings, only: area_field
   use kinds, only: wp
   use archives, only: archive_t
   use exact_sums, only: exact_sum_t
@@ -239,7 +240,7 @@ contains
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
     associate (partition => model%distribution)
-      call archive%field('rig/pressures', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('rig/pressures', partition%points(:partition%owned), model%mesh%points(), fields, area_field)
     end associate
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)

@@ -5,6 +5,7 @@
 !> while a shear wave crosses a few elements, or within one step if that is longer. The work against it is the energy
 !> released.
 module tie_release
+  use field_mappings, only: vector_field
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: contact_none
@@ -192,7 +193,7 @@ contains
     fields(:3, :) = self%force
     fields(4, :) = self%remaining
     associate (partition => model%distribution)
-      call archive%field('ties/forces', partition%points(:partition%owned), model%mesh%points(), fields)
+      call archive%field('ties/forces', partition%points(:partition%owned), model%mesh%points(), fields, vector_field)
     end associate
     if (.not. archive%loading) return
     self%force = fields(:3, :)

@@ -3,15 +3,12 @@
 module layer_transfers
   use archives, only: archive_t
   use communicators, only: communicator_t
+  use field_mappings, only: field_mapping_t
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   implicit none
   private
   public :: layer_transfer_t
-
-  !> Name of the field of permanent shear strains of plies: strain and accumulated magnitude of each. In the axes of
-  !> plies along x or y the strain changes its sign in a mirror image.
-  character(len=*), parameter, public :: shear_field = 'ply_failure/permanent_shear'
 
   !> One item of any type, as a table of reals, which represent every integer exactly.
   type :: stored_item_t
@@ -29,10 +26,10 @@ module layer_transfers
     integer, allocatable :: point_origin(:), element_origin(:)
     !> True for elements of the mesh loaded that have fewer plies than their origin
     logical, allocatable :: is_split(:)
-    !> Signs of the motion of each point with an image as origin, (5, points)
-    real(wp), allocatable :: signs(:, :)
-    !> True for elements whose origin is a mirror image
-    logical, allocatable :: mirrored(:)
+    !> Directions along x and y that are reversed at the origin of each point, (2, points), and element, (2, elements)
+    logical, allocatable :: point_turned(:, :), element_turned(:, :)
+    !> Plies of the plate
+    integer :: plies = 0
     !> The items, the first ones of the list
     type(stored_item_t), allocatable :: kept(:)
     !> Their number
@@ -66,8 +63,8 @@ contains
 
     self%loading = .true.
     allocate (self%point_origin(new%points()), self%element_origin(new%elements()), self%is_split(new%elements()))
-    allocate (self%signs(5, new%points()), source=1.0_wp)
-    allocate (self%mirrored(new%elements()))
+    allocate (self%point_turned(2, new%points()), self%element_turned(2, new%elements()))
+    self%plies = size(new%stations)
     do point = 1, size(self%point_origin)
       place = new%lines_of(new%point_node(point))
       call find_image(old, new, 0, place, turned)
@@ -75,8 +72,7 @@ contains
         self%point_origin(point) = old%first_point(node)
         if (zone > 0) self%point_origin(point) = old%lower_point(node, zone)
       end associate
-      if (turned(1)) self%signs([1, 4], point) = -1
-      if (turned(2)) self%signs([2, 5], point) = -1
+      self%point_turned(:, point) = turned
     end do
     do element = 1, size(self%element_origin)
       place = new%place_of(new%element_cell(element))
@@ -85,7 +81,7 @@ contains
         origin = old%element_at(place(1) + (place(2) - 1)*old%cells(1), plies(1))
         self%is_split(element) = any(old%plies_of(origin) /= plies)
       end associate
-      self%mirrored(element) = turned(1) .neqv. turned(2)
+      self%element_turned(:, element) = turned
     end do
   end subroutine turn_to
 
@@ -266,7 +262,7 @@ contains
 
   !> Visits a field over points or elements; its length shows which, as there are always more points. Collective
   !> when saving.
-  subroutine field(self, name, columns, global_columns, value)
+  subroutine field(self, name, columns, global_columns, value, mapping)
     class(layer_transfer_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -276,28 +272,42 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    integer, allocatable :: origins(:)
-    integer :: i, item, rows
+    !> How it is mapped
+    type(field_mapping_t), intent(in) :: mapping
 
-    if (self%loading) then
-      origins = self%element_origin
-      if (global_columns == size(self%point_origin)) origins = self%point_origin
-      rows = 0
-      if (index(name, 'motion/') == 1) rows = 5
-      if (name == 'cohesive/sliding') rows = 2
-      item = self%find(name)
-      associate (values => self%kept(item)%values)
-        do i = 1, size(columns)
-          if (origins(columns(i)) > 0) value(:, i) = values(:, origins(columns(i)))
-          if (rows > 0) value(:rows, i) = self%signs(:rows, columns(i))*value(:rows, i)
-          if (name == shear_field) then
-            if (self%mirrored(columns(i))) value(1::2, i) = -value(1::2, i)
-          end if
-        end do
-      end associate
-    else
+    if (.not. self%loading) then
       call self%keep_field(name, columns, global_columns, value)
+    else if (global_columns == size(self%point_origin)) then
+      call copy_columns(self%kept(self%find(name))%values, self%point_origin(columns), self%point_turned(:, columns), 1)
+    else
+      call copy_columns(self%kept(self%find(name))%values, self%element_origin(columns), &
+                        self%element_turned(:, columns), merge(self%plies, 1, mapping%is_per_ply))
     end if
+
+  contains
+
+    !> Copies the columns that have an origin.
+    subroutine copy_columns(saved, origins, turned, blocks)
+      !> Values of the old points or elements
+      real(wp), intent(in) :: saved(:, :)
+      !> Origin of each column; 0: none
+      integer, intent(in) :: origins(:)
+      !> Reversed directions at the origins, (2, columns)
+      logical, intent(in) :: turned(:, :)
+      !> Number of blocks of rows
+      integer, intent(in) :: blocks
+      integer :: i, first, rows
+
+      rows = size(saved, 1)/blocks
+      do i = 1, size(origins)
+        if (origins(i) == 0) cycle
+        do first = 1, size(saved, 1), max(rows, 1)
+          associate (last => first + rows - 1)
+            value(first:last, i) = mapping%signs(rows, turned(:, i))*saved(first:last, origins(i))
+          end associate
+        end do
+      end do
+    end subroutine copy_columns
   end subroutine field
 
   !> Stores a field of all ranks. Collective.

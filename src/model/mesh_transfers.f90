@@ -5,17 +5,14 @@
 !> of the new node or cell, so that integrals over the plate are conserved: the area of a node of nine-node cells is a
 !> rectangle with the integrals of its shape functions as sides.
 module mesh_transfers
+  use field_mappings, only: field_mapping_t
   use kinds, only: wp
-  use layer_transfers, only: layer_transfer_t, shear_field
+  use layer_transfers, only: layer_transfer_t
   use layered_meshes, only: layered_mesh_t
   use line_overlaps, only: line_overlap_t, overlaps_of_cells, overlaps_of_nodes
   implicit none
   private
   public :: mesh_transfer_t
-
-  !> Prefixes of the names of motion, and of quantities per ply of an element; name of the field per element.
-  character(len=*), parameter :: motion_group = 'motion/', ply_group = 'ply_failure/', &
-                                 section_field = 'ply_failure/stiffness', slip_field = 'cohesive/sliding'
 
   !> The archive: a state is saved to it, the archive is switched to another mesh, and the state is loaded from it.
   type, extends(layer_transfer_t) :: mesh_transfer_t
@@ -53,7 +50,7 @@ contains
 
   !> Visits a field over points or elements; its length shows which, as there are always more points. Collective
   !> when saving.
-  subroutine field(self, name, columns, global_columns, value)
+  subroutine field(self, name, columns, global_columns, value, mapping)
     class(mesh_transfer_t), intent(inout) :: self
     !> Its name
     character(len=*), intent(in) :: name
@@ -63,6 +60,8 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
+    !> How it is mapped
+    type(field_mapping_t), intent(in) :: mapping
     integer :: item, i
 
     if (.not. self%loading) then
@@ -73,23 +72,25 @@ contains
     associate (saved => self%kept(item)%values)
       do i = 1, size(columns)
         if (global_columns /= self%new%points()) then
-          call find_in_cells(self, saved, columns(i), name, value(:, i))
-        else if (index(name, motion_group) == 1) then
-          value(:, i) = motion_at(self, saved, columns(i))
+          call find_in_cells(self, saved, columns(i), mapping, value(:, i))
+        else if (mapping%is_motion) then
+          value(:, i) = motion_at(self, saved, columns(i), mapping)
         else
-          call find_at_node(self, saved, columns(i), name, value(:, i))
+          call find_at_node(self, saved, columns(i), mapping, value(:, i))
         end if
       end do
     end associate
   end subroutine field
 
   !> Motion of the old elements at a point.
-  pure function motion_at(self, saved, point) result(motion)
+  pure function motion_at(self, saved, point, mapping) result(motion)
     class(mesh_transfer_t), intent(in) :: self
     !> Unknowns of the old points, (5, points)
     real(wp), intent(in) :: saved(:, :)
     !> Point of the new mesh
     integer, intent(in) :: point
+    !> Signs in images
+    type(field_mapping_t), intent(in) :: mapping
     !> Its unknowns
     real(wp) :: motion(5)
     real(wp) :: at(2), shapes(3, 2)
@@ -113,8 +114,7 @@ contains
         end do
       end do
     end associate
-    if (turned(1)) motion([1, 4]) = -motion([1, 4])
-    if (turned(2)) motion([2, 5]) = -motion([2, 5])
+    motion = mapping%signs(5, turned)*motion
   end function motion_at
 
   !> Unknowns of the layer below a zone at a node, with zero jumps where layers are not separate.
@@ -138,14 +138,14 @@ contains
   end function unknowns_at
 
   !> Means over the area of a node; where the old mesh has no such layer, the present value is used.
-  pure subroutine find_at_node(self, saved, point, name, values)
+  pure subroutine find_at_node(self, saved, point, mapping, values)
     class(mesh_transfer_t), intent(in) :: self
     !> Values of the old points, (rows, points)
     real(wp), intent(in) :: saved(:, :)
     !> Point of the new mesh
     integer, intent(in) :: point
-    !> Name of the field
-    character(len=*), intent(in) :: name
+    !> Signs in images
+    type(field_mapping_t), intent(in) :: mapping
     !> Its values
     real(wp), intent(inout) :: values(:)
     real(wp), allocatable :: terms(:, :), weights(:)
@@ -167,8 +167,7 @@ contains
             from = old%first_point(node)
             if (zone > 0) from = old%lower_point(node, zone)
           end associate
-          if (from > 0) terms(:, n) = saved(:, from)
-          if (name == slip_field) terms(:2, n) = merge(-terms(:2, n), terms(:2, n), turned .and. from > 0)
+          if (from > 0) terms(:, n) = mapping%signs(size(values), turned)*saved(:, from)
         end do
       end do
     end associate
@@ -176,14 +175,14 @@ contains
   end subroutine find_at_node
 
   !> Means over the area of a cell; for quantities per ply, also between layers that differ.
-  pure subroutine find_in_cells(self, saved, element, name, values)
+  pure subroutine find_in_cells(self, saved, element, mapping, values)
     class(mesh_transfer_t), intent(in) :: self
     !> Values of the old elements, (rows, elements)
     real(wp), intent(in) :: saved(:, :)
     !> Element of the new mesh
     integer, intent(in) :: element
-    !> Name of the field
-    character(len=*), intent(in) :: name
+    !> Rows per ply, and signs in images
+    type(field_mapping_t), intent(in) :: mapping
     !> Its values
     real(wp), intent(inout) :: values(:)
     real(wp), allocatable :: terms(:, :), weights(:)
@@ -192,7 +191,7 @@ contains
 
     cell = self%new%place_of(self%new%element_cell(element))
     rows = size(values)
-    if (index(name, ply_group) == 1 .and. name /= section_field) rows = size(values)/size(self%new%stations)
+    if (mapping%is_per_ply) rows = size(values)/size(self%new%stations)
     associate (x => self%cells_x(cell(1)), y => self%cells_y(cell(2)), old => self%old, &
                range => self%new%plies_of(element))
       allocate (terms(size(values), size(x%length)*size(y%length)), weights(size(x%length)*size(y%length)))
@@ -203,14 +202,15 @@ contains
           call find_image(self, x, y, i, j, old%cells, place, turned)
           weights(n) = x%length(i)*y%length(j)
           terms(:, n) = saved(:, old%element_at(old%cell_at(place(1), place(2)), range(1)))
-          if (rows == size(values)) cycle
+          if (.not. mapping%is_per_ply) terms(:, n) = mapping%signs(rows, turned)*terms(:, n)
+          if (.not. mapping%is_per_ply) cycle
           do ply = 1, size(self%new%stations)
-            if (self%new%stations(ply) < range(1) .or. self%new%stations(ply) > range(2)) cycle
-            terms((ply - 1)*rows + 1:ply*rows, n) = &
-              saved((ply - 1)*rows + 1:ply*rows, old%element_at(old%cell_at(place(1), place(2)), &
-                                                                self%new%stations(ply)))
+            associate (first => (ply - 1)*rows + 1, last => ply*rows, station => self%new%stations(ply))
+              if (station >= range(1) .and. station <= range(2)) &
+                terms(first:last, n) = saved(first:last, old%element_at(old%cell_at(place(1), place(2)), station))
+              terms(first:last, n) = mapping%signs(rows, turned)*terms(first:last, n)
+            end associate
           end do
-          if (name == shear_field .and. (turned(1) .neqv. turned(2))) terms(1::2, n) = -terms(1::2, n)
         end do
       end do
     end associate

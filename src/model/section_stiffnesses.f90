@@ -1,5 +1,6 @@
 !> Saves and loads the section stiffness of the damaged elements.
 module section_stiffnesses
+  use field_mappings, only: area_field
   use kinds, only: wp
   use archives, only: archive_t
   use element_batches, only: batch_of, lane_of
@@ -24,7 +25,7 @@ contains
     do element = 1, size(values, 2)
       values(:, element) = stiffness(lane_of(element), :, batch_of(element))
     end do
-    call archive%field(name, model%distribution%elements, model%mesh%elements(), values)
+    call archive%field(name, model%distribution%elements, model%mesh%elements(), values, area_field)
     do element = 1, size(values, 2)
       stiffness(lane_of(element), :, batch_of(element)) = values(:, element)
     end do

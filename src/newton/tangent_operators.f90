@@ -2,6 +2,7 @@
 !> preconditioner that may lag behind the state: as the residual has the exact internal force, its age affects the
 !> number of iterations, not the converged solution.
 module tangent_operators
+  use field_mappings, only: area_field, motion_field
   use kinds, only: wp
   use archives, only: archive_t
   use errors, only: error_t
@@ -256,9 +257,10 @@ contains
     call archive%item('operator/stiffness_factor', self%stiffness_factor)
     call archive%item('operator/mass_factor', self%mass_factor)
     associate (share => model%distribution)
-      call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement)
+      call archive%field('operator/displacement', share%points(:share%owned), model%mesh%points(), self%displacement, &
+                         motion_field)
       if (model%has_point_stiffness) &
-        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added)
+        call archive%field('operator/added', share%points(:share%owned), model%mesh%points(), self%added, area_field)
     end associate
     if (model%setup%has_variable_sections()) call visit_stiffness(archive, 'operator/stiffness', model, self%stiffness)
     if (archive%loading .and. self%ready) then

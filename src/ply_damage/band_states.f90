@@ -2,6 +2,7 @@
 module band_states
   use archives, only: archive_t
   use crack_bands, only: band_state_t, is_damaged
+  use field_mappings, only: ply_field, ply_shear_field
   use kinds, only: wp
   use models, only: model_t
   use ply_damage_parameters, only: energy_modes, failure_modes, fibre_compression, fibre_tension, &
@@ -205,15 +206,18 @@ contains
         end associate
       end do
     end do
-    call archive%field('ply_failure/crack_bands', model%distribution%elements, model%mesh%elements(), table)
-    if (model%setup%ply_damage%permanent_shear) &
-      call archive%field('ply_failure/permanent_shear', model%distribution%elements, model%mesh%elements(), strains)
-    if (model%setup%ply_damage%crack_closure) &
-      call archive%field('ply_failure/closed_cracks', model%distribution%elements, model%mesh%elements(), closed)
-    if (model%setup%ply_damage%kinking) &
-      call archive%field('ply_failure/kinked_fibres', model%distribution%elements, model%mesh%elements(), kinked)
-    if (model%setup%has_rates()) &
-      call archive%field('ply_failure/strengthened', model%distribution%elements, model%mesh%elements(), cracked)
+    associate (owned => model%distribution%elements, elements => model%mesh%elements(), &
+               damage => model%setup%ply_damage)
+      call archive%field('ply_failure/crack_bands', owned, elements, table, ply_field)
+      if (damage%permanent_shear) &
+        call archive%field('ply_failure/permanent_shear', owned, elements, strains, ply_shear_field)
+      if (damage%crack_closure) &
+        call archive%field('ply_failure/closed_cracks', owned, elements, closed, ply_field)
+      if (damage%kinking) &
+        call archive%field('ply_failure/kinked_fibres', owned, elements, kinked, ply_field)
+      if (model%setup%has_rates()) &
+        call archive%field('ply_failure/strengthened', owned, elements, cracked, ply_field)
+    end associate
     if (.not. archive%loading) return
     do element = 1, size(self%offset)
       do entry = self%range(1, element), self%range(2, element)

@@ -1,6 +1,7 @@
 !> Sudden failure of the plies of every element, irreversible in each mode (section 3.2 of the paper), and the reduced
 !> elastic constants.
 module failed_modes
+  use field_mappings, only: ply_field
   use kinds, only: wp
   use archives, only: archive_t
   use plies, only: elasticity_t
@@ -118,7 +119,7 @@ contains
     if (.not. allocated(self%occurred)) return
     table = reshape(merge(1.0_wp, 0.0_wp, self%occurred), [size(self%occurred, 1)*size(self%occurred, 2), &
                                                           size(self%occurred, 3)])
-    call archive%field('ply_failure/occurred', model%distribution%elements, model%mesh%elements(), table)
+    call archive%field('ply_failure/occurred', model%distribution%elements, model%mesh%elements(), table, ply_field)
     self%occurred = reshape(table, shape(self%occurred)) > 0
     ! The loaded state may be that of an element with more plies.
     do element = 1, size(self%occurred, 3)

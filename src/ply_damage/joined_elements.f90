@@ -12,6 +12,7 @@ module joined_elements
   use column_exchanges, only: column_exchange_t, new_column_exchange
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, flow_band
   use element_batches, only: batch_of
+  use field_mappings, only: area_field
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use models, only: model_t
@@ -272,7 +273,7 @@ contains
     real(wp) :: fields(1, size(separated))
 
     fields(1, :) = merge(1.0_wp, 0.0_wp, self%separated)
-    call archive%field('ply_failure/separated', model%distribution%elements, model%mesh%elements(), fields)
+    call archive%field('ply_failure/separated', model%distribution%elements, model%mesh%elements(), fields, area_field)
     separated = fields(1, :) > 0
   end subroutine visit
 

@@ -6,6 +6,7 @@
 module loading_rates
   use archives, only: archive_t
   use crack_bands, only: band_strains_t, crack_band_t
+  use field_mappings, only: ply_field
   use kinds, only: wp
   use models, only: model_t
   use ply_strains, only: strain_moments_t, strains_of_ply
@@ -107,7 +108,8 @@ contains
         table(row + 1:row + values, element) = self%accepted(:, offset(element) + ply)
       end do
     end do
-    call archive%field('ply_failure/loading_rates', model%distribution%elements, model%mesh%elements(), table)
+    call archive%field('ply_failure/loading_rates', model%distribution%elements, model%mesh%elements(), table, &
+                       ply_field)
     if (.not. archive%loading) return
     do element = 1, size(offset)
       do ply = range(1, element), range(2, element)

@@ -19,18 +19,6 @@ module run_records
   private
   public :: run_record_t, new_run_record
 
-  !> Kinds of warnings of a run: a delamination at the border of its zone; energy created or dissipated by integrators;
-  !> an indentation above the thickness; slopes beyond moderate rotations; a clamped plate with failed fibres and large
-  !> membrane strains; a hole; adaptive layers beyond the core; steps of the smallest length with too large an error;
-  !> energy error; kinetic energy in slow motion; kinetic energy of motions with scaled inertia; energy
-  !> dissipated by contact of surfaces; a struck point deeper than the impactor; strain energy
-  !> raised by mapping to another mesh; a stringer beyond its strength.
-  integer, parameter, public :: warning_border = 1, warning_energy = 2, warning_loss = 3, warning_indentation = 4, &
-                                warning_slopes = 5, warning_membrane = 6, warning_perforation = 7, warning_core = 8, &
-                                warning_steps = 9, warning_ledger = 10, warning_kinetic = 11, &
-                                warning_scaled = 12, warning_contact = 13, warning_below_nose = 14, &
-                                warning_mapping = 15, warning_stringer = 16
-
   !> Time of an event before the run.
   real(wp), parameter :: before_run = -1
 
@@ -251,7 +239,7 @@ contains
   !> Stores a warning.
   pure subroutine note_warning(self, kind, zone, time)
     class(run_record_t), intent(inout) :: self
-    !> One of the kinds above
+    !> Number of its row
     integer, intent(in) :: kind
     !> Its zone; 0: none
     integer, intent(in) :: zone
@@ -266,7 +254,7 @@ contains
   !> True if a warning was given before.
   pure logical function has_warned(self, kind, zone)
     class(run_record_t), intent(in) :: self
-    !> One of the kinds above
+    !> Number of its row
     integer, intent(in) :: kind
     !> Its zone; 0: none
     integer, intent(in) :: zone

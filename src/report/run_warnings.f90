@@ -11,21 +11,16 @@ module run_warnings
   use logger, only: log_t
   use mesh_parameters, only: edge_clamped
   use models, only: model_t
-  use plate_options, only: max_slope
   use ply_damage_parameters, only: failure_modes, fibre_failure
   use roundings, only: rounding
-  use run_records, only: run_record_t, warning_border, warning_contact, warning_core, warning_energy, &
-                         warning_perforation, warning_indentation, warning_kinetic, warning_ledger, warning_loss, &
-                         warning_scaled, warning_slopes, warning_steps, warning_membrane, warning_below_nose, &
-                         warning_mapping, warning_stringer
+  use run_records, only: run_record_t
   use run_moments, only: moment
   use slow_motions, only: has_developed
   use states, only: state_t
   use stringer_columns, only: weakest_stringer
   use text, only: line_t, append
   use steppers, only: stepper_t
-  use warning_texts, only: warning_text, max_contact, max_deflection_ratio, max_hollow, &
-                           max_kinetic, max_scaled
+  use warning_rows, only: kind_of, limit_of, warning_text
   implicit none
   private
   public :: report_warnings, report_last_warnings, reported_warnings
@@ -67,10 +62,8 @@ contains
 
     if (deck%load_level(stepper%now%time) >= 1) return
     allocate (warnings(0))
-    associate (now => stepper%now)
-      call add_energy_warnings(deck, stepper, energy_check%check(now%ledger, now%interfaces%unreleased(model), 1.0_wp, &
-                                                                 .true.), now%time, record, warnings)
-    end associate
+    call add_energy_warnings(energy_check%check(stepper%now%ledger, stepper%now%interfaces%unreleased(model), 1.0_wp, &
+                                                .true.), deck, stepper, record, warnings)
     call give(deck, warnings, log, error)
   end subroutine report_last_warnings
 
@@ -112,98 +105,94 @@ contains
     allocate (warnings(0))
     thickness = deck%expected%scales%thickness
     do zone = 1, size(now%interfaces%border_reached)
-      if (now%interfaces%border_reached(zone)) call add(warning_border, zone)
-      if (leaves_core(deck, model%setup%delaminations(zone))) call add(warning_core, 0)
+      call add('border', now%interfaces%border_reached(zone), zone)
+      call add('core', leaves_core(deck, model%setup%delaminations(zone)))
     end do
-    if (now%indentation%alpha > max_indentation(deck)) call add(warning_indentation, 0)
-    if (now%force > 0 .and. now%depth_below_impactor(model) > max_hollow*thickness) call add(warning_below_nose, 0)
-    if (stepper%exceeds_tolerance()) call add(warning_steps, 0)
-    if (record%mapping%raises_strain()) call add(warning_mapping, 0)
-    if (.not. record%has_warned(warning_slopes, 0)) then
-      if (is_steep(model, now)) call add(warning_slopes, 0)
-    end if
-    if (.not. record%has_warned(warning_stringer, 0) .and. have_strengths(deck)) then
-      if (weakest_stringer(model, now%motion%displacement) > 0) call add(warning_stringer, 0)
-    end if
-    if (.not. record%has_warned(warning_membrane, 0) .and. abs(now%deflection) > max_deflection_ratio*thickness) then
-      if (has_fibre_failure(deck, model, now)) call add(warning_membrane, 0)
-    end if
+    call add('indentation', now%indentation%alpha > max_indentation(deck))
+    if (now%force > 0) &
+      call add('below_nose', now%depth_below_impactor(model) > limit_of('below_nose')*thickness)
+    call add('steps', stepper%exceeds_tolerance())
+    call add('mapping', record%mapping%raises_strain())
+    if (is_new('slopes')) call add('slopes', is_steep(model, now))
+    if (is_new('stringer') .and. have_strengths(deck)) &
+      call add('stringer', weakest_stringer(model, now%motion%displacement) > 0)
+    if (is_new('membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
+      call add('membrane', has_fibre_failure(deck, model, now))
     ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
-    if (.not. record%has_warned(warning_perforation, 0) .and. deck%has_ply_damage .and. now%force > 0 .and. &
-        now%impactor%velocity >= 0) then
-      if (is_perforated(model, now)) call add(warning_perforation, 0)
-    end if
+    if (is_new('perforation') .and. deck%has_ply_damage .and. now%force > 0 .and. now%impactor%velocity >= 0) &
+      call add('perforation', is_perforated(model, now))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
     call record%note_motion(deck, now)
-    call add_motion_warnings(deck, stepper, now, record, warnings)
-    call add_energy_warnings(deck, stepper, exceeded, now%time, record, warnings)
+    if (deck%is_impact() .or. has_developed(deck, now%time)) then
+      call add('scaled', record%scaled_energy > limit_of('scaled')*now%ledger%largest)
+      call add('contact', stepper%dissipates_in_contact() .and. &
+               now%ledger%contact > limit_of('contact')*now%ledger%largest)
+    end if
+    call add('kinetic', record%slow_motion%share > limit_of('kinetic'))
+    call add_energy_warnings(exceeded, deck, stepper, record, warnings)
 
   contains
 
-    !> Adds a warning at its first occurrence.
-    subroutine add(kind, zone)
-      !> Its kind and zone
-      integer, intent(in) :: kind, zone
+    !> True: the warning, which concerns no zone, has not been given.
+    pure logical function is_new(name)
+      !> Its name
+      character(len=*), intent(in) :: name
 
-      call add_warning(deck, stepper, kind, zone, now%time, record, warnings)
+      is_new = .not. record%has_warned(kind_of(name), 0)
+    end function is_new
+
+    !> Adds a warning at its first occurrence.
+    subroutine add(name, occurs, at_zone)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Whether its condition is met
+      logical, intent(in) :: occurs
+      !> The zone it concerns
+      integer, intent(in), optional :: at_zone
+
+      call add_warning(name, occurs, deck, stepper, record, warnings, at_zone)
     end subroutine add
   end subroutine find_warnings
 
-  !> Adds warnings of kinetic energy: of motions with scaled inertia, lost as surfaces meet, and of a slow motion.
-  subroutine add_motion_warnings(deck, stepper, now, record, warnings)
-    type(deck_t), intent(in) :: deck
-    class(stepper_t), intent(in) :: stepper
-    type(state_t), intent(in) :: now
-    !> Receives the warnings
-    type(run_record_t), intent(inout) :: record
-    !> Receives their sentences
-    type(line_t), allocatable, intent(inout) :: warnings(:)
-
-    if (deck%is_impact() .or. has_developed(deck, now%time)) then
-      if (record%scaled_energy > max_scaled*now%ledger%largest) &
-        call add_warning(deck, stepper, warning_scaled, 0, now%time, record, warnings)
-      if (stepper%dissipates_in_contact() .and. now%ledger%contact > max_contact*now%ledger%largest) &
-        call add_warning(deck, stepper, warning_contact, 0, now%time, record, warnings)
-    end if
-    if (record%slow_motion%share > max_kinetic) &
-      call add_warning(deck, stepper, warning_kinetic, 0, now%time, record, warnings)
-  end subroutine add_motion_warnings
-
   !> Adds warnings of energies.
-  subroutine add_energy_warnings(deck, stepper, exceeded, time, record, warnings)
-    type(deck_t), intent(in) :: deck
-    class(stepper_t), intent(in) :: stepper
+  subroutine add_energy_warnings(exceeded, deck, stepper, record, warnings)
     !> True for the kinds of errors found
     logical, intent(in) :: exceeded(3)
-    !> Time or load factor
-    real(wp), intent(in) :: time
+    type(deck_t), intent(in) :: deck
+    class(stepper_t), intent(in) :: stepper
     !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> Receives their sentences
     type(line_t), allocatable, intent(inout) :: warnings(:)
 
-    if (exceeded(energy_created)) call add_warning(deck, stepper, warning_energy, 0, time, record, warnings)
-    if (exceeded(energy_dissipated)) call add_warning(deck, stepper, warning_loss, 0, time, record, warnings)
-    if (exceeded(energy_imbalance)) call add_warning(deck, stepper, warning_ledger, 0, time, record, warnings)
+    call add_warning('created', exceeded(energy_created), deck, stepper, record, warnings)
+    call add_warning('dissipated', exceeded(energy_dissipated), deck, stepper, record, warnings)
+    call add_warning('ledger', exceeded(energy_imbalance), deck, stepper, record, warnings)
   end subroutine add_energy_warnings
 
   !> Adds a warning at its first occurrence.
-  subroutine add_warning(deck, stepper, kind, zone, time, record, warnings)
+  subroutine add_warning(name, occurs, deck, stepper, record, warnings, at_zone)
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Whether its condition is met
+    logical, intent(in) :: occurs
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
-    !> Its kind and zone
-    integer, intent(in) :: kind, zone
-    !> Time or load factor
-    real(wp), intent(in) :: time
     !> Receives the warning
     type(run_record_t), intent(inout) :: record
     !> Receives its sentence
     type(line_t), allocatable, intent(inout) :: warnings(:)
+    !> The zone it concerns
+    integer, intent(in), optional :: at_zone
+    integer :: zone
 
-    if (record%has_warned(kind, zone)) return
-    call record%note_warning(kind, zone, time)
-    call append(warnings, warning_text(kind, zone, moment(deck, time), deck, stepper))
+    zone = 0
+    if (present(at_zone)) zone = at_zone
+    if (.not. occurs) return
+    if (record%has_warned(kind_of(name), zone)) return
+    call record%note_warning(kind_of(name), zone, stepper%now%time)
+    call append(warnings, warning_text(kind_of(name), zone, moment(deck, stepper%now%time), deck, stepper))
   end subroutine add_warning
 
   !> Indentation up to which a contact law may hold: the thickness of the laminate, and the radius of the impactor,
@@ -231,7 +220,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
 
-    is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > max_slope)
+    is_steep = model%communicator%any(maxval(abs(now%motion%displacement(4:5, :))) > limit_of('slopes'))
   end function is_steep
 
   !> True: the strength of a stringer is known.

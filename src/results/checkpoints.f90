@@ -5,6 +5,7 @@ module checkpoints
   use checkpoint_seal, only: head_length, seal, synchronise_folder, verify_seal
   use communicators, only: communicator_t
   use errors, only: error_t, exit_files, fail
+  use field_mappings, only: field_mapping_t
   use files, only: file_exists, remove_file, rename_file
   use folder_listings, only: file_by_age
   use hdf5_data, only: read_integers, read_real_columns, read_reals, write_integers, write_real_columns, write_reals
@@ -302,7 +303,7 @@ contains
   end subroutine table_item
 
   !> Visits a field distributed over the ranks, stored in global order.
-  subroutine field(self, name, columns, global_columns, value)
+  subroutine field(self, name, columns, global_columns, value, mapping)
     class(checkpoint_archive_t), intent(inout) :: self
     !> Name
     character(len=*), intent(in) :: name
@@ -312,6 +313,8 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
+    !> A checkpoint has the mesh of its run
+    type(field_mapping_t), intent(in) :: mapping
 
     if (self%loading) then
       call read_real_columns(self%file, items//name, columns, global_columns, value)

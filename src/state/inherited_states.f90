@@ -4,6 +4,7 @@
 module inherited_states
   use archives, only: archive_t
   use cohesive_sliding, only: visit_friction
+  use field_mappings, only: motion_field
   use interface_flaws, only: visit_flaws
   use models, only: model_t
   use states, only: state_t
@@ -22,8 +23,8 @@ contains
 
     points = model%mesh%points()
     associate (owned => model%distribution%points(:model%distribution%owned), motion => state%motion)
-      call archive%field('motion/displacement', owned, points, motion%displacement)
-      call archive%field('motion/velocity', owned, points, motion%velocity)
+      call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
+      call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
       if (archive%loading) call model%halo%update(motion%displacement)
       if (archive%loading) call model%halo%update(motion%velocity)
     end associate

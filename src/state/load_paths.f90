@@ -1,6 +1,7 @@
 !> Last step on the equilibrium path of a static analysis, from which the next step under control of load or dissipation
 !> starts.
 module load_paths
+  use field_mappings, only: motion_field
   use kinds, only: wp
   use archives, only: archive_t
   use models, only: model_t
@@ -36,7 +37,8 @@ contains
     call archive%item('path/force_change', self%force_change)
     if (.not. allocated(self%change)) return
     associate (partition => model%distribution)
-      call archive%field('path/change', partition%points(:partition%owned), model%mesh%points(), self%change)
+      call archive%field('path/change', partition%points(:partition%owned), model%mesh%points(), self%change, &
+                         motion_field)
     end associate
     if (archive%loading) call model%halo%update(self%change)
   end subroutine visit

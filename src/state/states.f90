@@ -1,6 +1,7 @@
 !> State of a run. A step is computed in a second state of this type, which replaces the first if it is accepted: a
 !> rejected step has no effect.
 module states
+  use field_mappings, only: area_field, motion_field
   use kinds, only: wp
   use archives, only: archive_t
   use contact_loading, only: loading_indentation
@@ -281,7 +282,8 @@ contains
     call archive%item('contact/area', self%contact%area)
     weights = reshape(self%contact%weights, [1, size(self%contact%weights)])
     associate (partition => model%distribution)
-      call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights)
+      call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights, &
+                         area_field)
     end associate
     call self%contact%spread(weights(1, :), (self%contact%offset))
   end subroutine visit_patch
@@ -295,12 +297,12 @@ contains
 
     points = model%mesh%points()
     associate (owned => model%distribution%points(:model%distribution%owned))
-      call archive%field('motion/displacement', owned, points, motion%displacement)
-      call archive%field('motion/velocity', owned, points, motion%velocity)
-      call archive%field('motion/acceleration', owned, points, motion%acceleration)
-      call archive%field('motion/internal', owned, points, motion%internal)
-      call archive%field('motion/inertia', owned, points, motion%inertia)
-      call archive%field('motion/momentum', owned, points, motion%momentum)
+      call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
+      call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
+      call archive%field('motion/acceleration', owned, points, motion%acceleration, motion_field)
+      call archive%field('motion/internal', owned, points, motion%internal, motion_field)
+      call archive%field('motion/inertia', owned, points, motion%inertia, motion_field)
+      call archive%field('motion/momentum', owned, points, motion%momentum, motion_field)
     end associate
     if (.not. archive%loading) return
     call model%halo%update(motion%displacement)

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""Adds a key to the deck by a patch and checks that this changes one folder and its tests only.
+"""Adds a key, a warning or a result by a patch, which may change one folder, two sources at most, and its tests.
 
-usage: check_example.py PATCH --compiler MPIFORT --modules FOLDER --tiers TIER... --objects OBJECT... [FLAG...]
+usage: check_example.py PATCH... --compiler MPIFORT --modules FOLDER --tiers TIER... --objects OBJECT...
+       --libraries LIBRARY... [FLAG...]
 
-The patch is applied to a copy of the folder and of its tests. The copy is compiled with the modules of the folders
-before it, as in the build. Then the unchanged table of `app` is compiled with the copy and must explain the new keys;
-and the patch's unit tests are run.
+Libraries may begin with `lib:`, as those that begin with a dash would be taken for options.
+
+The patches, of one folder, are applied to a copy of it and of its tests. The copy is compiled with the modules of the
+folders before it, as in the build. Then the unchanged table of `case` is compiled with the copy and must explain new
+keys; and the patches' unit tests are run.
 """
 import argparse
 import os
@@ -17,6 +20,7 @@ import tempfile
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 FRAMEWORK = os.path.join(ROOT, "tests", "framework")
+SOURCES_ALLOWED = 2
 EXPLAIN = """program explain_group
   use deck_explain, only: explain
   use deck_table, only: load_deck_table
@@ -52,6 +56,9 @@ def one_folder(patch):
     if len(folders) != 1:
         sys.exit(f"the patch changes the folders {sorted(folders)} of src, not one")
     folder = folders.pop()
+    sources = [path for path in paths if path.startswith("src/")]
+    if len(sources) > SOURCES_ALLOWED:
+        sys.exit(f"the patch changes {len(sources)} sources, more than {SOURCES_ALLOWED}")
     strangers = [path for path in paths if not path.startswith((f"src/{folder}/", f"tests/unit/{folder}/"))]
     if strangers:
         sys.exit(f"the patch changes {strangers} beside src/{folder} and its tests")
@@ -97,12 +104,15 @@ class Workplace:
     def link(self, name, objects):
         """Links a program with the required objects of the build; those compiled here have precedence."""
         run("ar", "rcs", "lower.a", *self.asked.objects, cwd=self.folder)
-        run(self.asked.compiler, *objects, "lower.a", "-o", name, cwd=self.folder)
+        libraries = [word.removeprefix("lib:") for word in self.asked.libraries]
+        run(self.asked.compiler, *objects, "lower.a", *libraries, "-o", name, cwd=self.folder)
         return os.path.join(self.folder, name)
 
 
 def explain_keys(work, layers, patch):
-    """Checks that the unchanged table of `case` explains the keys that the patch adds."""
+    """Checks that the unchanged table of `case` explains the keys that a patch of a deck's rows adds."""
+    if not re.search(r"^\+\+\+ b/src/\w+/\w+_deck\.f90$", patch, re.MULTILINE):
+        return []
     added = re.findall(r"^\+ +'(\w+) \| (\w+) \|", patch, re.MULTILINE)
     if not added:
         sys.exit("the patch adds no key")
@@ -140,15 +150,18 @@ def run_tests(work, layers, tests, objects):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("patch")
+    parser.add_argument("patches", nargs="+")
     for name in ("compiler", "modules"):
         parser.add_argument("--" + name, required=True)
-    for name in ("tiers", "objects"):
+    for name in ("tiers", "objects", "libraries"):
         parser.add_argument("--" + name, nargs="*", default=[])
     asked, flags = parser.parse_known_args()
-    with open(asked.patch, encoding="utf-8") as file:
-        patch = file.read()
-    folder, tests = one_folder(patch)
+    tests = []
+    for path in asked.patches:
+        with open(path, encoding="utf-8") as file:
+            patch = file.read()
+        folder, added = one_folder(patch)
+        tests += added
     tiers = [tier.split() for tier in " ".join(asked.tiers).split("/")]
     lower = [layer for tier in tiers[:[folder in tier for tier in tiers].index(True)] for layer in tier]
     every = [layer for tier in tiers for layer in tier]
@@ -156,12 +169,15 @@ def main():
         for part in (f"src/{folder}", f"tests/unit/{folder}"):
             if os.path.isdir(os.path.join(ROOT, part)):
                 shutil.copytree(os.path.join(ROOT, part), os.path.join(place, part))
-        run("patch", "-p1", "--no-backup-if-mismatch", "-i", os.path.abspath(asked.patch), cwd=place)
+        for path in asked.patches:
+            run("patch", "-p1", "--no-backup-if-mismatch", "-i", os.path.abspath(path), cwd=place)
         work = Workplace(place, asked)
-        objects = work.compile(in_order(os.path.join(place, "src", folder)), lower, flags)
+        # Last those of the build: modules that it generates.
+        objects = work.compile(in_order(os.path.join(place, "src", folder)), [*lower, folder], flags)
         keys = explain_keys(work, every, patch)
         printed = run_tests(work, every, [os.path.join(place, test) for test in tests], objects)
-    print(f"src/{folder} and its tests add {', '.join(keys)}; {printed.strip().splitlines()[-1]}")
+    names = keys or [os.path.splitext(os.path.basename(path))[0] for path in asked.patches]
+    print(f"src/{folder} and its tests alone: {', '.join(names)}; {printed.strip().splitlines()[-1]}")
     return 0
 
 
