@@ -110,7 +110,7 @@ def _stringer(panel: Panel, mesh: ShellMesh, stringer: Stringer, number: int, ma
     halves = [half for side in sides for half in (side[:2], side[1:])]
     for element, (start, end) in enumerate(halves, first):
         outwards = stringer.outwards * (start.normal + end.normal) / 2
-        offsets = [float(f"{place:.9g}") + 0.0 for point in (start, end)
+        offsets = [float(f"{place:.12g}") + 0.0 for point in (start, end)
                    for place in (point.face + stringer.outwards * section.eccentricity) * point.normal]
         yield from card("CBAR", element, number, start.grid, end.grid, *(float(f"{each:.6g}") + 0.0 for each in outwards),
                         None, None, None, *offsets)
