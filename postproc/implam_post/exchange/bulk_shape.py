@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -39,6 +40,16 @@ class Shape:
     surface: Surface
 
     @property
+    def finer(self) -> tuple[int, int]:
+        """Number of elements along x and y that has the lines of four-node elements, too."""
+        share = 1 if self.quads[0].card.name == "CQUAD8" else 2
+        return share * self.elements[0], share * self.elements[1]
+
+    def rounded(self, place: float) -> float:
+        """Return a position without the round-off of the file, to a millionth of the panel or less."""
+        return round(float(place), 5 - math.floor(math.log10(max(self.lengths)))) + 0.0
+
+    @property
     def properties(self) -> set[int]:
         """Numbers of the properties of the elements."""
         return {quad.read.pid for quad in self.quads}
@@ -70,9 +81,13 @@ def read_shape(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, t
                      + (", and its lengths are those of the arc" if surface.is_rolled else ""))
     places = {number: (place - middle)[:2] for number, place in local.items()}
     spread = [replace(quad, corners=quad.corners - [*middle[:2], 0.0]) for quad in spread]
-    return Shape((_plain(lengths[0]), _plain(lengths[1])), _origin(surface, middle), surface.axes, places,
-                 _elements(spread, np.eye(3), lengths), turn, quads, spread, replace(surface, origin=_origin(
+    sides = [_plain(length) for length in lengths[:2]]
+    shape = Shape((sides[0], sides[1]), _origin(surface, middle), surface.axes, places,
+                 _elements(spread, lengths), turn, quads, spread, replace(surface, origin=_origin(
                      surface, middle)))
+    if not surface.is_rolled:
+        return shape
+    return replace(shape, lengths=(shape.rounded(sides[0]), shape.rounded(sides[1])))
 
 
 def _surface(bulk: BulkData, quads: Sequence[Quadrilateral], points: Mapping[int, np.ndarray], struck_last: bool
@@ -204,9 +219,9 @@ def _axes(quad: Quadrilateral, struck_last: bool) -> np.ndarray:
     return np.array([x, np.cross(z, x), z])
 
 
-def _elements(quads: Sequence[Quadrilateral], axes: np.ndarray, lengths: np.ndarray) -> tuple[int, int]:
+def _elements(quads: Sequence[Quadrilateral], lengths: np.ndarray) -> tuple[int, int]:
     """Return the number of nine-node elements along x and y that gives about as many nodes as these elements have."""
-    corners = np.concatenate([quad.corners for quad in quads]) @ axes.T
+    corners = np.concatenate([quad.corners for quad in quads])
     cells = [np.count_nonzero(np.diff(np.sort(corners[:, axis])) > NEAR * lengths[axis]) for axis in (0, 1)]
     if cells[0] * cells[1] != len(quads):
         cells = [round(np.sqrt(len(quads) * lengths[axis] / lengths[1 - axis])) for axis in (0, 1)]

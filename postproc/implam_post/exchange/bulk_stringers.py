@@ -221,17 +221,12 @@ def read_stringers(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[in
             rows[-1] = replace(last, ends=(last.ends[0], beam.ends[1]))
         else:
             rows.append(beam)
-    return [Stringer(f"stringer_{number}", beam.axis, _plain(beam.at), (_plain(beam.ends[0]), _plain(beam.ends[1])),
-                     beam.face, beam.section) for number, beam in enumerate(rows, 1)]
+    return [Stringer(f"stringer_{number}", beam.axis, shape.rounded(beam.at),
+                     (shape.rounded(beam.ends[0]), shape.rounded(beam.ends[1])), beam.face, beam.section)
+            for number, beam in enumerate(rows, 1)]
 
 
 def _same(one: Section, other: Section) -> bool:
     """Return whether two sections of one property have the same place."""
     return (one.web is None) == (other.web is None) and abs(one.eccentricity - other.eccentricity) <= 1e-4 * max(
         one.eccentricity, np.sqrt(one.area))
-
-
-def _plain(number: float) -> float:
-    """Return a number without round-off in its last digits."""
-    plain = float(f"{number:.9g}")
-    return plain if abs(plain) > 1e-9 else 0.0

@@ -211,17 +211,12 @@ def _rectangles(bulk: BulkData, shape: Shape, stacks: Sequence[Stack]) -> Iterat
         top = next((row for row in range(j, covered.shape[1]) if not covered[i:right, row].all()), covered.shape[1])
         covered[i:right, j:top] = False
         (left, end), (bottom, high) = (lines[0][i], lines[0][right]), (lines[1][j], lines[1][top])
-        yield Rectangle((_plain((left + end) / 2), _plain((bottom + high) / 2)), (_plain(end - left),
-                                                                                 _plain(high - bottom)))
+        left, end, bottom, high = map(shape.rounded, (left, end, bottom, high))
+        yield Rectangle((shape.rounded((left + end) / 2), shape.rounded((bottom + high) / 2)),
+                        (shape.rounded(end - left), shape.rounded(high - bottom)))
 
 
 def _distinct(places: np.ndarray, near: float) -> np.ndarray:
     """Return places in ascending order, equal ones once."""
     ordered = np.sort(places)
     return ordered[np.concatenate([[True], np.diff(ordered) > near])]
-
-
-def _plain(number: float) -> float:
-    """Return a number without round-off in its last digits."""
-    plain = float(f"{number:.9g}")
-    return plain if abs(plain) > 1e-9 else 0.0

@@ -31,8 +31,8 @@ def deck_text(name: str, source: str, shape: Shape, supports: Supports, zones: Z
     """Return the deck with `remarks` as comments; groups of the impact are comments unless `impact` gives their values.
     """
     return "\n".join([*_header(source, shape), *(f"! {remark}" for remark in remarks),
-                      *_plate(name, shape, supports, impact), *_laminate(zones), *_zones(zones),
-                      *_stringers(stringers, shape), *_thermal(thermal), *_impact(impact)]) + "\n"
+                      *_plate(name, shape, supports, impact, bool(zones.doublers or zones.drops or stringers)),
+                      *_laminate(zones), *_zones(zones), *_stringers(stringers, shape), *_thermal(thermal), *_impact(impact)]) + "\n"
 
 
 def number(value: float) -> str:
@@ -54,15 +54,18 @@ def _header(source: str, shape: Shape) -> Iterator[str]:
     yield f"! x, y and z (from the struck face to the back) are {', '.join(axes)} of the file."
 
 
-def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Iterator[str]:
-    """Return the groups of case, plate and mesh."""
+def _plate(name: str, shape: Shape, supports: Supports, impact: Impact, has_lines: bool) -> Iterator[str]:
+    """Return the groups of case, plate and mesh; `has_lines` if zones and stringers need lines of the mesh."""
     edges = supports.edges if len(set(supports.edges)) > 1 else supports.edges[:1]
     yield f"&case      name='{name}' /"
     yield (f"&plate     length={', '.join(map(number, shape.lengths))}  edges={', '.join(map(repr, edges))}  "
            f"in_plane='{'fixed' if supports.in_plane_fixed else 'free'}'{_curvature(shape)} /")
     patch = f"  patch={number(impact.radius / 2)}" if impact.radius is not None else ""
     yield from _lines(shape, supports)
-    elements = shape.elements if not patch else [max(count, _BESIDE_PATCH) for count in shape.elements]
+    # Zones and stringers need lines that the growth of elements away from a patch would move.
+    patch += "  grading=1" if patch and has_lines else ""
+    elements = [count + count % 2 for count in shape.finer] if has_lines else shape.elements
+    elements = [max(count, _BESIDE_PATCH) for count in elements] if patch else elements
     yield f"&mesh      elements={elements[0]}, {elements[1]}{patch} /"
 
 
