@@ -106,7 +106,7 @@ def _of_sizes(read: Any) -> dict[str, Any]:
     sizes, extra = (read.dim[0], read.nsm[0]) if is_beam else (read.dim, read.nsm)
     if is_beam and any(list(other) != list(sizes) for other in read.dim[1:]):
         raise NoStringer("its section is tapered")
-    kind = read.Type if is_beam else read.Type
+    kind = read.Type
     if kind not in _SHAPES:
         raise NoStringer(f"TYPE {kind} is not read, but {', '.join(_SHAPES)}: give A, I1, I2 and J as a "
                          f"{'PBEAM' if is_beam else 'PBAR'}")

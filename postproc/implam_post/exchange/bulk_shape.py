@@ -24,9 +24,10 @@ _SAME_ANGLE = 1e-4
 class Shape:
     """The panel in its own axes: x and y along its edges, the origin at its centre, z from the struck face to the back.
 
-    Rows of `axes` are these axes in the basic system of the file; `places` has x and y of each grid, on a cylinder along
-    its arc. `turn` is 1 if fibre angles count from x to y, -1 if the last ply is at the struck face. `quads` are the
-    elements of the file, `spread` those with positions in the axes of the panel instead of corners in the basic system.
+    Rows of `axes` are these axes in the basic system of the file; `places` has x and y of each grid, on a cylinder
+    along its arc. `turn` is 1 if fibre angles count from x to y, -1 if the last ply is at the struck face.
+    `quads` are the elements of the file, `spread` those with positions in the axes of the panel instead of corners in
+    the basic system.
     """
 
     lengths: tuple[float, float]

@@ -116,9 +116,9 @@ def _change(bulk: BulkData, skin: Stack, stack: Stack, remarks: Remarks) -> Chan
             return change
     single = [change for change in found if not change.missing or not (change.front or change.back)]
     if not single:
-        raise bulk.error(stack.card, f"its lay-up differs from that of {of_skin} in line {skin.card.line}, the laminate "
-                                     "of the panel, by more than plies added on its faces, as a &doubler, or missing, "
-                                     "as in a &ply_drop.")
+        raise bulk.error(stack.card, f"its lay-up differs from that of {of_skin} in line {skin.card.line}, the "
+                                     "laminate of the panel, by more than plies added on its faces, as a &doubler, or "
+                                     "missing, as in a &ply_drop.")
     change = min(single, key=lambda each: abs(each.height - height))
     remarks.add(stack.card, f"its plies are moved by {abs(change.height - height):.4g} along the normal: a doubler is "
                             f"bonded to a face of {of_skin}, and a ply drop leaves one face flat")

@@ -9,7 +9,7 @@ from implam_post.exchange.bulk_supports import Supports
 from implam_post.exchange.bulk_thermal import Thermal
 from implam_post.exchange.stringers import SHEAR_CORRECTION, Stringer
 from implam_post.laminate.decks import STRENGTHS
-from implam_post.laminate.sections import Material, Ply, natural_shear_correction
+from implam_post.laminate.sections import Material, natural_shear_correction
 from implam_post.laminate.zones import Rectangle, Zones
 
 # Minimum of elements along x and y of a patch and of the plate around it (src/case/deck_extents.f90).
@@ -32,7 +32,8 @@ def deck_text(name: str, source: str, shape: Shape, supports: Supports, zones: Z
     """
     return "\n".join([*_header(source, shape), *(f"! {remark}" for remark in remarks),
                       *_plate(name, shape, supports, impact, bool(zones.doublers or zones.drops or stringers)),
-                      *_laminate(zones), *_zones(zones), *_stringers(stringers, shape), *_thermal(thermal), *_impact(impact)]) + "\n"
+                      *_laminate(zones), *_zones(zones), *_stringers(stringers, shape), *_thermal(thermal),
+                      *_impact(impact)]) + "\n"
 
 
 def number(value: float) -> str:

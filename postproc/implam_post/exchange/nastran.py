@@ -112,8 +112,8 @@ def _stringer(panel: Panel, mesh: ShellMesh, stringer: Stringer, number: int, ma
         outwards = stringer.outwards * (start.normal + end.normal) / 2
         offsets = [float(f"{place:.12g}") + 0.0 for point in (start, end)
                    for place in (point.face + stringer.outwards * section.eccentricity) * point.normal]
-        yield from card("CBAR", element, number, start.grid, end.grid, *(float(f"{each:.6g}") + 0.0 for each in outwards),
-                        None, None, None, *offsets)
+        direction = [float(f"{each:.6g}") + 0.0 for each in outwards]
+        yield from card("CBAR", element, number, start.grid, end.grid, *direction, None, None, None, *offsets)
 
 
 def _supports(mesh: ShellMesh) -> Iterator[str]:

@@ -70,8 +70,9 @@ def section_of_sizes(web: tuple[float, float], cap: tuple[float, float] | None, 
     area = sum(part[0] for part in parts)
     centroid = sum(part[0] * part[1] for part in parts) / area
     bending = sum(part[2] + part[0] * (part[1] - centroid)**2 for part in parts)
-    return Section(modulus, shear_modulus, area, bending, sum(part[3] for part in parts), sum(part[4] for part in parts),
-                   SHEAR_CORRECTION * parts[0][0], density * area, centroid, web, cap, density)
+    lateral, torsion = (sum(part[place] for part in parts) for place in (3, 4))
+    return Section(modulus, shear_modulus, area, bending, lateral, torsion, SHEAR_CORRECTION * parts[0][0],
+                   density * area, centroid, web, cap, density)
 
 
 def stringers_of(deck: Deck, modulus: float) -> tuple[Stringer, ...]:

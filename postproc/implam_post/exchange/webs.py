@@ -120,7 +120,9 @@ class _Builder:
                     (0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0))])
 
     def _constrain(self, rows: list[list[int]]) -> None:
-        """Hold the ends at supported edges: across the stringer, and along it at clamped ones."""
+        """Hold the ends at supported edges as the section of a beam: across and normal to the panel, and along the
+        stringer at clamped ones.
+        """
         axis = self.stringer.axis
         lines = (self.panel.x, self.panel.y)[axis]
         for far, index in enumerate((0, -1)):
@@ -130,7 +132,7 @@ class _Builder:
             for row in rows:
                 if not row[index]:
                     continue
-                self.webs.fixed.append(Fixed(row[index], 2 - axis))
+                self.webs.fixed += [Fixed(row[index], 2 - axis), Fixed(row[index], 3)]
                 if edge == "clamped" and self.panel.in_plane == "fixed":
                     self.webs.fixed.append(Fixed(row[index], axis + 1))
                 elif edge == "clamped":
