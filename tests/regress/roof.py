@@ -65,7 +65,7 @@ def write_input(roof, path):
     lines += ["*NSET, NSET=HINGES", *hinges, "*NSET, NSET=CENTRE", str(nodes[roof.elements, roof.elements]),
               "*MATERIAL, NAME=ROOF", "*ELASTIC", f"{YOUNG}, {POISSON}",
               "*SHELL SECTION, ELSET=SHELLS, MATERIAL=ROOF", f"{roof.thickness}", "*BOUNDARY", "HINGES, 1, 3",
-              "*STEP, NLGEOM, INC=200", "*STATIC", f"{INCREMENT}, 1., 1e-6, {INCREMENT}", "*BOUNDARY",
+              "*STEP, NLGEOM, INC=200", "*STATIC", f"{INCREMENT}, 1., 2e-4, {INCREMENT}", "*BOUNDARY",
               f"CENTRE, 3, 3, {roof.travel}", "*NODE PRINT, NSET=CENTRE, TOTALS=ONLY", "RF", "*END STEP"]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
