@@ -59,6 +59,7 @@ class Bulk:
     materials: list[Fields] = field(default_factory=lambda: list(MATERIALS))
     more: list[Fields] = field(default_factory=list)
     head: str = ""
+    property_of: Callable[[int, int], int] = lambda i, j: 1
 
     def text(self) -> str:
         """Return the file."""
@@ -93,9 +94,9 @@ class Bulk:
                 grids = [self.number(2 * i + a, 2 * j + b) for a, b in corners]
                 if self.eight:
                     grids += [self.number(2 * i + a, 2 * j + b) for a, b in sides]
-                    found.append(("CQUAD8", number, 1, *grids, None, None, None, None, self.theta))
+                    found.append(("CQUAD8", number, self.property_of(i, j), *grids, None, None, None, None, self.theta))
                 else:
-                    found.append(("CQUAD4", number, 1, *grids, self.theta))
+                    found.append(("CQUAD4", number, self.property_of(i, j), *grids, self.theta))
         return found
 
     def on_edge(self, edge: int) -> list[int]:

@@ -6,19 +6,25 @@ from collections.abc import Iterator, Sequence
 from implam_post.exchange.nastran import real
 from implam_post.exchange.panel import MaterialState, Panel, Section
 from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
+from implam_post.exchange.stringers import Stringer
+from implam_post.exchange.webs import Webs, rows_of, webs_of
 from implam_post.laminate.sections import Material, direction
 
 
 def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
-    """Return the lines of the input: shells S8R with composite sections, and a static step under the pressure."""
+    """Return the lines of the input: shells S8R with composite sections, also for webs and caps of stringers, and a
+    static step under the pressure.
+    """
     mesh, sections = shell_mesh(panel, with_middles=False), panel.sections()
+    webs = webs_of(panel, mesh)
     yield from (f"** {panel.name}: panel from {source}", "** z points from the struck face to the back; the first "
                 "layer of each section is the one nearest to the struck face.",
-                *(f"** {note}." for note in panel.unwritten), "*HEADING", panel.name)
+                *(f"** {note}." for note in (*panel.unwritten, *unwritten_stringers(panel))), "*HEADING", panel.name)
     yield "*NODE, NSET=PANEL"
     yield from (f"{number}, {x:.12g}, {y:.12g}, {real(float(z), 20)}"
                 for number, (x, y, z) in enumerate(mesh.coordinates, 1))
     yield from _elements(panel, mesh, sections)
+    yield from _webs(panel, webs, len(mesh.elements) + 1)
     names = {state: _material_name(number, state) for number, state in enumerate(panel.materials(), 1)}
     for state, material in panel.materials().items():
         yield from _material(names[state], state, material)
@@ -32,6 +38,9 @@ def abaqus_input(panel: Panel, source: str) -> Iterator[str]:
     yield "*BOUNDARY"
     yield from (f"HELD_{components}, {component}, {component}" for components in mesh.supports
                 for component in components)
+    yield from (f"{node}, {component}, {component}" for node, component in webs.fixed)
+    for node, other, component in webs.equal:
+        yield from ("*EQUATION", "2", f"{node}, {component}, 1., {other}, {component}, -1.")
     if panel.expands:
         yield from ("*INITIAL CONDITIONS, TYPE=TEMPERATURE", "PANEL, 0.")
     if panel.pressure is not None or panel.expands:
@@ -48,6 +57,48 @@ def _elements(panel: Panel, mesh: ShellMesh, sections: Sequence[Section]) -> Ite
     for place, section in enumerate(sections, 1):
         yield f"*ELSET, ELSET=SECTION_{place}"
         yield from _rows(members[section])
+
+
+def unwritten_stringers(panel: Panel) -> list[str]:
+    """Return notes on stringers that are not written, as their section has no sizes."""
+    return [f"the stringer '{stringer.name}' is not written, as its section has no sizes: add a beam"
+            for stringer in panel.stringers if stringer.section.web is None]
+
+
+def _webs(panel: Panel, webs: Webs, first: int) -> Iterator[str]:
+    """Return nodes, elements, materials and sections of the stringers."""
+    if not webs.nodes:
+        return
+    yield "*NODE, NSET=WEBS"
+    yield from (f"{number}, " + ", ".join(f"{place + 0.0:.12g}" for place in position)
+                for number, position in webs.nodes.items())
+    for (number, part), elements in rows_of(webs, first):
+        stringer = panel.stringers[number]
+        name = f"{part}_{number + 1}"
+        yield from (f"** stringer {stringer.name}", f"*ELEMENT, TYPE=S8R, ELSET={name}")
+        yield from (", ".join(map(str, [element, *nodes])) for element, nodes in elements)
+        yield from _shell_of_stringer(stringer, number + 1, part, name)
+
+
+def _shell_of_stringer(stringer: Stringer, number: int, part: str, name: str) -> Iterator[str]:
+    """Return the section of a web or cap, and the material with the first of them."""
+    section = stringer.section
+    if part == "WEB":
+        ratio = section.modulus / (2 * section.shear_modulus) - 1
+        ratio = ratio if 0 <= ratio < 0.5 else 0.0
+        shear = f"{section.shear_modulus:.12g}"
+        yield from (f"*MATERIAL, NAME=STRINGER_{number}", "*ELASTIC, TYPE=ENGINEERING CONSTANTS",
+                    ", ".join([*3 * [f"{section.modulus:.12g}"], f"{ratio:.12g}", "0", "0", shear, shear]), shear)
+        if section.density:
+            yield from ("*DENSITY", f"{section.density:.12g}")
+        thickness = section.web[1]
+    else:
+        thickness = section.cap[1]
+    along = ("1, 0, 0", "0, 1, 0")[stringer.axis]
+    second = {"WEB": "0, 0, 1", "CAP": ("0, 1, 0", "-1, 0, 0")[stringer.axis]}[part]
+    yield from (f"*ORIENTATION, NAME=ALONG_{name}", f"{along}, {second}",
+                f"*SHELL SECTION, ELSET={name}, MATERIAL=STRINGER_{number}, ORIENTATION=ALONG_{name}",
+                f"{thickness:.12g}")
 
 
 def _material_name(number: int, state: MaterialState) -> str:

@@ -12,8 +12,8 @@ from implam_post.io.errors import DeckError
 # Exceptions of pyNastran on fields that it cannot read.
 READING_ERRORS = (SyntaxError, RuntimeError, AssertionError, ValueError, TypeError, LookupError, AttributeError)
 # Cards that are converted. A line of blanks followed by one of these names is a card, not a continuation.
-KNOWN = ("GRID", "GRDSET", "CORD2R", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "PSHELL", "MAT1", "MAT8", "SPC1", "SPC",
-         "SPCADD", "TEMPD")
+KNOWN = ("GRID", "GRDSET", "CORD2R", "CORD2C", "CQUAD4", "CQUAD8", "PCOMP", "PCOMPG", "PSHELL", "MAT1", "MAT8", "SPC1",
+         "SPC", "SPCADD", "TEMPD")
 # Columns of a small field.
 _FIELD = 8
 # Columns of the field that names the continuation, and the number of that field in lines with commas.

@@ -13,8 +13,8 @@ from implam_post.exchange.remarks import Remarks
 from implam_post.io.errors import DeckError
 
 NEAR = 1e-6
-_IGNORED = {"CQUAD4": {8: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"},
-            "CQUAD8": {16: "ZOFFS", 11: "T1", 12: "T2", 13: "T3", 14: "T4"}}
+_IGNORED = {"CQUAD4": {11: "T1", 12: "T2", 13: "T3", 14: "T4"},
+            "CQUAD8": {11: "T1", 12: "T2", 13: "T3", 14: "T4"}}
 # Elements of surfaces and volumes, which may model a part of a panel: CQUADR, CQDMEM1, CTRIA3, CHEXA, ...
 _OTHERS = re.compile("C(QUAD|QD|TRI|TRMEM|TRPLT|TRBSC|TRSHL|SHEAR|TWIST|HEX|PENTA|TETRA|PYRA|IHEX|IFQUAD|IFHEX|PLST)")
 # Two grids are at one place if they are nearer than this fraction of the panel.

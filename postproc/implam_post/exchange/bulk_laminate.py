@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import zip_longest
-from typing import Any
+from typing import Any, NamedTuple
 
 from implam_post.exchange.bulk_cards import BulkCard
 from implam_post.exchange.bulk_data import BulkData
@@ -29,26 +29,35 @@ _MAX_RATIO = 1e5
 _FIRST_PLY = 9
 
 
-def read_laminate(bulk: BulkData, properties: Iterable[int], remarks: Remarks, shear_23: float | None = None
-                  ) -> list[Ply]:
-    """Return the plies of the property of all elements; several properties are accepted if they are equal.
-
-    `shear_23` is used where G2Z is blank.
+class Laminate(NamedTuple):
+    """The plies of a property, from its first one on, and the distance of the outer surface of ply 1 from the reference
+    plane, along the normal of the elements.
     """
+
+    card: BulkCard
+    plies: list[Ply]
+    first_face: float
+
+
+def read_laminates(bulk: BulkData, properties: Iterable[int], remarks: Remarks, shear_23: float | None = None
+                   ) -> dict[int, Laminate]:
+    """Return the laminates of the properties of all elements; `shear_23` is used where G2Z is blank."""
     cards = _unique(bulk, "PCOMP", "PCOMPG", "PSHELL")
-    found: list[tuple[BulkCard, list[Ply]]] = []
+    found = {}
     for number in sorted(set(properties)):
         if number not in cards:
             raise bulk.missing(f"the elements have property {number}, but there is no PCOMP, PCOMPG or PSHELL of "
                                "that number.")
-        found.append((cards[number], _plies(bulk, cards[number], remarks, shear_23)))
-    for card, plies in found[1:]:
-        if any(ply != other or _rest(ply.material) != _rest(other.material)
-               for ply, other in zip_longest(plies, found[0][1], fillvalue=None)):
-            first = found[0][0]
-            raise bulk.error(card, f"its lay-up differs from that of {first.name} {first.fields.field(1)} in line "
-                                   f"{first.line}: a panel has one laminate.")
-    return found[0][1]
+        plies = _plies(bulk, cards[number], remarks, shear_23)
+        z0 = bulk.real(cards[number], 2) if cards[number].name != "PSHELL" else None
+        found[number] = Laminate(cards[number], plies, -sum(ply.thickness for ply in plies) / 2 if z0 is None else z0)
+    return found
+
+
+def same_plies(one: Iterable[Ply], other: Iterable[Ply]) -> bool:
+    """Return whether two stacks have the same plies; the names of their materials may differ."""
+    return all(ply == beside and rest_of(ply.material) == rest_of(beside.material) if ply and beside else False
+               for ply, beside in zip_longest(one, other))
 
 
 def _unique(bulk: BulkData, *names: str) -> dict[int, BulkCard]:
@@ -91,8 +100,6 @@ def _plies(bulk: BulkData, card: BulkCard, remarks: Remarks, shear_23: float | N
     remarks.ignored(card, _IGNORED[card.name])
     thickness = sum(ply.thickness for ply in plies)
     plies = _with_nonstructural_mass(bulk, card, plies, thickness, remarks)
-    if card.fields.field(2) and abs(laminate.z0 + thickness / 2) > 1e-6 * thickness:
-        remarks.add(card, "Z0 is ignored: the grids and the supports are at the mid-plane of the panel")
     return plies
 
 
@@ -227,7 +234,7 @@ def _finite_shear(card: BulkCard, key: str, modulus: float, limit: float, writte
     return written
 
 
-def _rest(material: Material) -> tuple[object, ...]:
+def rest_of(material: Material) -> tuple[object, ...]:
     """Return the fields in which equal materials may differ."""
     return material.strengths, material.expansion
 

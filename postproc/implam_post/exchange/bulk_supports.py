@@ -10,12 +10,15 @@ from implam_post.exchange.bulk_cards import BulkCard
 from implam_post.exchange.bulk_connections import remark_connections
 from implam_post.exchange.bulk_data import BulkData
 from implam_post.exchange.bulk_shape import Shape
+from implam_post.exchange.bulk_stringers import basis
 from implam_post.exchange.remarks import Remarks
 
 EDGES = ("x-min", "x-max", "y-min", "y-max")
 _RIGID_MOTIONS = 3
 # Rotations at edges along y and along x: first the one that a simple support constrains, then the other.
 _ROTATIONS = ((4, 5), (5, 4))
+# Cosine of the angle within which a direction is that of an axis.
+_ALONG = 0.9998
 Held = dict[int, dict[int, BulkCard]]
 
 
@@ -31,10 +34,10 @@ class Supports:
     in_plane_lines: tuple[tuple[int, int], ...] = ()
 
 
-def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
-                  remarks: Remarks) -> Supports:
+def read_supports(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape,
+                  chosen: int | None, remarks: Remarks) -> Supports:
     """Return the supports; `chosen` is the number of the set; None: that of the case control, or the only one."""
-    held = _held(bulk, grids, shape, chosen, remarks)
+    held = _held(bulk, systems, grids, shape, chosen, remarks)
     on_edges = {number: _edges_of(shape, place) for number, place in shape.places.items()}
     common = [_common(bulk, held, [grid for grid, edges in on_edges.items() if edges == [number]], number)
               for number in range(4)]
@@ -57,8 +60,8 @@ def read_supports(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], sha
     return Supports(kinds, fixed or all(kind == "free" for kind in kinds), lines)
 
 
-def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape, chosen: int | None,
-          remarks: Remarks) -> Held:
+def _held(bulk: BulkData, systems: Mapping[int, Any], grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape,
+          chosen: int | None, remarks: Remarks) -> Held:
     """Return for each grid of the panel the cards that constrain each component, in the axes of the panel."""
     held: Held = {}
     constraints = list(_constraints(bulk, _sets(bulk, chosen)))
@@ -66,10 +69,10 @@ def _held(bulk: BulkData, grids: Mapping[int, tuple[BulkCard, Any]], shape: Shap
         if outside := sum(number not in shape.places for number in numbers):
             remarks.add(card, "some of its grids do not belong to the panel" if outside < len(numbers) else
                         "none of its grids belongs to the panel")
-        _hold(bulk, held, card, numbers, components, grids, shape)
+        _hold(bulk, held, card, numbers, components, systems, grids, shape)
     for number in shape.places:
         card, grid = grids[number]
-        _hold(bulk, held, card, [number], grid.ps, grids, shape)
+        _hold(bulk, held, card, [number], grid.ps, systems, grids, shape)
     return held
 
 
@@ -142,20 +145,41 @@ def _check_ranges(bulk: BulkData, card: BulkCard) -> None:
 
 
 def _hold(bulk: BulkData, held: Held, card: BulkCard, numbers: Iterable[int], components: str,
-          grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape) -> None:
+          systems: Mapping[int, Any], grids: Mapping[int, tuple[BulkCard, Any]], shape: Shape) -> None:
     """Store the components that a card constrains, in the axes of the panel, without the rotation about the normal."""
     for number in numbers:
         if number not in shape.places:
             continue
-        if components.strip("06 ") and grids[number][1].cd and not set("12345") <= set(components):
-            raise bulk.error(grids[number][0], f"its CD is {grids[number][1].cd}: components of the {card.name} in "
-                                               f"line {card.line} must be in the basic system; leave CD blank.")
+        directions = None
         for component in components:
             turns, axis = divmod(int(component) - 1, 3) if component in "123456" else (0, None)
-            if axis is not None:
-                along = int(np.argmax(np.abs(shape.axes[:, axis])))
-                if (turns, along) != (1, 2):
-                    held.setdefault(number, {})[3 * turns + along + 1] = card
+            if axis is None:
+                continue
+            if directions is None:
+                directions = _directions(bulk, systems, *grids[number], shape, number)
+            along = directions[axis]
+            if along is None and not set("12345") <= set(components):
+                raise bulk.error(grids[number][0], f"its CD is {grids[number][1].cd}: components of the {card.name} in "
+                                                   f"line {card.line} must be along axes of the panel; leave CD blank.")
+            for each in range(3) if along is None else [along]:
+                if (turns, each) != (1, 2):
+                    held.setdefault(number, {})[3 * turns + each + 1] = card
+
+
+def _directions(bulk: BulkData, systems: Mapping[int, Any], card: BulkCard, grid: Any, shape: Shape, number: int
+                ) -> list[int | None]:
+    """Return for each component of a grid the axis of the panel along which it is: that of the panel's middle, or that
+    of the surface at the grid; None if it is along none.
+    """
+    rows = np.eye(3)
+    if grid.cd:
+        point = np.array(systems[grid.cp].transform_node_to_global(grid.xyz))
+        rows = basis(bulk, systems, card, grid, point)
+    found: list[int | None] = []
+    for row in rows:
+        shares = np.abs([axes @ row for axes in (shape.axes, shape.surface.frame(shape.places[number]))])
+        found.append(int(np.argmax(shares.max(axis=0))) if shares.max() > _ALONG else None)
+    return found
 
 
 def _edges_of(shape: Shape, place: np.ndarray) -> list[int]:

@@ -7,8 +7,10 @@ from typing import NamedTuple
 from implam_post.exchange.bulk_shape import Shape
 from implam_post.exchange.bulk_supports import Supports
 from implam_post.exchange.bulk_thermal import Thermal
+from implam_post.exchange.stringers import SHEAR_CORRECTION, Stringer
 from implam_post.laminate.decks import STRENGTHS
-from implam_post.laminate.sections import Material, Ply, natural_shear_correction
+from implam_post.laminate.sections import Material, natural_shear_correction
+from implam_post.laminate.zones import Rectangle, Zones
 
 # Minimum of elements along x and y of a patch and of the plate around it (src/case/deck_extents.f90).
 _BESIDE_PATCH = 3
@@ -24,12 +26,13 @@ class Impact(NamedTuple):
     step: float | None = None
 
 
-def deck_text(name: str, source: str, shape: Shape, supports: Supports, plies: Sequence[Ply], impact: Impact,
-              thermal: Thermal | None = None, remarks: Sequence[str] = ()) -> str:
+def deck_text(name: str, source: str, shape: Shape, supports: Supports, zones: Zones, stringers: Sequence[Stringer],
+              impact: Impact, thermal: Thermal | None = None, remarks: Sequence[str] = ()) -> str:
     """Return the deck with `remarks` as comments; groups of the impact are comments unless `impact` gives their values.
     """
     return "\n".join([*_header(source, shape), *(f"! {remark}" for remark in remarks),
-                      *_plate(name, shape, supports, impact), *_laminate(plies), *_thermal(thermal),
+                      *_plate(name, shape, supports, impact, bool(zones.doublers or zones.drops or stringers)),
+                      *_laminate(zones), *_zones(zones), *_stringers(stringers, shape), *_thermal(thermal),
                       *_impact(impact)]) + "\n"
 
 
@@ -45,22 +48,34 @@ def number(value: float) -> str:
 
 def _header(source: str, shape: Shape) -> Iterator[str]:
     """Return the comments on the source of the panel and its axes."""
-    axes = [("-" if row.sum() < 0 else "") + "xyz"[abs(row).argmax()] for row in shape.axes]
-    origin = ", ".join(f"{place:.10g}" for place in shape.origin)
+    axes = [("-" if row.sum() < 0 else "") + "xyz"[abs(row).argmax()] if max(abs(row)) > 1 - 1e-6 else
+            "(" + ", ".join(f"{part + 0.0:.6g}" for part in row) + ")" for row in shape.axes]
+    origin = ", ".join(f"{place if abs(place) > 1e-9 * max(shape.lengths) else 0:.10g}" for place in shape.origin)
     yield f"! Panel of {source}. Its origin is at ({origin}) of the file;"
     yield f"! x, y and z (from the struck face to the back) are {', '.join(axes)} of the file."
 
 
-def _plate(name: str, shape: Shape, supports: Supports, impact: Impact) -> Iterator[str]:
-    """Return the groups of case, plate and mesh."""
+def _plate(name: str, shape: Shape, supports: Supports, impact: Impact, has_lines: bool) -> Iterator[str]:
+    """Return the groups of case, plate and mesh; `has_lines` if zones and stringers need lines of the mesh."""
     edges = supports.edges if len(set(supports.edges)) > 1 else supports.edges[:1]
     yield f"&case      name='{name}' /"
     yield (f"&plate     length={', '.join(map(number, shape.lengths))}  edges={', '.join(map(repr, edges))}  "
-           f"in_plane='{'fixed' if supports.in_plane_fixed else 'free'}' /")
+           f"in_plane='{'fixed' if supports.in_plane_fixed else 'free'}'{_curvature(shape)} /")
     patch = f"  patch={number(impact.radius / 2)}" if impact.radius is not None else ""
     yield from _lines(shape, supports)
-    elements = shape.elements if not patch else [max(count, _BESIDE_PATCH) for count in shape.elements]
+    # Zones and stringers need lines that the growth of elements away from a patch would move.
+    patch += "  grading=1" if patch and has_lines else ""
+    elements = [count + count % 2 for count in shape.finer] if has_lines else shape.elements
+    elements = [max(count, _BESIDE_PATCH) for count in elements] if patch else elements
     yield f"&mesh      elements={elements[0]}, {elements[1]}{patch} /"
+
+
+def _curvature(shape: Shape) -> str:
+    """Return the key of the radii of a curved panel."""
+    if not any(shape.surface.curvatures):
+        return ""
+    return "  curvature_radius=" + ", ".join(number(float(f"{1 / curvature:.7g}")) if curvature else "0"
+                                             for curvature in shape.surface.curvatures)
 
 
 def _lines(shape: Shape, supports: Supports) -> Iterator[str]:
@@ -72,9 +87,10 @@ def _lines(shape: Shape, supports: Supports) -> Iterator[str]:
                "history='fixed' /")
 
 
-def _laminate(plies: Sequence[Ply]) -> Iterator[str]:
-    """Return the materials and the plies."""
-    materials = {ply.material.name: ply.material for ply in plies}
+def _laminate(zones: Zones) -> Iterator[str]:
+    """Return the materials and the plies of the laminate."""
+    plies = zones.laminate
+    materials = {ply.material.name: ply.material for ply in zones.plies}
     for material in materials.values():
         yield from _wrapped("&material  ", " ".join(_constants(material)))
     lists = {"materials": [repr(ply.material.name) for ply in plies], "angles": [number(ply.angle) for ply in plies],
@@ -85,6 +101,50 @@ def _laminate(plies: Sequence[Ply]) -> Iterator[str]:
     if correction != "5/6":
         texts.append(f"shear_correction='{correction}'")
     yield from _wrapped("&laminate  ", "  ".join(texts))
+
+
+def _zones(zones: Zones) -> Iterator[str]:
+    """Return doublers and ply drops."""
+    for doubler in zones.doublers:
+        names = [repr(ply.material.name) for ply in doubler.plies]
+        yield from _wrapped("&doubler   ", "  ".join((
+            f"name='{doubler.name}'", f"face='{doubler.face}'", *_area(doubler.area),
+            f"materials={', '.join(names[:1] if len(set(names)) == 1 else names)}",
+            f"stacking='[{'/'.join(number(ply.angle) for ply in doubler.plies)}]'",
+            f"ply_thickness={number(doubler.plies[0].thickness)}")))
+    for drop in zones.drops:
+        yield from _wrapped("&ply_drop  ", "  ".join((f"plies={', '.join(map(str, drop.missing))}", *_area(drop.area),
+                                                      f"flat_face='{drop.flat_face}'")))
+
+
+def _area(area: Rectangle) -> Iterator[str]:
+    """Return the keys of a rectangle."""
+    yield from (f"{key}={', '.join(map(number, values))}" for key, values in zip(("at", "size"), area, strict=True))
+
+
+def _stringers(stringers: Sequence[Stringer], shape: Shape) -> Iterator[str]:
+    """Return the stringers: blades and T by sizes, others by their stiffness."""
+    for stringer in stringers:
+        section, half = stringer.section, shape.lengths[stringer.axis] / 2
+        keys = {"name": f"'{stringer.name}'", "along": f"'{'xy'[stringer.axis]}'", "at": number(stringer.at)}
+        if max(abs(stringer.ends[0] + half), abs(stringer.ends[1] - half)) > 1e-6 * half:
+            keys |= {"from": number(stringer.ends[0]), "to": number(stringer.ends[1])}
+        keys["face"] = f"'{stringer.face}'"
+        if section.web is not None:
+            keys["section"] = "'T'" if section.cap else "'blade'"
+            values = dict(zip(("height", "thickness", "cap_width", "cap_thickness"), section.web + (section.cap or ()),
+                              strict=False)) | {"E": section.modulus, "G": section.shear_modulus,
+                                                "density": section.density}
+        else:
+            # The solver takes the shear stiffness as 5/6 of EA G/E.
+            shear = section.shear_modulus * section.shear_area / (SHEAR_CORRECTION * section.area)
+            keys["section"] = "'given'"
+            values = {"EA": section.modulus * section.area, "EI": section.modulus * section.bending,
+                      "EI_lateral": section.modulus * section.lateral, "GJ": section.shear_modulus * section.torsion,
+                      "mass_per_length": section.mass, "eccentricity": section.eccentricity, "E": section.modulus,
+                      "G": shear}
+        keys |= {key: number(float(f"{value:.9g}")) for key, value in values.items() if value > 0}
+        yield from _wrapped("&stringer  ", "  ".join(f"{key}={value}" for key, value in keys.items()))
 
 
 def _constants(material: Material) -> Iterator[str]:

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from implam_post.exchange.abaqus import abaqus_input
+from implam_post.exchange.abaqus import abaqus_input, unwritten_stringers
 from implam_post.exchange.nastran import nastran_deck
 from implam_post.exchange.panel import Panel
 from implam_post.exchange.results import read_panel
@@ -13,8 +13,8 @@ from implam_post.io.errors import EXIT_DONE, CommandParser, finite, run
 from implam_post.io.files import printable, write_text
 
 
-def summary(panel: Panel) -> Iterator[str]:
-    """Return a summary of the panel as text."""
+def summary(panel: Panel, notes: Sequence[str] = ()) -> Iterator[str]:
+    """Return a summary of the panel as text; `notes` are on what this format does not have."""
     cells = len(panel.stacks)
     delaminated = sum(len(stacks) > 1 for stacks in panel.stacks.values())
     failed = sum(any(any(stack.failures) for stack in stacks) for stacks in panel.stacks.values())
@@ -31,18 +31,20 @@ def summary(panel: Panel) -> Iterator[str]:
     if panel.temperature is not None:
         yield (f"change of temperature: {panel.temperature:g}" if panel.expands else
                "note: the change of temperature is not written, as no material expands.")
-    for sentence in panel.unwritten:
+    if panel.stringers:
+        yield counted(len(panel.stringers), "stringer")
+    for sentence in (*panel.unwritten, *notes):
         yield f"note: {sentence}."
 
 
-def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]]
-             ) -> int:
+def _command(options: argparse.Namespace, suffix: str, lines: Callable[[Panel, argparse.Namespace], Iterable[str]],
+             notes: Callable[[Panel], Sequence[str]] = lambda panel: ()) -> int:
     """Read, write and report."""
     panel = read_panel(options.source, options.time).with_pressure(options.pressure)
     output = options.output or options.source.with_name(f"{options.source.stem}_panel{suffix}")
     text = "\n".join(lines(panel, options)) + "\n"
     write_text(output, text)
-    print(*summary(panel), output, sep="\n")
+    print(*summary(panel, notes(panel)), output, sep="\n")
     return EXIT_DONE
 
 
@@ -71,5 +73,5 @@ def to_nastran(arguments: Sequence[str] | None = None) -> int:
 def to_abaqus(arguments: Sequence[str] | None = None) -> int:
     """Run implam-to-abaqus."""
     return run(lambda options: _command(options, ".inp", lambda panel, chosen: abaqus_input(
-        panel, printable(chosen.source.name))),
+        panel, printable(chosen.source.name)), unwritten_stringers),
                _parser("implam-to-abaqus", "Abaqus input, which CalculiX reads too"), arguments)

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from implam_post.exchange.bulk_cards import KNOWN
 from implam_post.exchange.bulk_data import BulkData, ranges, read_bulk_data
-from implam_post.exchange.bulk_laminate import read_laminate
-from implam_post.exchange.bulk_shape import material_angle, read_grids, read_shape, read_systems
+from implam_post.exchange.bulk_laminate import read_laminates
+from implam_post.exchange.bulk_shape import material_angles, read_grids, read_shape, read_systems
+from implam_post.exchange.bulk_stringers import read_stringers
 from implam_post.exchange.bulk_supports import read_supports
 from implam_post.exchange.bulk_thermal import read_thermal
+from implam_post.exchange.bulk_zones import read_zones
 from implam_post.exchange.deck_text import Impact, deck_text
 from implam_post.exchange.remarks import Remarks
 from implam_post.io.errors import EXIT_DONE, CommandParser, FileError, ImplamError, positive, run
@@ -28,13 +30,17 @@ def deck_of(bulk: BulkData, name: str, impact: Impact, struck_last: bool = False
     remarks = Remarks()
     systems, grids = read_systems(bulk), read_grids(bulk)
     shape = read_shape(bulk, systems, grids, struck_last, remarks)
-    plies = read_laminate(bulk, shape.properties, remarks, shear_23)
+    laminates = read_laminates(bulk, shape.properties, remarks, shear_23)
     # Isotropic plies have no material axis, so the first corner of their elements does not matter.
-    angle = 0.0 if all(ply.material.isotropic for ply in plies) else material_angle(bulk, systems, shape)
-    plies = _turned(plies, angle, shape.turn)
-    thermal = read_thermal(bulk, shape, plies, remarks)
-    held = read_supports(bulk, grids, shape, supports, remarks)
-    return deck_text(name, printable(bulk.path.name), shape, held, plies, impact, thermal, remarks.for_deck), remarks
+    isotropic = all(ply.material.isotropic for laminate in laminates.values() for ply in laminate.plies)
+    angles = dict.fromkeys(laminates, 0.0) if isotropic else material_angles(bulk, systems, shape)
+    plies = {number: _turned(laminate.plies, angles[number], shape.turn) for number, laminate in laminates.items()}
+    zones, middle = read_zones(bulk, shape, laminates, plies, remarks)
+    thermal = read_thermal(bulk, shape, zones.plies, remarks)
+    stringers = read_stringers(bulk, systems, grids, shape, zones, middle, remarks)
+    held = read_supports(bulk, systems, grids, shape, supports, remarks)
+    return deck_text(name, printable(bulk.path.name), shape, held, zones, stringers, impact, thermal,
+                     remarks.for_deck), remarks
 
 
 def _turned(plies: list[Ply], angle: float, turn: int) -> list[Ply]:

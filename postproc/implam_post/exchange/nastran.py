@@ -5,6 +5,8 @@ from collections.abc import Iterator, Sequence
 
 from implam_post.exchange.panel import MaterialState, Panel, Section
 from implam_post.exchange.shell_mesh import ShellMesh, shell_mesh
+from implam_post.exchange.stringer_lines import line_of
+from implam_post.exchange.stringers import SHEAR_CORRECTION, Stringer
 from implam_post.laminate.sections import Material
 
 Field = int | float | str | None
@@ -15,7 +17,8 @@ _MAT1_STRENGTHS = ("XT", "XC", "S12")
 
 
 def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[str]:
-    """Return the lines: four CQUAD4 per cell, a PCOMP for each section, MAT8 or MAT1, SPC1, and PLOAD2 for a pressure.
+    """Return the lines: four CQUAD4 per cell, a PCOMP for each section, MAT8 or MAT1, SPC1, and PLOAD2 for a pressure;
+    two CBAR with offsets per side of a cell under a stringer, with PBARL for a blade and PBAR for other sections.
 
     Stacks away from the mid-plane have ZOFFS on their elements, or Z0 on their PCOMP.
     """
@@ -37,6 +40,8 @@ def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[s
         yield from _property(number, section, numbers, with_z0, 0.0 if panel.expands else None)
     for state, material in panel.materials().items():
         yield from _material(numbers[state], state, material)
+    for number, stringer in enumerate(panel.stringers, 1):
+        yield from _stringer(panel, mesh, stringer, len(sections) + number, len(numbers) + number)
     yield from _supports(mesh)
     if panel.pressure is not None:
         yield from card("PLOAD2", _LOAD, panel.pressure, 1, "THRU", 4 * mesh.struck)
@@ -83,6 +88,32 @@ def _material(number: int, state: MaterialState, material: Material) -> Iterator
     expansion = (along, across) if along or across else (None, None)
     yield from card("MAT8", number, material.e1, material.e2, material.nu12, material.g12, material.g13, material.g23,
                     density, *expansion, None, *limits)
+
+
+def _stringer(panel: Panel, mesh: ShellMesh, stringer: Stringer, number: int, material: int) -> Iterator[str]:
+    """Return material, property and elements of a stringer; `number` is that of the property.
+
+    The plane 1 of the elements is normal to the panel; offsets are those of the centroid from the grids.
+    """
+    section, sides = stringer.section, line_of(panel, mesh, stringer)
+    yield f"$ stringer {stringer.name}"
+    yield from card("MAT1", material, section.modulus, section.shear_modulus, None, section.density or None)
+    if section.web is not None and section.cap is None:
+        yield from card("PBARL", number, material, None, "BAR", None, None, None, None, section.web[1], section.web[0])
+    else:
+        factor = section.shear_area / section.area
+        extra = None if section.density else section.mass or None
+        yield from card("PBAR", number, material, section.area, section.bending, section.lateral, section.torsion,
+                        extra, None, *8 * (None,), factor, SHEAR_CORRECTION)
+    first = 4 * len(mesh.elements) + 1 + sum(2 * len(line_of(panel, mesh, other)) for other in panel.stringers[
+        :panel.stringers.index(stringer)])
+    halves = [half for side in sides for half in (side[:2], side[1:])]
+    for element, (start, end) in enumerate(halves, first):
+        outwards = stringer.outwards * (start.normal + end.normal) / 2
+        offsets = [float(f"{place:.12g}") + 0.0 for point in (start, end)
+                   for place in (point.face + stringer.outwards * section.eccentricity) * point.normal]
+        direction = [float(f"{each:.6g}") + 0.0 for each in outwards]
+        yield from card("CBAR", element, number, start.grid, end.grid, *direction, None, None, None, *offsets)
 
 
 def _supports(mesh: ShellMesh) -> Iterator[str]:

@@ -8,17 +8,22 @@ from typing import NamedTuple
 import numpy as np
 
 from implam_post.exchange.degradation import Degradation, failed_modes
+from implam_post.exchange.stringers import Stringer
 from implam_post.laminate.sections import Material, Ply
+from implam_post.laminate.zones import LayUp
 
 Cell = tuple[int, int]
 
 
 class Stack(NamedTuple):
-    """A sublaminate: plies `first` to `last`, counted from the struck face, and the failure modes of each."""
+    """A sublaminate: plies `first` to `last` of the laminate, counted from the struck face, and the failure modes of
+    each. Where doublers or ply drops change its plies, `lay_up` has them, and the failures are theirs.
+    """
 
     first: int
     last: int
     failures: tuple[int, ...]
+    lay_up: LayUp | None = None
 
 
 class MaterialState(NamedTuple):
@@ -43,11 +48,11 @@ class Layer(NamedTuple):
 
 @dataclass(frozen=True)
 class Section:
-    """The plies of a stack and z of its mid-plane, from that of the full laminate towards the back."""
+    """The plies of a stack, their numbers, and z of its mid-plane, from that of the full laminate towards the back."""
 
     layers: tuple[Layer, ...]
     middle: float
-    first: int
+    numbers: tuple[int, ...]
 
     @property
     def thickness(self) -> float:
@@ -60,10 +65,21 @@ class Section:
         return _plain(self.middle - self.thickness / 2, self.thickness)
 
     @property
+    def last_face(self) -> float:
+        """z of the surface nearest to the back."""
+        return _plain(self.middle + self.thickness / 2, self.thickness)
+
+    @property
     def title(self) -> str:
         """Numbers of the plies and their failures, as text."""
-        words = [f"plies {self.first} to {self.first + len(self.layers) - 1}"]
-        words += [f"{number} {layer.material.failed}" for number, layer in enumerate(self.layers, self.first)
+        runs: list[list[int]] = []
+        for number in self.numbers:
+            if runs and number == runs[-1][-1] + 1:
+                runs[-1].append(number)
+            else:
+                runs.append([number])
+        words = ["plies " + " and ".join(f"{run[0]} to {run[-1]}" for run in runs)]
+        words += [f"{number} {layer.material.failed}" for number, layer in zip(self.numbers, self.layers, strict=True)
                   if layer.material.failures]
         return ", ".join(words)
 
@@ -79,7 +95,8 @@ class Panel:
 
     `temperature` is the change from the stress-free temperature; `unwritten` has notes on what the deck has beyond the
     export. The lines of the stress-free panel along x and y have a `curvature`, and an initial deflection in half waves
-    with the amplitude `imperfection`. `in_plane` is `fixed`, `free` or `tangential`.
+    with the amplitude `imperfection`. `in_plane` is `fixed`, `free` or `tangential`. `added` are the plies of doublers,
+    numbered after those of the laminate.
     """
 
     name: str
@@ -96,6 +113,8 @@ class Panel:
     imperfection: float = 0.0
     half_waves: tuple[int, int] = (1, 1)
     curvature: tuple[float, float] = (0.0, 0.0)
+    added: Sequence[Ply] = ()
+    stringers: Sequence[Stringer] = ()
 
     @property
     def cells(self) -> tuple[int, int]:
@@ -110,14 +129,33 @@ class Panel:
                      for curvature, place, lines in zip(self.curvature, (x, y), (self.x, self.y), strict=True))
         return _plain(self.imperfection * math.prod(waves) + height, abs(self.imperfection) or abs(height))
 
+    def normal(self, x: float, y: float) -> np.ndarray:
+        """Return the unit normal of the stress-free panel at a position, towards the back."""
+        slopes = []
+        for axis in (0, 1):
+            step = np.zeros(2)
+            step[axis] = 1e-4 * np.ptp((self.x, self.y)[axis])
+            ahead, behind = (self.initial_deflection(*place) for place in ((x, y) + step, (x, y) - step))
+            slopes.append((ahead - behind) / (2 * step[axis]))
+        normal = np.array([-slopes[0], -slopes[1], 1.0])
+        return np.asarray(normal / np.linalg.norm(normal))
+
     def section(self, stack: Stack) -> Section:
         """Return the section of a stack."""
         faces = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in self.plies])])
-        plies = self.plies[stack.first - 1:stack.last]
+        every = [*self.plies, *self.added]
+        numbers, front = stack.lay_up or LayUp(tuple(range(stack.first, stack.last + 1)),
+                                               faces[stack.first - 1] - faces[-1] / 2)
+        plies = [every[number - 1] for number in numbers]
         layers = tuple(Layer(MaterialState(ply.material.name, failed), ply.thickness, ply.angle)
                        for ply, failed in zip(plies, stack.failures, strict=True))
-        middle = (faces[stack.first - 1] + faces[stack.last] - faces[-1]) / 2
-        return Section(layers, _plain(middle, faces[-1]), stack.first)
+        middle = front + sum(layer.thickness for layer in layers) / 2
+        return Section(layers, _plain(middle, faces[-1]), numbers)
+
+    def outer_face(self, cell: Cell, outwards: int) -> float:
+        """Return z of the face of a cell at the back (`outwards` 1) or the struck side (-1)."""
+        stacks = self.stacks[cell]
+        return self.section(stacks[-1]).last_face if outwards > 0 else self.section(stacks[0]).first_face
 
     def sections(self) -> list[Section]:
         """Return the sections of the panel, the most frequent one first, which usually is the undamaged one."""
@@ -126,11 +164,11 @@ class Panel:
             for stack in stacks:
                 section = self.section(stack)
                 count[section] = count.get(section, 0) + 1
-        return sorted(count, key=lambda section: (-len(section.layers), -count[section], section.first))
+        return sorted(count, key=lambda section: (-len(section.layers), -count[section], section.numbers))
 
     def materials(self) -> dict[MaterialState, Material]:
         """Return the material states of the panel with their elastic constants, undamaged ones first."""
-        originals = {ply.material.name: ply.material for ply in self.plies}
+        originals = {ply.material.name: ply.material for ply in (*self.plies, *self.added)}
         states = {MaterialState(name, 0) for name in originals}
         states |= {layer.material for section in self.sections() for layer in section.layers}
         order = list(originals)
@@ -144,7 +182,7 @@ class Panel:
     @property
     def expands(self) -> bool:
         """Whether the change of temperature is a load of the panel."""
-        return bool(self.temperature) and any(any(ply.material.expansion) for ply in self.plies)
+        return bool(self.temperature) and any(any(ply.material.expansion) for ply in (*self.plies, *self.added))
 
     def with_pressure(self, pressure: float | None) -> "Panel":
         """Return the panel under another pressure; None keeps the pressure."""

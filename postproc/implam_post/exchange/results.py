@@ -1,6 +1,6 @@
 """Read panels from results (NAME.h5, which holds the deck) and from decks."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +12,10 @@ from implam_post.io.deck import Deck, read_deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
 from implam_post.io.shapes import curvatures_of
-from implam_post.laminate.decks import uniform_plies_of
+from implam_post.exchange.stringers import Stringer, stringers_of
+from implam_post.laminate.decks import plies_of
 from implam_post.laminate.sections import Ply
+from implam_post.laminate.zones import LayUp, Zones, with_lines, zones_of
 
 _STATES = {"ply_damage": "ply_1_failure", "delamination": "delaminated_above"}
 # Groups with supports or loads that are not exported.
@@ -42,23 +44,32 @@ def _from_results(path: Path, time: float | None) -> Panel:
         if deck.has(group) and field not in written:
             raise FileError(f"{path} does not hold the state of &{group}: run again with '{group}' among the fields of "
                             f"&output.")
-    plies = uniform_plies_of(deck)
+    plies = plies_of(deck)
     if snapshot.mesh.last_ply.max() != len(plies):
         raise FileError(f"{path} is damaged: it has {snapshot.mesh.last_ply.max()} plies, but its deck {len(plies)}.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
-    stacks = _stacks(snapshot, x, y)
+    zones = _zones(deck, plies)
+    stacks = _stacks(snapshot, x, y, zones)
     x, y, stacks = _completed(x, y, stacks, fields.part)
     every_cell = {(column, row) for column in range(len(x) - 1) for row in range(len(y) - 1)}
     if stacks.keys() != every_cell or not all(_is_complete(found, len(plies)) for found in stacks.values()):
         raise FileError(f"{path} is damaged: its cells do not form a plate of {len(plies)} plies.")
-    return _panel(deck, plies, x, y, stacks)
+    return _panel(deck, zones, x, y, stacks)
+
+
+def _zones(deck: Deck, plies: list[Ply]) -> Zones:
+    """Return doublers and ply drops; refuse doublers with an interface of their own."""
+    if any("doubler" in group for group in deck.groups.get("delamination", [])):
+        raise deck.error("delamination", "the interface of a doubler cannot be exported: leave out this group, so that "
+                                         "the doubler is bonded rigidly.")
+    return zones_of(deck, plies)
 
 
 def _is_complete(stacks: tuple[Stack, ...], plies: int) -> bool:
     """Return whether stacks have every ply once, from the struck face to the back."""
     ends = [0, *(stack.last for stack in stacks)]
     return ends[-1] == plies and all(stack.first == above + 1 and len(stack.failures) == stack.last - above
-                                     for above, stack in zip(ends, stacks, strict=False))
+                                     for above, stack in zip(ends, stacks, strict=False) if stack.lay_up is None)
 
 
 def _lines(coordinates: np.ndarray) -> np.ndarray:
@@ -67,22 +78,60 @@ def _lines(coordinates: np.ndarray) -> np.ndarray:
     return ordered[np.concatenate([[True], np.diff(ordered) > 1e-9 * np.ptp(ordered)])]
 
 
-def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray) -> dict[Cell, tuple[Stack, ...]]:
+def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray, zones: Zones) -> dict[Cell, tuple[Stack, ...]]:
     """Return the stacks of each cell: its layers, joined where the interface between them is intact."""
     mesh = snapshot.mesh
     low = mesh.corners.min(axis=1)
     places = [np.argmin(np.abs(lines - low[:, axis, None]), axis=1) for axis, lines in enumerate((x, y))]
-    stacks: dict[Cell, list[Stack]] = {}
+    layers: dict[Cell, list[int]] = {}
     for element in np.argsort(mesh.first_ply, kind="stable"):
-        first, last = int(mesh.first_ply[element]), int(mesh.last_ply[element])
-        failures = tuple(int(snapshot.failures[ply][element]) if ply in snapshot.failures else 0
-                         for ply in range(first, last + 1))
-        found = stacks.setdefault((int(places[0][element]), int(places[1][element])), [])
+        layers.setdefault((int(places[0][element]), int(places[1][element])), []).append(int(element))
+    return {cell: _stacks_of_cell(snapshot, elements, zones.at(*mesh.corners[elements[0]][:, :2].mean(axis=0)),
+                                  zones) for cell, elements in layers.items()}
+
+
+def _stacks_of_cell(snapshot: Snapshot, elements: list[int], lay_up: LayUp, zones: Zones) -> tuple[Stack, ...]:
+    """Return the stacks of a cell with its layers from the struck face on."""
+    mesh, plies = snapshot.mesh, len(zones.laminate)
+    ends = [int(mesh.last_ply[element]) for element in elements[:-1]] + [plies]
+    found: list[Stack] = []
+    for element, (first, last), numbers in zip(elements, zip([1, *(end + 1 for end in ends)], ends, strict=False),
+                                               split(lay_up.numbers, ends[:-1], plies), strict=True):
+        failures = tuple(int(snapshot.failures[ply][element]) if ply in snapshot.failures else 0 for ply in numbers)
         if found and not snapshot.delaminated[element]:
             above = found.pop()
-            first, failures = above.first, above.failures + failures
-        found.append(Stack(first, last, failures))
-    return {cell: tuple(found) for cell, found in stacks.items()}
+            first, failures, numbers = above.first, above.failures + failures, (*above.lay_up.numbers, *numbers)
+        found.append(Stack(first, last, failures, LayUp(numbers, 0.0)))
+    return placed(found, lay_up, zones)
+
+
+def split(numbers: tuple[int, ...], ends: Sequence[int], plies: int) -> list[tuple[int, ...]]:
+    """Return the plies of a lay-up in parts that end after these plies of the laminate, which has `plies`.
+
+    Plies of doublers on the struck face belong to the first part, others to the last one.
+    """
+    parts: list[list[int]] = [[] for _ in range(len(ends) + 1)]
+    part = 0
+    for number in numbers:
+        if number <= plies:
+            part = sum(end < number for end in ends)
+        elif parts[0] and parts[0][-1] <= plies or part > 0:
+            part = len(ends)
+        parts[part].append(number)
+    return [tuple(found) for found in parts]
+
+
+def placed(stacks: Sequence[Stack], lay_up: LayUp, zones: Zones) -> tuple[Stack, ...]:
+    """Return stacks with their height, without a lay-up of their own where their plies are those of the laminate."""
+    found, front, every = [], lay_up.front, zones.plies
+    for stack in stacks:
+        numbers = stack.lay_up.numbers
+        if not numbers:
+            raise ImplamError(f"the delamination below ply {stack.last} has no ply on one of its sides.")
+        regular = lay_up == LayUp(tuple(range(1, len(zones.laminate) + 1)), lay_up.front)
+        found.append(stack._replace(lay_up=None if regular else LayUp(numbers, front)))
+        front += sum(every[number - 1].thickness for number in numbers)
+    return tuple(found)
 
 
 def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]], part: str
@@ -105,7 +154,8 @@ def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...
 
 def _from_deck(deck: Deck) -> Panel:
     """Return the panel with the starters of a deck, in equal cells, as many as the full plate has elements."""
-    plies = uniform_plies_of(deck)
+    plies = plies_of(deck)
+    zones = _zones(deck, plies)
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
         raise deck.error("mesh", "elements must be two integers greater than zero.")
@@ -113,14 +163,20 @@ def _from_deck(deck: Deck) -> Panel:
     parts = (1 if part in ("none", "half_y") else 2, 2 if part in ("quarter", "half_y") else 1)
     x, y = (np.linspace(-length / 2, length / 2, factor * int(count) + 1)
             for length, count, factor in zip(lengths, elements, parts, strict=True))
+    beams = _stringers(deck, plies)
+    x, y = (with_lines(lines, [*zones.edges(axis), *(
+        place for beam in beams for place in ([beam.at] if beam.axis != axis else beam.ends))])
+        for axis, lines in enumerate((x, y)))
     starters = starters_of(deck, plies, x, y, IMAGES.get(part, IMAGES["full"]))
     stacks = {}
     for i in range(len(x) - 1):
         for j in range(len(y) - 1):
             ends = [*sorted({ply for ply, cells in starters if cells[i, j]}), len(plies)]
-            stacks[i, j] = tuple(Stack(above + 1, end, (end - above) * (0,))
-                                 for above, end in zip([0, *ends], ends, strict=False))
-    return _panel(deck, plies, x, y, stacks, *([_STATE] if deck.has("initial_state") else []))
+            lay_up = zones.at((x[i] + x[i + 1]) / 2, (y[j] + y[j + 1]) / 2)
+            stacks[i, j] = placed([Stack(above + 1, end, len(numbers) * (0,), LayUp(numbers, 0.0))
+                                   for above, end, numbers in zip([0, *ends], ends, split(
+                                       lay_up.numbers, ends[:-1], len(plies)), strict=False)], lay_up, zones)
+    return _panel(deck, zones, x, y, stacks, *([_STATE] if deck.has("initial_state") else []))
 
 
 def _unwritten(deck: Deck) -> Iterator[str]:
@@ -132,7 +188,12 @@ def _unwritten(deck: Deck) -> Iterator[str]:
         yield _BY_OTHERS
 
 
-def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]],
+def _stringers(deck: Deck, plies: Sequence[Ply]) -> tuple[Stringer, ...]:
+    """Return the stringers; given sections without E have that of the first ply along its fibres."""
+    return stringers_of(deck, plies[0].material.e1)
+
+
+def _panel(deck: Deck, zones: Zones, x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...]],
            *notes: str) -> Panel:
     """Combine the panel with supports and load of the deck."""
     if "elastic" in deck.edges():
@@ -144,8 +205,8 @@ def _panel(deck: Deck, plies: list[Ply], x: np.ndarray, y: np.ndarray, stacks: d
     if len(half_waves) != 2 or min(half_waves) < 1 or any(count % 1 for count in half_waves):
         raise deck.error("plate", "half_waves must be two integers greater than zero.")
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
-    return Panel(deck.name, plies, x, y, stacks, deck.edges(), in_plane, degradation_of(deck),
+    return Panel(deck.name, zones.laminate, x, y, stacks, deck.edges(), in_plane, degradation_of(deck),
                  deck.number("pressure", "value") if uniform else None,
                  deck.number("thermal", "delta_T") if deck.has("thermal") else None, (*_unwritten(deck), *notes),
                  deck.number("plate", "imperfection", 0.0), (int(half_waves[0]), int(half_waves[1])),
-                 curvatures_of(deck))
+                 curvatures_of(deck), zones.plies[len(zones.laminate):], _stringers(deck, zones.laminate))

@@ -34,13 +34,15 @@ class Element(NamedTuple):
 class ShellMesh:
     """Grids numbered from 1, elements (those at the struck face first), and the grids with each support.
 
-    Supports are the digits of the constrained components: 1 to 3 along x, y and z, 4 to 6 about them.
+    Supports are the digits of the constrained components: 1 to 3 along x, y and z, 4 to 6 about them. At each place, in
+    half-lines, `places` has the grid of each first ply of a stack.
     """
 
     coordinates: np.ndarray
     elements: list[Element]
     struck: int
     supports: dict[str, list[int]]
+    places: dict[Place, dict[int, int]]
 
 
 def shell_mesh(panel: Panel, with_middles: bool) -> ShellMesh:
@@ -49,7 +51,7 @@ def shell_mesh(panel: Panel, with_middles: bool) -> ShellMesh:
     elements = [_element(cell, stack, numbers) for cell, stacks in sorted(panel.stacks.items()) for stack in stacks]
     elements.sort(key=lambda element: element.stack.first > 1)
     struck = sum(element.stack.first == 1 for element in elements)
-    return ShellMesh(np.array(coordinates), elements, struck, _supports(panel, numbers))
+    return ShellMesh(np.array(coordinates), elements, struck, _supports(panel, numbers), numbers)
 
 
 def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, int]], list[tuple[float, float, float]]]:
@@ -57,14 +59,14 @@ def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, i
 
     At the border of a delamination, next to an intact cell, the sublaminates share one grid.
     """
-    x, y = (_halved(lines) for lines in (panel.x, panel.y))
+    x, y = (halved(lines) for lines in (panel.x, panel.y))
     numbers: dict[Place, dict[int, int]] = {}
     coordinates: list[tuple[float, float, float]] = []
     for j in range(len(y)):
         for i in range(len(x)):
             if i % 2 and j % 2 and not with_middles:
                 continue
-            delaminated = frozenset.intersection(*(panel.delaminated(cell) for cell in _around(panel, i, j)))
+            delaminated = frozenset.intersection(*(panel.delaminated(cell) for cell in around(panel, i, j)))
             numbers[i, j] = {}
             for first in (1, *(below + 1 for below in sorted(delaminated))):
                 coordinates.append((float(x[i]), float(y[j]), panel.initial_deflection(x[i], y[j])))
@@ -72,14 +74,14 @@ def _numbered(panel: Panel, with_middles: bool) -> tuple[dict[Place, dict[int, i
     return numbers, coordinates
 
 
-def _halved(lines: np.ndarray) -> np.ndarray:
+def halved(lines: np.ndarray) -> np.ndarray:
     """Return the lines and the midpoints between neighbouring lines."""
     halved = np.empty(2 * len(lines) - 1)
     halved[::2], halved[1::2] = lines, (lines[1:] + lines[:-1]) / 2
     return halved
 
 
-def _around(panel: Panel, i: int, j: int) -> list[Cell]:
+def around(panel: Panel, i: int, j: int) -> list[Cell]:
     """Return the cells that share a place."""
     columns, rows = ([place for place in {(line - 1) // 2, line // 2} if 0 <= place < count]
                      for line, count in zip((i, j), panel.cells, strict=True))

@@ -11,7 +11,7 @@ STRENGTHS = ("XT", "XC", "YT", "YC", "S12", "Sf", "Sm23")
 
 def plies_of(deck: Deck) -> list[Ply]:
     """Return the stacking sequence from the struck face on."""
-    materials = _materials(deck)
+    materials = materials_of(deck)
     angles, thicknesses = _stack(deck)
     names, thicknesses = (deck.spread(values, len(angles), "laminate")
                           for values in (deck.values("laminate", "materials"), thicknesses))
@@ -58,7 +58,7 @@ def _stack(deck: Deck) -> tuple[list[Value], list[Value]]:
     return [*angles], deck.values("laminate", "ply_thickness")
 
 
-def _materials(deck: Deck) -> dict[str, Material]:
+def materials_of(deck: Deck) -> dict[str, Material]:
     """Return the materials by their name in lower case."""
     materials = {}
     for group in deck.groups.get("material", []):

@@ -103,7 +103,7 @@ REFUSED = {
     "MAT9": (whole(material="MAT9,1,139000.,3000.,3000.\n"), "8: MAT9", "as a MAT8"),
     "no material": (whole(material=""), "8: PCOMP", "there is no MAT1 or MAT8 with number 1"),
     "membrane": (whole(material="MAT1,1,7.+4,,.3\n", laminate="PSHELL,1,1,2.\n"), "9: PSHELL", "give MID2 = MID1"),
-    "cylinder": (whole(grids="CORD2C" + SYSTEM[6:] + free_grids(system="7")), "13: CORD2C", "must be a CORD2R"),
+    "sphere": (whole(grids="CORD2S" + SYSTEM[6:] + free_grids(system="7")), "13: CORD2S", "must be a CORD2R"),
     "system of grids": (whole(grids="CORD1R,7,1,2,6\n" + free_grids(), elements=free_elements(more=",7")),
                         "13: CORD1R", "must be a CORD2R"),
     "system of itself": (whole(grids="CORD2R,8,7" + SYSTEM[9:] + "CORD2R,7,8" + SYSTEM[9:] + free_grids(system="8")),
@@ -163,7 +163,7 @@ REFUSED = {
                   "CTRIA3, lines 38-39", "CQUAD4 or CQUAD8 only"),
     "two laminates": (whole(laminate=LAMINATE + LAMINATE.replace("PCOMP,1", "PCOMP,2").replace("45.", "30."),
                             elements=re.sub(r"^(CQUAD4,\d),1", r"\1,2", free_elements(), flags=re.MULTILINE)),
-                      "13: PCOMP", "its lay-up differs"),
+                      "10: PCOMP", "its lay-up differs"),
 }
 
 
