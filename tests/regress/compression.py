@@ -14,6 +14,7 @@ whole    the full plate from the half in the impact: to round-off until it fails
 buckling the elastic panel in the frame against eigenvalue and postbuckling of CalculiX
 bent     the same panel with a stress-free imperfection instead of the pressure
 closing  with cracks that close, also from a checkpoint: energies balance
+moduli   with another modulus in compression on finer cells, also from a checkpoint: energies balance
 coupon   [0]8 fails at XC
 refused  another plate, an unsuitable deck, a file that is no checkpoint: one sentence with both values each; an impact
          that was stopped before its end: a warning"""
@@ -278,9 +279,10 @@ def check_cut(implam, folder, launcher):
     print(f"dissipated {dissipated:.4g} with heat of friction {dissipated - kept:.4g}, {friction:.2g} of it cut away")
     require(0 < dissipated - kept < impact["energy_friction"], "The ledger has heat of what is cut away.")
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
-    error = max(map(abs, rows["energy_error"])) / total
-    print(f"energy error {error:.1e}")
-    require(error < CLOSED_AFTER_MAPPING, "The ledger does not close.")
+    rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
+    error = max(abs(rows["energy_error"][i + 1] - rows["energy_error"][i]) for i in (rest - 1, rest, rest + 1))
+    print(f"energy error at the release {error:.1e} J, strain energy {rows['energy_strain'][rest]:.1e} J")
+    require(error < 1e-6 * rows["energy_strain"][rest], "The ledger does not close.")
     reference = folder / "reference.csv"
     shutil.copy(path, reference)
     if launcher:
@@ -449,6 +451,23 @@ def check_closing(implam, folder, _):
     check_restart(implam, folder, reference)
 
 
+def check_moduli(implam, folder, _):
+    """Fibres have their modulus in compression also while the damage of the impact is held on other cells."""
+    softer = ["material%E1c=100e9"]
+    shutil.rmtree(folder, ignore_errors=True)
+    run([implam, deck_of(folder, IMPACT, [*softer, "time%end=0.9e-3"])], folder=folder)
+    path = press(implam, folder, [*softer, *FINER, "output%checkpoint_every=0.2e-3", "output%checkpoint_at_end=.false."])
+    rows = read_history(path)
+    rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
+    error = max(abs(rows["energy_error"][i + 1] - rows["energy_error"][i]) for i in (rest - 1, rest, rest + 1))
+    print(f"energy error at the release {error:.1e} J, strain energy {rows['energy_strain'][rest]:.1e} J")
+    # Measured: 2e-10; 4e-2 where the modulus of tension is taken until the release.
+    require(error < 1e-6 * rows["energy_strain"][rest], "The ledger does not close.")
+    reference = folder / "reference.csv"
+    shutil.copy(path, reference)
+    check_restart(implam, folder, reference)
+
+
 def check_coupon(implam, folder, _):
     """A specimen of 0 degree plies fails at the strength of the fibres."""
     run_deck(implam, write_deck(folder, "coupon.nml"))
@@ -461,8 +480,8 @@ def check_coupon(implam, folder, _):
 def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "coupon": check_coupon,
-              "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
+              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
+              "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
               "cut": check_cut, "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
