@@ -110,9 +110,11 @@ def locate(axes: Axes, fields: Fields) -> None:
 
 
 def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> None:
-    """Draw the edges of the plate and the windows of its supports."""
+    """Draw the edges of the plate, its doublers and stringers, and the windows of its supports."""
     axes.add_patch(Rectangle((-along / 2, -across / 2), along, across, facecolor="white", edgecolor="black",
                              linewidth=0.8))
+    if deck is not None:
+        _draw_stiffeners(axes, deck, along, across)
     for support in deck.groups.get("support", []) if deck is not None else ():
         if len(window := support.get("window", [])) == 2:
             axes.add_patch(Rectangle((-window[0] / 2, -window[1] / 2), *window, facecolor="none", edgecolor="C0",
@@ -120,6 +122,21 @@ def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> No
         elif radius := support.get("radius", []):
             axes.add_patch(Circle((0, 0), radius[0], facecolor="none", edgecolor="C0", linestyle="--", linewidth=0.8,
                                   label="window of the support"))
+
+
+def _draw_stiffeners(axes: Axes, deck: Deck, along: float, across: float) -> None:
+    """Draw doublers as grey areas, stringers as lines."""
+    for number, doubler in enumerate(deck.groups.get("doubler", [])):
+        (x, y), (width, height) = doubler["at"], doubler["size"]
+        axes.add_patch(Rectangle((x - width / 2, y - height / 2), width, height, facecolor="#DDDDDD",
+                                 label=None if number else "doublers"))
+    for number, stringer in enumerate(deck.groups.get("stringer", [])):
+        runs_along_x = str(stringer.get("along", ["x"])[0]).lower() == "x"
+        half = (along if runs_along_x else across) / 2
+        ends = [stringer.get("from", [-half])[0], stringer.get("to", [half])[0]]
+        place = 2 * [stringer.get("at", [0.0])[0]]
+        axes.plot(*((ends, place) if runs_along_x else (place, ends)), color="#555555", linewidth=1,
+                  label=None if number else "stringers")
 
 
 def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
