@@ -102,7 +102,7 @@ contains
 
   !> Lines of a deck without trailing blanks.
   pure function lines_of(deck) result(lines)
-    !> The deck
+    !> Its lines, padded with blanks
     character(len=*), intent(in) :: deck(:)
     type(line_t), allocatable :: lines(:)
     integer :: i

@@ -68,9 +68,11 @@ module stiffened_decks
     '&plate        length=400e-3, 306e-3  curvature_radius=0, 2', &
     '              edges=''clamped'', ''clamped'', ''simple'', ''simple''   ! ends in blocks, sides on knife edges', &
     '              in_plane=''free'' /', &
-    '&mesh         elements=38, 102', &
-    '              core=66e-3, 300e-3  cell=3e-3   ! from side to side, as fibres are crushed; damage is mapped', &
-    '              patch=6e-3 /', &
+    '&mesh         elements=28, 52', &
+    '              core=72e-3, 288e-3  cell=6e-3   ! from side to side, as fibres are crushed; damage is mapped', &
+    '              patch=12e-3 /                   ! two cells', &
+    '! `implam check` reports the longest cell for G_fc, which strengths require. elements=38, 102', &
+    '! core=66e-3, 300e-3  cell=3e-3  patch=6e-3 have such cells, and take some six times as long.', &
     panel, &
     '&initial_state from=''results/stiffened_restart.h5'' /   ! of the impact; relative to the working directory', &
     '&line         at=-200e-3  component=''u''  displacement=2e-3   rise=1.5e-3 /   ! ends: skin and webs are loaded', &

@@ -230,7 +230,7 @@ def check_stiffened_rig(implam, folder):
     for rig, deck in (("stiffened", "stiffened_panel"), ("stiffened_compression", "stiffened_panel_compression")):
         output_of(implam, "new", "--rig", rig, cwd=folder)
         printed, given = (output_of(implam, "check", path, cwd=folder)
-                          for path in (f"{rig}.nml", HERE.parents[1] / "input" / f"{deck}.nml"))
+                          for path in (f"{rig}.nml", str(HERE.parents[1] / "input" / f"{deck}.nml")))
         scales, others = (page.partition("Scales of the case:")[2].partition("About")[0] for page in (printed, given))
         require("no errors" in printed and scales == others, f"{rig} differs from input/{deck}.nml:\n{scales}{others}")
     period = float(re.search(r"period of the first bending mode +([\d.]+)", printed)[1])
@@ -256,7 +256,8 @@ def check_new(implam, folder):
     require("no errors" in printed and 4 <= thickness <= 6, printed)
     require(abs(energy - 6.7*thickness) < 0.01*energy, "The energy is not that of D7136.")
     require(printed.count("warning:") <= 2, "There are more warnings than one for plies and one for interfaces.")
-    require("d7136, d7137, stiffened, " in output_of(implam, "new", "--rig", "d7138", code=EXIT_USAGE), "The rigs are not listed.")
+    require("d7136, d7137, stiffened, " in output_of(implam, "new", "--rig", "d7138", code=EXIT_USAGE),
+            "The rigs are not listed.")
     check_compression_of_rig(implam, folder)
     check_stiffened_rig(implam, folder)
     require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig is accepted without new.")

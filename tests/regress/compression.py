@@ -466,7 +466,8 @@ def check_moduli(implam, folder, _):
     softer = ["material%E1c=100e9"]
     shutil.rmtree(folder, ignore_errors=True)
     run([implam, deck_of(folder, IMPACT, [*softer, "time%end=0.9e-3"])], folder=folder)
-    path = press(implam, folder, [*softer, *FINER, "output%checkpoint_every=0.2e-3", "output%checkpoint_at_end=.false."])
+    path = press(implam, folder, [*softer, *FINER, "output%checkpoint_every=0.2e-3",
+                                  "output%checkpoint_at_end=.false."])
     rows = read_history(path)
     rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
     error = max(abs(rows["energy_error"][i + 1] - rows["energy_error"][i]) for i in (rest - 1, rest, rest + 1))
@@ -523,8 +524,8 @@ def check_coupon(implam, folder, _):
 def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli, "stiffened": check_stiffened,
-              "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
+              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
+              "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
               "cut": check_cut, "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
