@@ -1,13 +1,15 @@
 !> Decks that `implam new --rig` writes: a drop-weight test after ASTM D7136 on a panel with the thickness and energy of
-!> the standard, and the compression of the struck panel after ASTM D7137.
+!> the standard, the compression of the struck panel after ASTM D7137, and those of a stiffened panel.
 module rig_decks
+  use stiffened_decks, only: stiffened, stiffened_compression
   use text, only: line_t, append
   implicit none
   private
   public :: rig_lines
 
   !> Names of rigs with a deck, and the names as printed.
-  character(len=*), parameter, public :: rigs(*) = [character(len=5) :: 'd7136', 'd7137'], rig_names = 'd7136, d7137'
+  character(len=*), parameter, public :: rigs(*) = [character(len=21) :: 'd7136', 'd7137', 'stiffened', &
+    'stiffened_compression'], rig_names = 'd7136, d7137, stiffened, stiffened_compression'
   !> Characters of a line.
   integer, parameter :: width = 110
 
@@ -85,17 +87,29 @@ contains
     !> Its name
     character(len=*), intent(in) :: rig
     type(line_t), allocatable :: lines(:)
+
+    select case (rig)
+    case ('d7136')
+      lines = lines_of(d7136)
+    case ('d7137')
+      lines = lines_of(d7137)
+    case ('stiffened')
+      lines = lines_of(stiffened)
+    case default
+      lines = lines_of(stiffened_compression)
+    end select
+  end function rig_lines
+
+  !> Lines of a deck without trailing blanks.
+  pure function lines_of(deck) result(lines)
+    !> Its lines, padded with blanks
+    character(len=*), intent(in) :: deck(:)
+    type(line_t), allocatable :: lines(:)
     integer :: i
 
     allocate (lines(0))
-    if (rig == rigs(1)) then
-      do i = 1, size(d7136)
-        call append(lines, trim(d7136(i)))
-      end do
-    else
-      do i = 1, size(d7137)
-        call append(lines, trim(d7137(i)))
-      end do
-    end if
-  end function rig_lines
+    do i = 1, size(deck)
+      call append(lines, trim(deck(i)))
+    end do
+  end function lines_of
 end module rig_decks

@@ -33,7 +33,7 @@ module usage_texts
   character(len=*), parameter :: runs = 'run restart'
   character(len=text_length), parameter, public :: option_rows(3, 12) = reshape([character(len=text_length) :: &
     '--rig NAME', 'new', 'the deck of a test: d7136, a drop-weight test after ASTM D7136; d7137, the compression &
-    &of its panel after the impact', &
+    &of its panel after the impact; stiffened and stiffened_compression, the same of a curved panel with blades', &
     '--output DIR', runs//' queue', 'folder of the results, instead of the deck''s; for restart the folder of the &
       &checkpoint', &
     '--wall-limit SECONDS', runs, 'end with a checkpoint before this wall-clock time has passed', &

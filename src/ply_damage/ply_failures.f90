@@ -128,8 +128,7 @@ contains
     end if
   end subroutine find_forces
 
-  !> Adds the forces of the elements on the layers, with softening plies; their history variables are accepted at once.
-  !> Collective.
+  !> Adds the forces of the elements on the layers; history variables of softening plies are accepted. Collective.
   subroutine add_layer_forces(self, model, motion, force, energies)
     class(ply_failure_t), intent(inout) :: self
     type(model_t), intent(in) :: model
@@ -141,13 +140,14 @@ contains
     real(wp), contiguous, intent(out) :: energies(:, :)
     real(wp) :: energy
 
-    if (allocated(self%bands) .and. .not. self%keeps_stiffness) then
-      ! Before the forces, not after them: a restart, which computes the last forces again, then does so with the
-      ! strengths that they had.
-      call self%bands%update_strengths(model)
+    if (allocated(self%bands) .and. (allocated(self%mean_change) .or. .not. self%keeps_stiffness)) then
+      self%bands%keeps_damage = self%keeps_stiffness
+      ! Before the forces: a restart computes the last forces again, with the strengths that they had.
+      if (.not. self%keeps_stiffness) call self%bands%update_strengths(model)
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
-      call self%bands%commit_sections(self%stiffness, self%free)
+      if (.not. self%keeps_stiffness) call self%bands%commit_sections(self%stiffness, self%free)
+      self%bands%keeps_damage = .false.
     else if (allocated(self%signs)) then
       call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
                               self%signs, self%free, energies)

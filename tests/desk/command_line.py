@@ -225,6 +225,20 @@ def check_compression_of_rig(implam, folder):
     require(printed.count("warning:") <= 3, printed)
 
 
+def check_stiffened_rig(implam, folder):
+    """The decks of the stiffened panel are those of input/ with comments: the same scales. The panel comes to rest."""
+    for rig, deck in (("stiffened", "stiffened_panel"), ("stiffened_compression", "stiffened_panel_compression")):
+        output_of(implam, "new", "--rig", rig, cwd=folder)
+        printed, given = (output_of(implam, "check", path, cwd=folder)
+                          for path in (f"{rig}.nml", str(HERE.parents[1] / "input" / f"{deck}.nml")))
+        scales, others = (page.partition("Scales of the case:")[2].partition("About")[0] for page in (printed, given))
+        require("no errors" in printed and scales == others, f"{rig} differs from input/{deck}.nml:\n{scales}{others}")
+    period = float(re.search(r"period of the first bending mode +([\d.]+)", printed)[1])
+    rest = 1e3*float(re.search(r"settle=([\d.e-]+)", (folder / f"{rig}.nml").read_text(encoding="utf-8"))[1])
+    print(f"stiffened panel: period {period} ms, at rest after {rest:.2g} ms")
+    require(rest >= 1.3*period, "The panel does not come to rest.")
+
+
 def check_new(implam, folder):
     """The starter deck passes the check without a warning, grows a delamination, and overwrites nothing."""
     output_of(implam, "new", cwd=folder)
@@ -242,8 +256,10 @@ def check_new(implam, folder):
     require("no errors" in printed and 4 <= thickness <= 6, printed)
     require(abs(energy - 6.7*thickness) < 0.01*energy, "The energy is not that of D7136.")
     require(printed.count("warning:") <= 2, "There are more warnings than one for plies and one for interfaces.")
-    require("d7136, d7137" in output_of(implam, "new", "--rig", "d7138", code=EXIT_USAGE), "The rigs are not listed.")
+    require("d7136, d7137, stiffened, " in output_of(implam, "new", "--rig", "d7138", code=EXIT_USAGE),
+            "The rigs are not listed.")
     check_compression_of_rig(implam, folder)
+    check_stiffened_rig(implam, folder)
     require("new" in output_of(implam, "check", "--rig", "d7136", code=EXIT_USAGE), "--rig is accepted without new.")
     output_of(implam, "new", "no/such/folder.nml", cwd=folder, code=EXIT_FILES)
     run_coarse(implam, folder)

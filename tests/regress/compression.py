@@ -14,6 +14,9 @@ whole    the full plate from the half in the impact: to round-off until it fails
 buckling the elastic panel in the frame against eigenvalue and postbuckling of CalculiX
 bent     the same panel with a stress-free imperfection instead of the pressure
 closing  with cracks that close, also from a checkpoint: energies balance
+stiffened  two blades on the back are loaded with the skin, on the cells of the impact and on finer ones: the modulus is
+         that of skin and blades
+moduli   with another modulus in compression on finer cells, also from a checkpoint: energies balance
 coupon   [0]8 fails at XC
 refused  another plate, an unsuitable deck, a file that is no checkpoint: one sentence with both values each; an impact
          that was stopped before its end: a warning"""
@@ -59,6 +62,14 @@ CUT = ["plate%length=40e-3, 18e-3", "support%window=36e-3, 16e-3", "mesh%element
        "mesh%lines_y=8e-3", "line%at=20e-3", "line%displacement=-0.1e-3", "time%end=0.4e-3"]
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
+# Modulus of [0/90]s; blades on the back of the panel: distance from its middle and axial stiffness. The load of this
+# compression ends before the panel fails.
+SKIN_MODULUS = 69.14e9
+BLADE_AT, BLADE_STIFFNESS = 12e-3, 60e9 * 6e-3 * 1.2e-3
+SHORT = ["line%displacement=-0.08e-3"]
+# Relative. Measured: -1.2 %, as plies are damaged, -4.9 % where the ends of the blades turn, -11 % without blades;
+# 1.8e-6 of the total energy.
+BLADES_CARRY, CLOSED_BESIDE_BLADES = 0.02, 1e-5
 ENERGIES = ("kinetic", "strain", "delamination", "ply_damage", "contact", "friction", "algorithmic", "layers",
             "damping")
 
@@ -278,9 +289,10 @@ def check_cut(implam, folder, launcher):
     print(f"dissipated {dissipated:.4g} with heat of friction {dissipated - kept:.4g}, {friction:.2g} of it cut away")
     require(0 < dissipated - kept < impact["energy_friction"], "The ledger has heat of what is cut away.")
     total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
-    error = max(map(abs, rows["energy_error"])) / total
-    print(f"energy error {error:.1e}")
-    require(error < CLOSED_AFTER_MAPPING, "The ledger does not close.")
+    rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
+    error = max(abs(rows["energy_error"][i + 1] - rows["energy_error"][i]) for i in (rest - 1, rest, rest + 1))
+    print(f"energy error at the release {error:.1e} J, strain energy {rows['energy_strain'][rest]:.1e} J")
+    require(error < 1e-6 * rows["energy_strain"][rest], "The ledger does not close.")
     reference = folder / "reference.csv"
     shutil.copy(path, reference)
     if launcher:
@@ -449,6 +461,57 @@ def check_closing(implam, folder, _):
     check_restart(implam, folder, reference)
 
 
+def check_moduli(implam, folder, _):
+    """Fibres have their modulus in compression also while the damage of the impact is held on other cells."""
+    softer = ["material%E1c=100e9"]
+    shutil.rmtree(folder, ignore_errors=True)
+    run([implam, deck_of(folder, IMPACT, [*softer, "time%end=0.9e-3"])], folder=folder)
+    path = press(implam, folder, [*softer, *FINER, "output%checkpoint_every=0.2e-3",
+                                  "output%checkpoint_at_end=.false."])
+    rows = read_history(path)
+    rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
+    error = max(abs(rows["energy_error"][i + 1] - rows["energy_error"][i]) for i in (rest - 1, rest, rest + 1))
+    print(f"energy error at the release {error:.1e} J, strain energy {rows['energy_strain'][rest]:.1e} J")
+    # Measured: 2e-10; 4e-2 where the modulus of tension is taken until the release.
+    require(error < 1e-6 * rows["energy_strain"][rest], "The ledger does not close.")
+    reference = folder / "reference.csv"
+    shutil.copy(path, reference)
+    check_restart(implam, folder, reference)
+
+
+def stiffened_deck(folder, name, settings=()):
+    """Put a changed deck of the panel with two blades on its back into a folder; return its name there.
+
+    In the compression the ends are clamped, so that blades are loaded with the skin."""
+    path = folder / deck_of(folder, name, settings)
+    text = path.read_text(encoding="utf-8")
+    if name == COMPRESSION:
+        text = re.sub("&support .*/", "", text).replace("'free'", "'clamped', 'clamped', 'simple', 'simple'", 1)
+    blades = "".join(f"&stringer name='{side}' at={at} height=6e-3 thickness=1.2e-3 E=60e9 density=1600 /\n"
+                     for side, at in (("left", -BLADE_AT), ("right", BLADE_AT)))
+    path.write_text(text + blades, encoding="utf-8")
+    return path.name
+
+
+def check_stiffened(implam, folder, _):
+    """The blades of a struck panel carry load in proportion to their axial stiffness."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    run([implam, stiffened_deck(folder, IMPACT)], folder=folder)
+    expected = SKIN_MODULUS + 2 * BLADE_STIFFNESS / AREA
+    for name, settings in (("impact's cells", []), ("finer cells", FINER)):
+        run([implam, stiffened_deck(folder, COMPRESSION, [*SHORT, *settings])], folder=folder)
+        rows = read_history(folder / f"{COMPRESSION}_history.csv")
+        stress, strain = (rows[column][-1] - rows[column][len(rows["time"]) // 2]
+                          for column in ("far_field_stress", "nominal_strain"))
+        total = max(sum(rows[f"energy_{part}"][i] for part in ENERGIES) for i in range(len(rows["time"])))
+        error = max(map(abs, rows["energy_error"])) / total
+        print(f"{name}: modulus {stress / strain / 1e9:.2f} GPa, {expected / 1e9:.2f} by skin and blades; energy error "
+              f"{error:.1e}")
+        require(abs(stress / strain / expected - 1) < BLADES_CARRY, "The blades do not carry their part of the load.")
+        require(error < CLOSED_BESIDE_BLADES, "The ledger does not close.")
+
+
 def check_coupon(implam, folder, _):
     """A specimen of 0 degree plies fails at the strength of the fibres."""
     run_deck(implam, write_deck(folder, "coupon.nml"))
@@ -461,8 +524,8 @@ def check_coupon(implam, folder, _):
 def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
-              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "coupon": check_coupon,
-              "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
+              "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
+              "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
               "cut": check_cut, "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 

@@ -79,9 +79,16 @@ def caption(fields: Fields, style: PictureStyle = _PLAIN, outlined: bool = True,
     state = state_of(fields, fields.snapshots[-1].time, style, 4)
     law = "outlines enclose the dissipated area, where the dissipated fraction is largest; " if outlined and any(
         found.is_cohesive for found in fields.snapshots[-1].interfaces.values()) else ""
+    stiffened = "; grey lines: doublers (dashed) and stringers" if _is_stiffened(deck_in(fields.path)) else ""
     return f"State at {state}; {law}0° along x;\nview of the back face (z towards the viewer), + struck point" + (
+        stiffened) + (
         "\ninset: part of the plate shown (red)" + (", window of its support (dashed)" if _windows(fields) else "")
         if inset else "")
+
+
+def _is_stiffened(deck: Deck | None) -> bool:
+    """Return whether the plate has doublers or stringers."""
+    return deck is not None and (deck.has("doubler") or deck.has("stringer"))
 
 
 def _windows(fields: Fields) -> bool:
@@ -110,9 +117,11 @@ def locate(axes: Axes, fields: Fields) -> None:
 
 
 def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> None:
-    """Draw the edges of the plate and the windows of its supports."""
+    """Draw the edges of the plate, its doublers and stringers, and the windows of its supports."""
     axes.add_patch(Rectangle((-along / 2, -across / 2), along, across, facecolor="white", edgecolor="black",
                              linewidth=0.8))
+    if deck is not None:
+        _draw_stiffeners(axes, deck, along, across, facecolor="#DDDDDD")
     for support in deck.groups.get("support", []) if deck is not None else ():
         if len(window := support.get("window", [])) == 2:
             axes.add_patch(Rectangle((-window[0] / 2, -window[1] / 2), *window, facecolor="none", edgecolor="C0",
@@ -120,6 +129,21 @@ def draw_plate(axes: Axes, deck: Deck | None, along: float, across: float) -> No
         elif radius := support.get("radius", []):
             axes.add_patch(Circle((0, 0), radius[0], facecolor="none", edgecolor="C0", linestyle="--", linewidth=0.8,
                                   label="window of the support"))
+
+
+def _draw_stiffeners(axes: Axes, deck: Deck, along: float, across: float, **doublers: object) -> None:
+    """Draw doublers as areas, stringers as grey lines."""
+    for number, doubler in enumerate(deck.groups.get("doubler", [])):
+        (x, y), (width, height) = doubler["at"], doubler["size"]
+        axes.add_patch(Rectangle((x - width / 2, y - height / 2), width, height, **doublers,
+                                 label=None if number else "doublers"))
+    for number, stringer in enumerate(deck.groups.get("stringer", [])):
+        runs_along_x = str(stringer.get("along", ["x"])[0]).lower() == "x"
+        half = (along if runs_along_x else across) / 2
+        ends = [stringer.get("from", [-half])[0], stringer.get("to", [half])[0]]
+        place = 2 * [stringer.get("at", [0.0])[0]]
+        axes.plot(*((ends, place) if runs_along_x else (place, ends)), color="#555555", linewidth=1,
+                  label=None if number else "stringers")
 
 
 def reach_of(cells: np.ndarray, fields: Fields) -> tuple[float, float]:
@@ -174,5 +198,9 @@ def frame(axes: Axes, fields: Fields, reach: Sequence[float], style: PictureStyl
         side.set_label_text(length.label)
         side.set_major_formatter(FuncFormatter(lambda value, _, factor=length.factor: f"{factor * value:.4g}"))
         side.set_major_locator(MaxNLocator(5))
+    deck = deck_in(fields.path)
+    if deck is not None and _is_stiffened(deck):
+        _draw_stiffeners(axes, deck, *deck.lengths(), facecolor="none", edgecolor="#555555", linestyle="--",
+                         linewidth=0.8)
     axes.plot(*middle, "+", color="white", markersize=6.5, markeredgewidth=2.2, zorder=10)
     axes.plot(*middle, "+", color="black", markersize=5, markeredgewidth=0.9, zorder=11)

@@ -24,6 +24,7 @@ from implam_post.report.impact import impact_rows
 from implam_post.report.page import image, render, rounded
 from implam_post.report.pictures import history_pictures, layup_figure, map_pictures, plan_figure
 from implam_post.report.scatter_report import write_page
+from implam_post.report.stiffeners import HEAD, stiffener_rows
 from implam_post.sweep.scatter_results import STATISTICS
 
 # Rows of the table at the top: label, member, member with its time.
@@ -92,6 +93,7 @@ def report(run: Run, undamaged: float | None = None) -> str:
         interfaces_head=_interfaces_head(summary), test=impact_rows(run, style), deck=_rounded_deck(summary),
         plate=_plate(summary, style), plan=image(plan_figure(summary, style)),
         layup=image(layup_figure(summary)), plies_head=_plies_head(summary), plies=_plies(summary, style),
+        stiffeners=stiffener_rows(run, style), stiffeners_head=HEAD,
         curves=[(text, image(figure)) for text, figure in curves],
         maps=[(text, image(figure)) for text, figure in maps],
         balance=[(name, axis.factor * value) for name, value in energies.items()], energy_label=axis.label,
