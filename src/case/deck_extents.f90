@@ -185,7 +185,7 @@ contains
       if (repeats(deck, i)) cycle
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
         call extents_of(columns, rows, d, zone, starter)
-        if (differs(zone, d%zone) .and. .not. d%is_adaptive) &
+        if (differs(zone, d%zone) .and. .not. (d%is_adaptive .or. d%bonds_doublers())) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'zones consist of entire cells; '// &
                       'on this mesh the zone is '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
