@@ -171,7 +171,7 @@ contains
       d%shear_cracks = s%logical_of(group, key_shear_cracks, place)
       d%growth_control = code_of(s%text_of(group, key_growth_control, place), 'strength energy', &
                                  [growth_by_strength, growth_by_energy])
-      if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
+      if (s%is_known(group, key_zone, place) .and. .not. d%bonds_doublers()) d%zone = s%reals_of(group, key_zone, place)
       d%is_adaptive = d%law == law_cohesive .and. .not. (s%is_given(group, key_zone, place) .or. d%bonds_doublers())
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
@@ -206,9 +206,11 @@ contains
     is_cohesive = suits_cohesive(settings, place, weaker)
     ! Without plies, as their group has errors, only the key of a front decides.
     if (plies == 0) is_cohesive = .not. needs_front(settings, place)
+    is_cohesive = is_cohesive .or. delamination%bonds_doublers()
     if (.not. settings%is_given(group, key_law, place)) call settings%derive(group, key_law, &
       trim(merge('cohesive', 'front   ', is_cohesive)), .true., place)
     delamination%law = code_of(settings%text_of(group, key_law, place), 'front cohesive', [law_front, law_cohesive])
+    if (delamination%bonds_doublers()) delamination%law = law_cohesive  ! a front is refused
     if (delamination%law /= law_cohesive) return
     delamination%stiffness = settings%real_of(group, 'stiffness', place)
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
@@ -278,6 +280,7 @@ contains
       if (place == before) cycle
       call check_toughness(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
+      if (delaminations(i)%bonds_doublers()) cycle
       if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &

@@ -3,7 +3,7 @@ module doubler_bonds
   use deck_problems, only: problems_t
   use deck_remarks, only: are_clear, report
   use deck_settings, only: settings_t
-  use delamination_parameters, only: delamination_t, law_cohesive
+  use delamination_parameters, only: delamination_t
   use interface_places, only: delamination_group, key_below_ply
   use kinds, only: wp
   use ply_zone_parameters, only: front_face
@@ -12,7 +12,7 @@ module doubler_bonds
   use zone_deck, only: doubler_group
   implicit none
   private
-  public :: check_bonds, is_bond, new_bond, weaker_beside
+  public :: check_bonds, is_bond, names_of_doublers, new_bond, weaker_beside
 
   !> Name of the key.
   character(len=*), parameter, public :: key_bond = 'doubler'
@@ -149,9 +149,8 @@ contains
                     'allowed: doublers with face = ''back''.')
       end if
     end do
-    if (bond%law /= law_cohesive) &
-      call refuse('law', 'the bond of a doubler is cohesive; allowed: law = ''cohesive'', with strength_opening and '// &
-                  'strength_shear, or YT and S12 of the materials.')
+    if (settings%text_of(group, 'law', bond%group) == 'front') &
+      call refuse('law', 'the bond of a doubler is cohesive; allowed: law = ''cohesive''.')
     if (bond%cracks_as_flaws) call refuse('cracks_as_flaws', 'is not available for the bond of a doubler; leave it out.')
     if (bond%shear_cracks) call refuse('shear_cracks', 'is not available for the bond of a doubler; leave it out.')
 
@@ -166,6 +165,21 @@ contains
         call report(settings, problems, group, key, sentence, bond%group)
     end subroutine refuse
   end subroutine check_bond
+
+  !> Names of the doublers of a bond, separated by commas.
+  pure function names_of_doublers(zones, bond) result(names)
+    type(ply_zones_t), intent(in) :: zones
+    !> The bond
+    type(delamination_t), intent(in) :: bond
+    character(len=:), allocatable :: names
+    integer :: i
+
+    names = ''
+    do i = 1, size(bond%doublers)
+      names = names//', '//zones%doublers(bond%doublers(i))%name
+    end do
+    names = names(3:)
+  end function names_of_doublers
 
   !> Names of all doublers as the end of a sentence.
   pure function allowed_names(zones) result(ending)
