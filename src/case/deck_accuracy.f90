@@ -256,6 +256,7 @@ contains
 
     side = minval(deck%plate%length)
     do i = 1, size(deck%delaminations)
+      if (deck%delaminations(i)%bonds_doublers()) cycle
       if (.not. deck%delaminations(i)%is_adaptive) side = min(side, minval(deck%delaminations(i)%zone))
     end do
   end function smallest_zone

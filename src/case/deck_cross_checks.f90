@@ -8,6 +8,7 @@ module deck_cross_checks
   use deck_line_supports, only: check_in_plane_balance, check_line_strains, check_line_supports, check_moved_lines
   use deck_symmetries, only: check_symmetry
   use deck_remarks, only: report, remark, are_clear
+  use deck_bonds, only: check_bonds_across_groups
   use deck_zones, only: check_zones_across_groups
   use interface_places, only: delamination_group, key_below_ply
   use delamination_parameters, only: interface_objection, law_front
@@ -55,6 +56,7 @@ contains
     call check_line_strains(deck, problems)
     call check_symmetry(deck, problems)
     call check_zones_across_groups(deck, problems)
+    call check_bonds_across_groups(deck, problems)
     call check_impact(deck, problems)
     call check_interfaces(deck, problems)
     if (deck%has_ply_damage) call check_strengths(deck, problems)

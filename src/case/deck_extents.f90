@@ -10,6 +10,7 @@ module deck_extents
   use deck_problems, only: problems_t
   use deck_remarks, only: report, remark, are_clear
   use delamination_deck, only: key_smoothing, key_starter, key_zone
+  use doubler_bonds, only: names_of_doublers
   use interface_places, only: delamination_group
   use delamination_parameters, only: delamination_t, law_front, release_vcct, default_smoothing, min_smoothed_cells
   use kinds, only: wp
@@ -185,7 +186,7 @@ contains
       if (repeats(deck, i)) cycle
       associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
         call extents_of(columns, rows, d, zone, starter)
-        if (differs(zone, d%zone) .and. .not. d%is_adaptive) &
+        if (differs(zone, d%zone) .and. .not. (d%is_adaptive .or. d%bonds_doublers())) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'zones consist of entire cells; '// &
                       'on this mesh the zone is '//shown(zone)//'.', place)
         if (deck%settings%is_given(delamination_group, key_starter, place) .and. &
@@ -261,6 +262,9 @@ contains
       call extents_of(columns, rows, deck%delaminations(place), zone, starter)
       text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
              shown(zone)
+      if (deck%delaminations(place)%bonds_doublers()) &
+        text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the bond of '// &
+               names_of_doublers(deck%zones, deck%delaminations(place))
       if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
       if (deck%delaminations(place)%is_adaptive) text = text//'. The zone grows with the damage'
       lines(place)%text = text//'.'
@@ -281,7 +285,7 @@ contains
     x = columns%from(delamination%starter_at(1))
     y = rows%from(delamination%starter_at(2))
     starter = [x%extent_of(delamination%starter), y%extent_of(delamination%starter)]
-    starter = min(starter, zone)
+    if (.not. delamination%bonds_doublers()) starter = min(starter, zone)
   end subroutine extents_of
 
   !> True if a size differs from the requested one by more than `size_tolerance`.

@@ -83,7 +83,8 @@ contains
     ! Checks that follow are those of the plate without invalid zones.
     if (problems%concern(doubler_group) .or. problems%concern(ply_drop_group)) deck%zones = ply_zones_t()
     call fill_ply_damage(deck%settings, units_in_metre(deck%units), deck%ply_damage)
-    call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck), changes_of_angle(deck), &
+    call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck, skin_materials(deck)), &
+                            ply_strengths(deck, deck%zones%material()), changes_of_angle(deck), deck%zones, &
                             deck%delaminations)
   end subroutine fill_model
 
@@ -109,19 +110,27 @@ contains
     if (allocated(deck%laminate%material)) plies = size(deck%laminate%material)
   end function plies_of_laminate
 
-  !> Strengths of the plies that are defaults of their interfaces.
-  pure function ply_strengths(deck) result(strengths)
-    !> The deck with its plies; without, the list is empty
+  !> Materials of the plies of the laminate; none if it is not valid.
+  pure function skin_materials(deck) result(material)
     type(deck_t), intent(in) :: deck
+    !> Their indices
+    integer, allocatable :: material(:)
+
+    allocate (material(0))
+    if (allocated(deck%laminate%material)) material = deck%laminate%material
+  end function skin_materials
+
+  !> Strengths of the plies that are defaults of their interfaces.
+  pure function ply_strengths(deck, material) result(strengths)
+    type(deck_t), intent(in) :: deck
+    !> Materials of the plies
+    integer, intent(in) :: material(:)
     !> Strengths YT and S12 of each ply, 0 where not given, (2, plies)
     real(wp), allocatable :: strengths(:, :)
     integer :: ply
 
-    allocate (strengths(2, 0))
-    if (.not. allocated(deck%laminate%material)) return
-    strengths = reshape([([deck%materials(deck%laminate%material(ply))%yt, &
-                           deck%materials(deck%laminate%material(ply))%s12], &
-                          ply=1, size(deck%laminate%material))], [2, size(deck%laminate%material)])
+    strengths = reshape([([deck%materials(material(ply))%yt, deck%materials(material(ply))%s12], &
+                          ply=1, size(material))], [2, size(material)])
   end function ply_strengths
 
   !> Impactor, indentation, time, pressure and load steps of the deck; values by `accuracy` are chosen before others

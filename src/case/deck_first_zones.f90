@@ -29,6 +29,7 @@ contains
     do i = 1, size(deck%delaminations)
       place = deck%delaminations(i)%group
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
+      if (deck%delaminations(i)%bonds_doublers()) cycle
       if (deck%delaminations(i)%law == law_front) then
         call require('a front requires a zone; zones are adaptive with law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then

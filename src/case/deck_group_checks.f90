@@ -33,7 +33,7 @@ contains
     call check_rigs(deck%settings, deck%plate, deck%supports, problems)
     call check_mesh(deck%settings, deck%mesh, problems)
     call check_stringers(deck%settings, deck%plate%length, deck%has_thermal, deck%stringers, problems)
-    call check_delaminations(deck%settings, deck%delaminations, problems)
+    call check_delaminations(deck%settings, deck%zones, deck%delaminations, problems)
     if (allocated(deck%laminate%angle)) &
       call remark_left_out(deck%settings, size(deck%laminate%angle), changes_of_angle(deck), problems)
     call check_struck_face(deck, problems)

@@ -269,7 +269,7 @@ contains
         else if (has_other_starter(mine(i), its(i))) then
           objection = both('&delamination '//key_starter//' below ply '//to_text(mine(i)%below_ply), &
                            starter_list(mine(i)), starter_list(its(i)))//'; allowed: the same, or none'
-        else if (.not. mine(i)%is_adaptive) then
+        else if (.not. (mine(i)%is_adaptive .or. mine(i)%bonds_doublers())) then
           objection = zone_objection(deck, old, mine(i), its(i))
         end if
         if (objection /= '') return

@@ -34,7 +34,7 @@ contains
     do i = 1, size(deck%delaminations)
       associate (d => deck%delaminations(i), groups => deck%delaminations%group)
         ! Messages that differ only in the ply are merged.
-        if (lies_within_a_block(deck, d%below_ply)) &
+        if (.not. d%bonds_doublers() .and. lies_within_a_block(deck, d%below_ply)) &
           call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies on both sides of the '// &
                       'interface below ply '//to_text(d%below_ply)//' are of one material and angle, and act as '// &
                       'one thick ply; impacts delaminate plies of different angles.', d%group)

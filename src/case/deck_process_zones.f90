@@ -1,6 +1,6 @@
 !> Resolution of the process zones of cohesive interfaces: warnings, and the strength beside cracks.
 module deck_process_zones
-  use cell_grids, only: cells_from_struck
+  use cell_grids, only: cells_along, cells_from_struck
   use cell_lines, only: cell_line_t
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
@@ -15,6 +15,7 @@ module deck_process_zones
   use laminate_parameters, only: shear_five_sixths
   use matrix_exposures, only: shear_across_strength
   use plies, only: ply_t
+  use ply_stacks, only: ply_stack_t
   use process_zones, only: cells_in_zones, process_zone_t, process_zone_warning, resolved_part, shear_zone_length
   use scale_tables, only: length_unit, length_unit_size
   use mean_stiffnesses, only: in_bending
@@ -114,8 +115,12 @@ contains
     shortest = huge(shortest)
     do i = 1, size(deck%delaminations)
       associate (d => deck%delaminations(i))
-        if (d%law /= law_cohesive .or. .not. d%strength_shear > 0 .or. d%below_ply < 1 .or. &
-            d%below_ply >= size(deck%laminate%angle)) cycle
+        if (d%law /= law_cohesive .or. .not. d%strength_shear > 0 .or. d%below_ply < 1) cycle
+        if (d%bonds_doublers()) then
+          if (any(d%doublers == 0)) cycle
+        else if (d%below_ply >= size(deck%laminate%angle)) then
+          cycle
+        end if
         if (grows_by_energy(deck, d)) shortest = min(shortest, shear_zone_length(zone_of_any_cells(deck, d)))
       end associate
     end do
@@ -147,12 +152,35 @@ contains
     extents = delamination%zone
     if (delamination%is_adaptive) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
     do direction = 1, 2
+      if (delamination%bonds_doublers()) then
+        cells(direction) = longest_in_doublers(deck, delamination%doublers, direction)
+        cycle
+      end if
       line = cells_from_struck(deck%plate, deck%mesh, direction)
       cells(direction) = line%longest_within(extents(direction))
     end do
     zone%cell = maxval(cells)
     if (has_strip(delamination)) zone%cell = cells(1)
   end function process_zone
+
+  !> Longest side of the cells in doublers.
+  pure real(wp) function longest_in_doublers(deck, doublers, direction) result(longest)
+    type(deck_t), intent(in) :: deck
+    !> Their indices
+    integer, intent(in) :: doublers(:)
+    !> 1 for x, 2 for y
+    integer, intent(in) :: direction
+    type(cell_line_t) :: line
+    integer :: i
+
+    longest = 0
+    line = cells_along(deck%plate, deck%mesh, direction)
+    do i = 1, size(doublers)
+      associate (ends => deck%zones%doublers(doublers(i))%edges(direction), middles => line%middles())
+        longest = max(longest, maxval(line%sides(), mask=middles > ends(1) .and. middles < ends(2)))
+      end associate
+    end do
+  end function longest_in_doublers
 
   !> True for a starter across the full width. Its front runs along y and advances along x.
   pure logical function has_strip(delamination)
@@ -172,7 +200,7 @@ contains
     type(ply_t), allocatable :: plies(:), layer(:)
     real(wp) :: toughness(2), bending(6)
 
-    plies = in_bending(stacked_plies(deck%laminate, deck%materials))
+    plies = in_bending(plies_around(deck, delamination))
     layer = plies(:delamination%below_ply)
     zone%thickness = thickness_of(layer)
     if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)
@@ -190,6 +218,28 @@ contains
     zone%is_implicit_specimen = zone%is_pulled .and. .not. (deck%has_time .and. is_explicit(deck%stepping)) .and. &
                                 (delamination%starter > 0 .or. has_strip(delamination))
   end function zone_of_any_cells
+
+  !> Plies through the thickness where an interface is: those of the laminate, and for a bond those of its thinnest
+  !> doubler.
+  pure function plies_around(deck, delamination) result(plies)
+    type(deck_t), intent(in) :: deck
+    !> The interface
+    type(delamination_t), intent(in) :: delamination
+    type(ply_t), allocatable :: plies(:)
+    type(ply_stack_t) :: stack
+    logical, allocatable :: here(:)
+    integer :: i
+
+    plies = stacked_plies(deck%laminate, deck%materials)
+    if (.not. delamination%bonds_doublers()) return
+    here = deck%zones%at([huge(1.0_wp), huge(1.0_wp)])
+    associate (doublers => delamination%doublers)
+      here(doublers(minloc([(sum(deck%zones%doublers(doublers(i))%laminate%thickness), i=1, size(doublers))], 1))) = &
+        .true.
+    end associate
+    stack = deck%zones%stack(deck%laminate, deck%materials, here)
+    plies = stack%plies
+  end function plies_around
 
   !> Total thickness of plies.
   pure real(wp) function thickness_of(layer)

@@ -40,6 +40,7 @@ contains
                   '; write ''energy'', or leave the key out.')
     end if
     do i = 1, size(deck%delaminations)
+      if (deck%delaminations(i)%bonds_doublers()) cycle
       if (all(deck%delaminations(i)%zone >= (1 - rounding)*deck%plate%length)) cycle
       call remark(deck%settings, problems, delamination_group, key_zone, &
                   'at the border of the zone all layers have '// &

@@ -159,12 +159,13 @@ contains
             all(abs(zone%size - other%size) <= rounding*length)
   end function is_image
 
-  !> True if two doublers have the same plies on the same face.
+  !> True if two doublers have the same plies on the same face, both bonded rigidly or both by an interface.
   pure logical function have_same_plies(a, b) result(same)
     !> The doublers
     type(doubler_t), intent(in) :: a, b
 
-    same = a%face == b%face .and. size(a%laminate%angle) == size(b%laminate%angle)
+    same = a%face == b%face .and. (a%is_cohesive .eqv. b%is_cohesive) .and. &
+           size(a%laminate%angle) == size(b%laminate%angle)
     if (same) same = all(a%laminate%material == b%laminate%material) .and. &
                      .not. any(differ(a%laminate%angle, b%laminate%angle)) .and. &
                      .not. any(differ(a%laminate%thickness, b%laminate%thickness))
@@ -253,7 +254,9 @@ contains
 
     objection = ''
     associate (mine => deck%zones%doublers(i), its => old%zones%doublers(i))
-      if (mine%face /= its%face) then
+      if (mine%is_cohesive .neqv. its%is_cohesive) then
+        objection = both('bond of &doubler '''//mine%name//'''', bond_name(mine), bond_name(its))
+      else if (mine%face /= its%face) then
         objection = both('face of &doubler '''//mine%name//'''', face_name(mine%face), face_name(its%face))
       else if (size(mine%laminate%angle) /= size(its%laminate%angle)) then
         objection = both('plies of &doubler '''//mine%name//'''', short_list(mine%laminate%angle), &
@@ -277,6 +280,14 @@ contains
       end do
     end associate
   end function plies_objection
+
+  !> Name of a bond.
+  pure function bond_name(doubler) result(name)
+    type(doubler_t), intent(in) :: doubler
+    character(len=:), allocatable :: name
+
+    name = trim(merge('cohesive', 'rigid   ', doubler%is_cohesive))
+  end function bond_name
 
   !> Name of a face.
   pure function face_name(face) result(name)

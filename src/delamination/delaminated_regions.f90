@@ -134,11 +134,13 @@ contains
   end function is_delaminated
 
   !> True if all cells around a node are delaminated, those of the model only. Nodes on the border of the zone are not
-  !> released, as both layers share them.
-  pure logical function released(self, i, j)
+  !> released, as both layers share them, except on the free edges of doublers.
+  pure logical function released(self, i, j, bonded)
     class(delaminated_region_t), intent(in) :: self
     !> Lines of nodes, 0 to twice the cells along x and y
     integer, intent(in) :: i, j
+    !> True for the cells with doublers, (cells); absent or unallocated: an interface between plies of the laminate
+    logical, allocatable, intent(in), optional :: bonded(:)
     integer :: columns(2), rows(2), column, row
 
     columns = cells_around(i, self%cells(1))
@@ -146,10 +148,23 @@ contains
     released = .false.
     do row = rows(1), rows(2)
       do column = columns(1), columns(2)
+        if (is_bare(self%cell_at(column, row))) cycle
         if (.not. self%is_delaminated(column, row)) return
       end do
     end do
     released = .true.
+
+  contains
+
+    !> True for a cell without a doubler, where there is nothing to be released.
+    pure logical function is_bare(cell)
+      !> The cell
+      integer, intent(in) :: cell
+
+      is_bare = .false.
+      if (.not. present(bonded)) return
+      if (allocated(bonded)) is_bare = .not. bonded(cell)
+    end function is_bare
   end function released
 
   !> Delaminates a cell; no effect outside the zone.

@@ -6,6 +6,7 @@ module delamination_deck
   use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
+  use doubler_bonds, only: check_bonds, is_bond, new_bond, weaker_beside
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
                                      growth_one_per_step, growth_by_strength, &
@@ -15,6 +16,7 @@ module delamination_deck
   use interface_places, only: delamination_group, key_below_ply, plies_above
   use kinds, only: wp
   use laminate_deck, only: laminate_group
+  use ply_zones, only: ply_zones_t
   use text, only: line_t, to_text, words_of
   implicit none
   private
@@ -32,9 +34,11 @@ module delamination_deck
     'delamination | several | Interfaces that may delaminate; one group for all that have equal properties.'
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: delamination_rows(*) = [character(len=key_row_length) :: &
-    'delamination | below_ply | integer | 1 or more | - | required | >= 1, <= 1000, or ''all'', &
+    'delamination | below_ply | integer | 1 or more | - | none | >= 1, <= 1000, or ''all'', &
       &or ''between_angles'' | Plies above the interfaces, counted from the struck face, or a word for those &
-      &where the angle changes.', &
+      &where the angle changes. | not doubler', &
+    'delamination | doubler | text | 1 or more | - | none | names of &doubler groups | &
+      &Instead of below_ply: doublers whose bond to the laminate may delaminate.', &
     'delamination | G_c | real | 1 | energy/area | none | > 0 | &
       &Critical energy release rate of every mode; given instead of G_Ic and G_IIc.', &
     'delamination | G_Ic | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure opening.', &
@@ -42,7 +46,7 @@ module delamination_deck
     'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
       &Exponent of Benzeggagh and Kenane''s mixed-mode law. | not G_c', &
     'delamination | zone | real | 2 | length | = adaptive, with law = cohesive | > 0 | &
-      &Full extents along x and y of the rectangle with separate layers, centred on the struck point.', &
+      &Full extents along x and y of the rectangle with separate layers, centred on the struck point. | not doubler', &
     'delamination | starter | real | 1 | length | = square of 0.05 % of the plate, with law = cohesive none | > 0 | &
       &Side of the square starter delamination, or diameter of the round one.', &
     'delamination | starter_shape | choice | 1 | - | ''square'' | square round | &
@@ -94,16 +98,18 @@ module delamination_deck
 
 contains
 
-  !> All interfaces, in the order of the deck.
-  subroutine fill_delaminations(settings, length, strengths, between, delaminations)
+  !> All interfaces, in the order of the deck, the bond of doublers last.
+  subroutine fill_delaminations(settings, length, strengths, of_doublers, between, zones, delaminations)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
     !> Lengths of the plate, for the default starter
     real(wp), intent(in) :: length(2)
-    !> Strengths YT and S12 of each ply, 0 where not given, (2, plies)
-    real(wp), intent(in) :: strengths(:, :)
+    !> Strengths YT and S12 of each ply of the laminate and of the doublers, 0 where not given, (2, plies)
+    real(wp), intent(in) :: strengths(:, :), of_doublers(:, :)
     !> Plies below which the angle changes; empty: not known
     integer, intent(in) :: between(:)
+    !> Doublers of the plate; receive which of them are bonded by a cohesive interface
+    type(ply_zones_t), intent(inout) :: zones
     !> Receives them
     type(delamination_t), allocatable, intent(out) :: delaminations(:)
     type(delamination_t) :: next
@@ -112,16 +118,32 @@ contains
 
     allocate (delaminations(0))
     do place = 1, settings%groups_named(group)
+      if (is_bond(settings, place)) cycle
       below = plies_above(settings, place, between)
       do i = 1, size(below)
         next = delamination_t()
         next%group = place
         next%below_ply = below(i)
-        call fill_law(settings, place, strengths, next)
-        call fill_delamination(settings, place, default_starter(length), next)
-        delaminations = [delaminations, next]
+        call add(next)
       end do
     end do
+    do place = 1, settings%groups_named(group)
+      if (.not. is_bond(settings, place)) cycle
+      call new_bond(settings, place, size(strengths, 2), zones, next)
+      call add(next)
+    end do
+
+  contains
+
+    !> Adds an interface with its properties.
+    subroutine add(next)
+      !> Group and position are known
+      type(delamination_t), intent(inout) :: next
+
+      call fill_law(settings, next%group, size(strengths, 2), weaker_beside(next, strengths, of_doublers), next)
+      call fill_delamination(settings, next%group, default_starter(length), next)
+      delaminations = [delaminations, next]
+    end subroutine add
   end subroutine fill_delaminations
 
   !> One interface.
@@ -149,8 +171,8 @@ contains
       d%shear_cracks = s%logical_of(group, key_shear_cracks, place)
       d%growth_control = code_of(s%text_of(group, key_growth_control, place), 'strength energy', &
                                  [growth_by_strength, growth_by_energy])
-      if (s%is_known(group, key_zone, place)) d%zone = s%reals_of(group, key_zone, place)
-      d%is_adaptive = d%law == law_cohesive .and. .not. s%is_given(group, key_zone, place)
+      if (s%is_known(group, key_zone, place) .and. .not. d%bonds_doublers()) d%zone = s%reals_of(group, key_zone, place)
+      d%is_adaptive = d%law == law_cohesive .and. .not. (s%is_given(group, key_zone, place) .or. d%bonds_doublers())
       if (s%is_given(group, key_starter, place)) d%starter = s%real_of(group, key_starter, place)
       if (s%is_given(group, key_strip, place)) d%starter_strip = s%reals_of(group, key_strip, place)
       d%starter_round = s%text_of(group, 'starter_shape', place) == 'round'
@@ -170,28 +192,25 @@ contains
   end subroutine fill_delamination
 
   !> The law of one interface, cohesive unless a starter is given, and its strengths.
-  subroutine fill_law(settings, place, strengths, delamination)
+  subroutine fill_law(settings, place, plies, weaker, delamination)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Index of the group
-    integer, intent(in) :: place
-    !> Strengths YT and S12 of each ply, 0 where not given, (2, plies)
-    real(wp), intent(in) :: strengths(:, :)
+    !> Index of the group, and number of plies of the laminate
+    integer, intent(in) :: place, plies
+    !> Strengths YT and S12 of the weaker ply; 0: not given
+    real(wp), intent(in) :: weaker(2)
     !> Receives it
     type(delamination_t), intent(inout) :: delamination
-    real(wp) :: weaker(2)
-    integer :: above
     logical :: is_cohesive
 
-    weaker = 0
-    above = max(1, min(delamination%below_ply, size(strengths, 2) - 1))  ! one outside, which is refused: the nearest
-    if (above < size(strengths, 2)) weaker = minval(strengths(:, above:above + 1), dim=2)
     is_cohesive = suits_cohesive(settings, place, weaker)
     ! Without plies, as their group has errors, only the key of a front decides.
-    if (size(strengths, 2) == 0) is_cohesive = .not. needs_front(settings, place)
+    if (plies == 0) is_cohesive = .not. needs_front(settings, place)
+    is_cohesive = is_cohesive .or. delamination%bonds_doublers()
     if (.not. settings%is_given(group, key_law, place)) call settings%derive(group, key_law, &
       trim(merge('cohesive', 'front   ', is_cohesive)), .true., place)
     delamination%law = code_of(settings%text_of(group, key_law, place), 'front cohesive', [law_front, law_cohesive])
+    if (delamination%bonds_doublers()) delamination%law = law_cohesive  ! a front is refused
     if (delamination%law /= law_cohesive) return
     delamination%stiffness = settings%real_of(group, 'stiffness', place)
     call fill_strength(settings, place, 'strength_opening', weaker(1), delamination%strength_opening)
@@ -243,8 +262,10 @@ contains
   end subroutine fill_strength
 
   !> Checks each interface, and their order.
-  subroutine check_delaminations(settings, delaminations, problems)
+  subroutine check_delaminations(settings, zones, delaminations, problems)
     type(settings_t), intent(in) :: settings
+    !> Doublers of the plate
+    type(ply_zones_t), intent(in) :: zones
     !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
     !> Faults and remarks are added
@@ -259,12 +280,15 @@ contains
       if (place == before) cycle
       call check_toughness(settings, delaminations(i), place, problems)
       call check_strip(settings, delaminations(i), place, problems)
+      if (delaminations(i)%bonds_doublers()) cycle
       if (delaminations(i)%starter > 0 .and. settings%is_given(group, key_zone, place) .and. &
           any(delaminations(i)%starter + 2*abs(delaminations(i)%starter_at) >= delaminations(i)%zone) .and. &
           are_clear(settings, problems, group, key_zone//' '//key_starter//' '//key_starter_at, place)) &
         call report(settings, problems, group, '', 'the starter must be smaller than its zone and inside it.', place)
     end do
+    call check_bonds(settings, zones, delaminations, problems)
     do i = 2, size(delaminations)
+      if (delaminations(i)%bonds_doublers()) exit
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i)%group) .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i - 1)%group)) &

@@ -30,6 +30,11 @@ module delamination_parameters
   type :: delamination_t
     !> The interface lies below this ply
     integer :: below_ply = 0
+    !> The bond of doublers: their indices, 0 for an unknown name; unallocated: an interface between plies of the
+    !> laminate
+    integer, allocatable :: doublers(:)
+    !> Numbers of the plies of these doublers that adjoin the laminate
+    integer, allocatable :: beside(:)
     !> Index of its group in the deck
     integer :: group = 1
     !> Critical energy release rate of every mode, G_c; 0: the mixed-mode values below hold
@@ -84,6 +89,8 @@ module delamination_parameters
     integer :: unloading = unloading_contact
     !> Distance along a front over which forces and openings are averaged; 0: from cells and thickness
     real(wp) :: smoothing = 0
+  contains
+    procedure :: bonds_doublers
   end type delamination_t
 
   !> Smallest number of cells over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about
@@ -96,6 +103,13 @@ module delamination_parameters
     'strength_opening', 'strength_shear', 'stiffness', 'friction', 'cracks_as_flaws', 'shear_cracks']
 
 contains
+
+  !> True for the bond between the laminate and doublers.
+  pure logical function bonds_doublers(self)
+    class(delamination_t), intent(in) :: self
+
+    bonds_doublers = allocated(self%doublers)
+  end function bonds_doublers
 
   !> Values of these keys.
   pure function law_of(delamination) result(numbers)
@@ -137,6 +151,7 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
+    if (delamination%bonds_doublers()) return
     if (delamination%below_ply < 1 .or. delamination%below_ply >= plies) &
       objection = 'below_ply must name a ply that has another one below it'
   end function interface_objection

@@ -4,7 +4,7 @@ module front_stencils
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
   use models, only: model_t
-  use nine_node_grids, only: first_line, last_line
+  use nine_node_grids, only: cells_around, first_line, last_line
   implicit none
   private
   public :: front_stencils_t, create_front_stencils
@@ -86,7 +86,7 @@ contains
         near(:, d) = [point_at(mesh, zone, lines + step), point_at(mesh, zone, lines - step), &
                       point_at(mesh, zone, lines - 2*step)]
         along = merge(1, 2, abs(step(1)) > 0)
-        widths(:, d) = [width_of(mesh, along, lines(along)), width_of(mesh, along, lines(along) + step(along))]
+        widths(:, d) = [width_of(mesh, zone, along, lines), width_of(mesh, zone, along, lines + step)]
       end associate
     end do
   end subroutine find_stencil
@@ -116,16 +116,17 @@ contains
     if (turned) point = -point
   end function point_at
 
-  !> Length that belongs to a line of nodes, by the integrals of the shape functions; 0 beyond the plate.
-  pure real(wp) function width_of(mesh, along, line) result(width)
+  !> Length that belongs to a line of nodes, by the integrals of the shape functions; 0 beyond the plate or the doublers.
+  pure real(wp) function width_of(mesh, zone, along, lines) result(width)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Direction, 1 or 2
-    integer, intent(in) :: along
-    !> Line of nodes
-    integer, intent(in) :: line
-    integer :: cell
+    !> Zone of the interface, and direction, 1 or 2
+    integer, intent(in) :: zone, along
+    !> Lines of nodes of one x and of one y
+    integer, intent(in) :: lines(2)
+    integer :: cell, line
 
     width = 0
+    line = lines(along)
     if (line < 0 .or. line > last_line(mesh%cells(along))) return
     cell = line/2 + 1
     if (modulo(line, 2) == 1) then
@@ -141,12 +142,23 @@ contains
 
   contains
 
-    !> Side of a column or row of cells.
+    !> Side of a column or row of cells; 0 where there is no doubler beside the line across them.
     pure real(wp) function side(cell)
       !> Its number
       integer, intent(in) :: cell
+      integer :: beside(2), place(2), k
+      logical :: covered
 
       side = mesh%along(along)%side(cell)
+      if (.not. allocated(mesh%zones(zone)%bonded)) return
+      beside = cells_around(lines(3 - along), mesh%cells(3 - along))
+      place(along) = cell
+      covered = .false.
+      do k = beside(1), beside(2)
+        place(3 - along) = k
+        covered = covered .or. mesh%in_zone(zone, mesh%cell_at(place(1), place(2)))
+      end do
+      if (.not. covered) side = 0
     end function side
   end function width_of
 end module front_stencils

@@ -64,7 +64,8 @@ contains
     do i = 1, size(self%free)
       if (model%zone(i) == 0) cycle
       line = model%mesh%lines_of(model%mesh%point_node(model%distribution%points(i)))
-      self%free(i) = self%regions(model%zone(i))%released(line(1), line(2))
+      self%free(i) = self%regions(model%zone(i))%released(line(1), line(2), &
+                                                             model%mesh%zones(model%zone(i))%bonded)
     end do
   end subroutine free_jumps
 

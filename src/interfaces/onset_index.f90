@@ -124,7 +124,7 @@ contains
     associate (first => self%stacks%plies(1, element), last => self%stacks%plies(2, element), &
                force => self%stacks%force(:, element), gradient => self%stacks%gradient(:, :, element), &
                own => self%laminates(model%mesh%layers(model%mesh%element_layer(element))%laminate))
-      if (last - first + 1 == model%mesh%plies) then
+      if (own%stack%lies_within(first, last)) then
         all = own%unit%onset_indices(own%values, force, gradient)
         places = [1, size(own%stack%plies)]
       else

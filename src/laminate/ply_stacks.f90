@@ -15,8 +15,8 @@ module ply_stacks
   type :: ply_stack_t
     !> Number of each ply among those of the plate
     integer, allocatable :: number(:)
-    !> Ply of the plate's laminate whose layer each ply belongs to, ascending: itself, or for a ply added on a face the
-    !> outermost one on that side
+    !> Position of each ply in the order of the layers, ascending: its number, for a ply bonded rigidly to a face that of
+    !> the outermost ply of the laminate there, for one bonded by an interface the next number beyond it
     integer, allocatable, private :: station(:)
     !> The plies, with their heights here
     type(ply_t), allocatable :: plies(:)
@@ -34,6 +34,7 @@ module ply_stacks
     procedure :: places
     procedure :: place
     procedure :: has
+    procedure :: lies_within
     procedure :: section
     procedure :: stiffness
     procedure :: shear_stresses
@@ -49,7 +50,7 @@ contains
     type(ply_t), intent(in) :: plies(:)
     !> shear_five_sixths or shear_energy
     integer, intent(in) :: shear_correction
-    !> Ply of the plate's laminate whose layer each ply belongs to, ascending; absent: itself
+    !> Position of each ply in the order of the layers, ascending; absent: its number
     integer, intent(in), optional :: station(:)
     type(ply_stack_t) :: self
 
@@ -62,11 +63,10 @@ contains
     self%shear_correction = shear_correction
   end function whole_stack
 
-  !> The plies of a stack from one ply of the plate's laminate to another, with those added on their faces: a layer of
-  !> it.
+  !> The plies of a stack from one position in the order of the layers to another: a layer of it.
   pure function layer(self, first, last)
     class(ply_stack_t), intent(in) :: self
-    !> Smallest and largest number
+    !> The positions
     integer, intent(in) :: first, last
     type(ply_stack_t) :: layer
     integer :: from, to
@@ -117,6 +117,15 @@ contains
 
     has = self%place(ply) > 0
   end function has
+
+  !> True if all plies of a stack belong to layers between two positions.
+  pure logical function lies_within(self, first, last)
+    class(ply_stack_t), intent(in) :: self
+    !> The positions
+    integer, intent(in) :: first, last
+
+    lies_within = self%station(1) >= first .and. self%station(size(self%station)) <= last
+  end function lies_within
 
   !> Stiffness and mass without damage.
   pure function section(self)

@@ -20,14 +20,18 @@ module ply_zone_parameters
     procedure :: edges
   end type ply_zone_t
 
-  !> Plies bonded rigidly to a face of the laminate.
+  !> Plies bonded to a face of the laminate.
   type, extends(ply_zone_t) :: doubler_t
     !> Name
     character(len=:), allocatable :: name
+    !> True: bonded by a cohesive interface; false: rigidly
+    logical :: is_cohesive = .false.
     !> Face that they are on
     integer :: face = back_face
     !> The plies, from the struck face towards the back
     type(laminate_t) :: laminate
+  contains
+    procedure :: station
   end type doubler_t
 
   !> Plies of the laminate that are missing.
@@ -48,6 +52,17 @@ contains
 
     contained = all(abs(point - self%at) < self%size/2)
   end function zone_contains
+
+  !> Position of a doubler's plies in the order of the layers: that of the outermost ply of the laminate on its side, or
+  !> with a cohesive interface the next number beyond it.
+  pure integer function station(self, skin)
+    class(doubler_t), intent(in) :: self
+    !> Number of plies of the laminate
+    integer, intent(in) :: skin
+
+    station = merge(1, skin, self%face == front_face)
+    if (self%is_cohesive) station = station + merge(-1, 1, self%face == front_face)
+  end function station
 
   !> True if two zones have an area in common.
   pure logical function overlaps(self, other, distance)

@@ -86,7 +86,7 @@ contains
     doubler = 0
   end function doubler_of
 
-  !> Outermost ply of the laminate on the side of each ply of all doublers, in the order of their numbers.
+  !> Position of each ply of all doublers in the order of the layers, in the order of their numbers.
   pure function stations(self, skin)
     class(ply_zones_t), intent(in) :: self
     !> Number of plies of the laminate
@@ -98,7 +98,7 @@ contains
     if (.not. allocated(self%doublers)) return
     do i = 1, size(self%doublers)
       associate (doubler => self%doublers(i))
-        stations = [stations, spread(merge(1, skin, doubler%face == front_face), 1, size(doubler%laminate%material))]
+        stations = [stations, spread(doubler%station(skin), 1, size(doubler%laminate%material))]
       end associate
     end do
   end function stations
@@ -280,7 +280,7 @@ contains
     type(ply_stack_t) :: stack
     type(ply_t), allocatable :: skin(:), above(:), below(:)
     integer, allocatable :: number(:), numbers_above(:), numbers_below(:)
-    integer :: i, next, doublers
+    integer :: i, next, doublers, outer(2)
 
     doublers = 0
     if (allocated(self%doublers)) doublers = size(self%doublers)
@@ -289,20 +289,23 @@ contains
     next = size(skin) + 1
     if (allocated(self%drops)) call drop_plies(self%drops, here(doublers + 1:), skin, number)
     allocate (above(0), below(0), numbers_above(0), numbers_below(0))
+    outer = [1, size(laminate%material)]
     do i = 1, doublers
       associate (doubler => self%doublers(i))
         if (here(i) .and. doubler%face == front_face) then
           above = added(doubler, materials, skin(1)%z_top)
+          outer(1) = doubler%station(size(laminate%material))
           numbers_above = next_numbers(next, size(above))
         else if (here(i)) then
           below = added(doubler, materials, skin(size(skin))%z_bottom)
+          outer(2) = doubler%station(size(laminate%material))
           numbers_below = next_numbers(next, size(below))
         end if
         next = next + size(doubler%laminate%material)
       end associate
     end do
     stack = whole_stack([numbers_above, number, numbers_below], [above, skin, below], laminate%shear_correction, &
-                        [spread(1, 1, size(above)), number, spread(size(laminate%material), 1, size(below))])
+                        [spread(outer(1), 1, size(above)), number, spread(outer(2), 1, size(below))])
   end function stack
 
   !> Consecutive numbers.

@@ -26,7 +26,7 @@ module zone_deck
                                  key_flat_face = 'flat_face'
   !> Rows of the groups.
   character(len=group_row_length), parameter, public :: zone_group_rows(2) = [character(len=group_row_length) :: &
-    'doubler | several | Plies bonded rigidly to a face of the laminate in a rectangle or a band of the plate.', &
+    'doubler | several | Plies bonded to a face of the laminate in a rectangle or a band of the plate.', &
     'ply_drop | several | Plies of the laminate that are missing in a rectangle or a band of the plate.']
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: zone_rows(*) = [character(len=key_row_length) :: &

@@ -9,19 +9,26 @@ module layered_meshes
   private
   public :: layered_mesh_t, layer_t, zone_t, create_mesh
 
-  !> A rectangle in which the plies above and below an interface have unknowns of their own.
+  !> A rectangle in which the plies above and below an interface have unknowns of their own, or the cells in which the
+  !> bond of doublers has.
   type :: zone_t
     !> The interface lies below this ply
     integer :: below_ply = 0
     !> First and last column of cells, then of rows
     integer :: columns(2) = 0, rows(2) = 0
+    !> True for the cells with doublers, (cells); unallocated: an interface between plies of the laminate. The edges of
+    !> doublers are free: both layers have points there
+    logical, allocatable :: bonded(:)
+    !> Thickness of the doublers
+    real(wp) :: thickness = 0
   end type zone_t
 
-  !> The plies between two interfaces, or a face: those of a cell's laminate whose numbers lie in a range.
+  !> The plies between two interfaces, or a face: those of a cell's laminate whose positions in the order of the layers lie
+  !> in a range.
   type :: layer_t
     !> Laminate of the cell, among the different ones of the plate
     integer :: laminate = 1
-    !> Smallest and largest number
+    !> First and last of them
     integer :: plies(2) = 0
   end type layer_t
 
@@ -43,8 +50,8 @@ module layered_meshes
     integer, allocatable :: first_element(:)
     !> Number of plies of the plate's laminate
     integer :: plies = 0
-    !> Ply of the laminate whose layer each ply of the plate belongs to: itself, or for plies added on a face the
-    !> outermost one on that side
+    !> Position of each ply of the plate in the order of the layers: its number, for one bonded rigidly to a face that of
+    !> the outermost ply of the laminate there, for one bonded by an interface the next number beyond it
     integer, allocatable :: stations(:)
     !> The different layers of the plate
     type(layer_t), allocatable :: layers(:)
@@ -58,6 +65,8 @@ module layered_meshes
     procedure :: is_top
     procedure :: is_below
     procedure :: lower_point
+    procedure :: in_zone
+    procedure :: bonds_doubler
     !> Area of a zone, and length of its mean cell.
     procedure :: zone_area
     procedure :: mean_cell
@@ -78,7 +87,7 @@ contains
     type(zone_t), intent(in) :: zones(:)
     !> Laminate of each cell among the different ones of the plate; absent: there is one
     integer, intent(in), optional :: laminates(:)
-    !> Ply of the laminate whose layer each ply of the plate belongs to; absent: itself
+    !> Position of each ply of the plate in the order of the layers; absent: its number
     integer, intent(in), optional :: stations(:)
     type(layered_mesh_t) :: self
     integer :: ply
@@ -135,9 +144,16 @@ contains
     integer, intent(in) :: zone
     !> Node
     integer, intent(in) :: node
-    integer :: lines(2)
+    integer :: lines(2), columns(2), rows(2), column, row
 
     lines = self%lines_of(node)
+    if (allocated(self%zones(zone)%bonded)) then
+      columns = cells_around(lines(1), self%cells(1))
+      rows = cells_around(lines(2), self%cells(2))
+      inside = any([((self%in_zone(zone, self%cell_at(column, row)), column=columns(1), columns(2)), &
+                     row=rows(1), rows(2))])
+      return
+    end if
     inside = within(cells_around(lines(1), self%cells(1)), self%zones(zone)%columns) .and. &
              within(cells_around(lines(2), self%cells(2)), self%zones(zone)%rows)
   end function inside_zone
@@ -167,9 +183,9 @@ contains
         range = [1, self%plies]
         if (pass == 2) self%first_element(cell) = elements + 1
         do zone = 1, size(self%zones) + 1
-          range(2) = self%plies
+          range(2) = max(self%plies, range(1))
           if (zone <= size(self%zones)) then
-            if (.not. covers(self%zones(zone), self%place_of(cell))) cycle
+            if (.not. self%in_zone(zone, cell)) cycle
             range(2) = self%zones(zone)%below_ply
           end if
           elements = elements + 1
@@ -199,7 +215,7 @@ contains
     self%layers = [self%layers, layer]
   end subroutine find_layer
 
-  !> Element of a cell whose layer contains a ply.
+  !> Element of a cell whose layer contains a ply; the lowest one for a ply below all of them.
   pure integer function element_at(self, cell, ply) result(element)
     class(layered_mesh_t), intent(in) :: self
     !> Cell
@@ -209,6 +225,7 @@ contains
 
     element = self%first_element(cell)
     do while (self%layers(self%element_layer(element))%plies(2) < ply)
+      if (element + 1 == self%first_element(cell + 1)) exit
       element = element + 1
     end do
   end function element_at
@@ -243,6 +260,29 @@ contains
 
     is_below = self%layers(self%element_layer(element))%plies(1) - 1 == self%zones(zone)%below_ply
   end function is_below
+
+  !> True for a cell of a zone.
+  pure logical function in_zone(self, zone, cell)
+    class(layered_mesh_t), intent(in) :: self
+    !> Index of the zone, and cell
+    integer, intent(in) :: zone, cell
+
+    if (allocated(self%zones(zone)%bonded)) then
+      in_zone = self%zones(zone)%bonded(cell)
+    else
+      in_zone = covers(self%zones(zone), self%place_of(cell))
+    end if
+  end function in_zone
+
+  !> True for a point of the layer of a doubler.
+  pure logical function bonds_doubler(self, point)
+    class(layered_mesh_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: point
+
+    bonds_doubler = self%point_zone(point) > 0
+    if (bonds_doubler) bonds_doubler = allocated(self%zones(self%point_zone(point))%bonded)
+  end function bonds_doubler
 
   !> Point of a node in the layer below a zone's interface; 0: the node has none.
   pure integer function lower_point(self, node, zone) result(point)
@@ -316,7 +356,15 @@ contains
     class(layered_mesh_t), intent(in) :: self
     !> Index of the zone
     integer, intent(in) :: zone
+    integer :: cell
 
+    if (allocated(self%zones(zone)%bonded)) then
+      area = 0
+      do cell = 1, product(self%cells)
+        if (self%in_zone(zone, cell)) area = area + self%cell_area(self%place_of(cell))
+      end do
+      return
+    end if
     associate (range => self%zones(zone))
       area = length(self%along(1)%span(range%columns))*length(self%along(2)%span(range%rows))
     end associate
@@ -338,6 +386,10 @@ contains
     !> Index of the zone
     integer, intent(in) :: zone
 
+    if (allocated(self%zones(zone)%bonded)) then
+      length = sqrt(self%zone_area(zone)/max(1, count(self%zones(zone)%bonded)))
+      return
+    end if
     associate (range => self%zones(zone))
       length = sqrt(self%zone_area(zone) &
                     /product([range%columns(2) - range%columns(1), range%rows(2) - range%rows(1)] + 1))

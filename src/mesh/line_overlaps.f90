@@ -7,7 +7,7 @@ module line_overlaps
   use roundings, only: rounding
   implicit none
   private
-  public :: line_overlap_t, overlaps_of_cells, overlaps_of_nodes, parts_of_cells, parts_of_nodes
+  public :: line_overlap_t, overlaps_of_cells, overlaps_of_nodes, overlaps_of_node_parts, parts_of_cells, parts_of_nodes
   public :: node_bounds, overlaps_of, unfolded
 
   !> Intervals of the other division that have a length in common with an interval.
@@ -115,6 +115,34 @@ contains
     bounds(1) = ends(1)
     overlaps = overlaps_of(node_bounds(line%bounds(), begins_on_cut) + origin, bounds, halved)
   end function overlaps_of_nodes
+
+  !> Overlaps of the three parts of each cell of a line, which are assigned to its nodes, with the parts of cells assigned
+  !> to the nodes of another line.
+  pure function overlaps_of_node_parts(line, origin, others, halved) result(overlaps)
+    !> The line, and the other one
+    type(cell_line_t), intent(in) :: line, others
+    !> Origin of the line in the coordinates of the other one
+    real(wp), intent(in) :: origin
+    !> True: the other line begins on a cut at 0 and is continued by its image
+    logical, intent(in) :: halved
+    !> (3*cells)
+    type(line_overlap_t), allocatable :: overlaps(:)
+    real(wp), allocatable :: bounds(:), nodes(:), edges(:)
+    real(wp) :: ends(2)
+    integer :: cells
+
+    edges = line%bounds()
+    cells = size(edges) - 1
+    nodes = node_bounds(edges, .false.)
+    allocate (bounds(3*cells + 1))
+    bounds(1::3) = edges
+    bounds(2::3) = nodes(2:2*cells:2)
+    bounds(3::3) = nodes(3:2*cells + 1:2)
+    nodes = node_bounds(others%bounds(), halved)
+    ends = others%span()
+    nodes(1) = ends(1)
+    overlaps = overlaps_of(bounds + origin, nodes, halved)
+  end function overlaps_of_node_parts
 
   !> Part of each cell of a line between two coordinates.
   pure function parts_of_cells(line, low, high) result(parts)

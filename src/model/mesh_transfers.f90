@@ -9,7 +9,8 @@ module mesh_transfers
   use kinds, only: wp
   use layer_transfers, only: layer_transfer_t
   use layered_meshes, only: layered_mesh_t
-  use line_overlaps, only: line_overlap_t, overlaps_of_cells, overlaps_of_nodes
+  use nine_node_grids, only: cells_around
+  use line_overlaps, only: line_overlap_t, overlaps_of_cells, overlaps_of_node_parts, overlaps_of_nodes
   implicit none
   private
   public :: mesh_transfer_t
@@ -22,6 +23,8 @@ module mesh_transfers
     real(wp) :: origin(2) = 0
     !> Overlaps of nodes and cells of the new mesh with those of the old one along x and y
     type(line_overlap_t), allocatable, private :: nodes_x(:), nodes_y(:), cells_x(:), cells_y(:)
+    !> The same of the three parts of each cell of the new mesh that are assigned to its nodes
+    type(line_overlap_t), allocatable, private :: parts_x(:), parts_y(:)
   contains
     procedure :: turn_to
     procedure :: field
@@ -35,6 +38,7 @@ contains
     class(mesh_transfer_t), intent(inout) :: self
     !> The mesh saved, and the one to load
     type(layered_mesh_t), intent(in) :: old, new
+    integer :: zone
 
     self%loading = .true.
     self%old = old
@@ -46,6 +50,9 @@ contains
     self%cells_y = overlaps_of_cells(new%along(2)%from(-self%origin(2)), old%along(2), old%halved(2))
     self%nodes_x = overlaps_of_nodes(new%along(1), new%halved(1), self%origin(1), old%along(1), old%halved(1))
     self%nodes_y = overlaps_of_nodes(new%along(2), new%halved(2), self%origin(2), old%along(2), old%halved(2))
+    if (.not. any([(allocated(new%zones(zone)%bonded), zone=1, size(new%zones))])) return
+    self%parts_x = overlaps_of_node_parts(new%along(1), self%origin(1), old%along(1), old%halved(1))
+    self%parts_y = overlaps_of_node_parts(new%along(2), self%origin(2), old%along(2), old%halved(2))
   end subroutine turn_to
 
   !> Visits a field over points or elements; its length shows which, as there are always more points. Collective
@@ -75,6 +82,8 @@ contains
           call find_in_cells(self, saved, columns(i), mapping, value(:, i))
         else if (mapping%is_motion) then
           value(:, i) = motion_at(self, saved, columns(i), mapping)
+        else if (self%new%bonds_doubler(columns(i))) then
+          call find_at_bond(self, saved, columns(i), mapping, value(:, i))
         else
           call find_at_node(self, saved, columns(i), mapping, value(:, i))
         end if
@@ -173,6 +182,59 @@ contains
     end associate
     values = mean_of(terms, weights)
   end subroutine find_at_node
+
+  !> Means over the area of a node at the bond of a doubler: over the cells with the doubler only.
+  subroutine find_at_bond(self, saved, point, mapping, values)
+    class(mesh_transfer_t), intent(in) :: self
+    !> Values of the old points, (rows, points)
+    real(wp), intent(in) :: saved(:, :)
+    !> Point of the new mesh
+    integer, intent(in) :: point
+    !> Signs in images
+    type(field_mapping_t), intent(in) :: mapping
+    !> Its values
+    real(wp), intent(inout) :: values(:)
+    real(wp), allocatable :: terms(:, :), weights(:)
+    integer :: node, zone, cells(2, 2), row, column
+
+    node = self%new%point_node(point)
+    zone = self%new%point_zone(point)
+    allocate (terms(size(values), 0), weights(0))
+    associate (lines => self%new%lines_of(node))
+      cells(:, 1) = cells_around(lines(1), self%new%cells(1))
+      cells(:, 2) = cells_around(lines(2), self%new%cells(2))
+      do row = cells(1, 2), cells(2, 2)
+        do column = cells(1, 1), cells(2, 1)
+          if (.not. self%new%in_zone(zone, self%new%cell_at(column, row))) cycle
+          ! Parts of cell c are 3 c - 2 to 3 c, the lines of its nodes 2 c - 2 to 2 c.
+          call add_part(self%parts_x(lines(1) + column), self%parts_y(lines(2) + row))
+        end do
+      end do
+    end associate
+    if (size(weights) > 0) values = mean_of(terms, weights)
+
+  contains
+
+    !> Adds the area in common of a part of a cell and the nodes of the old mesh.
+    subroutine add_part(x, y)
+      !> Overlaps along x and y
+      type(line_overlap_t), intent(in) :: x, y
+      real(wp) :: term(size(values))
+      integer :: i, j, from, place(2)
+      logical :: turned(2)
+
+      do j = 1, size(y%length)
+        do i = 1, size(x%length)
+          call find_image(self, x, y, i, j, 2*self%old%cells + 1, place, turned)
+          from = self%old%lower_point(self%old%node_at(place(1) - 1, place(2) - 1), zone)
+          if (from == 0) cycle
+          term = mapping%signs(size(term), turned)*saved(:, from)
+          terms = reshape([terms, term], [size(values), size(weights) + 1])
+          weights = [weights, x%length(i)*y%length(j)]
+        end do
+      end do
+    end subroutine add_part
+  end subroutine find_at_bond
 
   !> Means over the area of a cell; for quantities per ply, also between layers that differ.
   pure subroutine find_in_cells(self, saved, element, mapping, values)

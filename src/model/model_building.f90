@@ -13,7 +13,7 @@ module model_building
   use stacking, only: section_t, section_of
   use mesh_parameters, only: edge_free, in_plane_fixed, in_plane_free, in_plane_tangential, curvatures, &
                              initial_deflection, is_flat, plate_t, symmetry_quarter
-  use cell_grids, only: cells_along, cells_from_struck
+  use cell_grids, only: cells_along
   use cell_lines, only: cell_line_t
   use layered_meshes, only: zone_t, layered_mesh_t, create_mesh
   use layer_maps, only: create_layer_map
@@ -30,9 +30,10 @@ module model_building
   use models, only: model_t
   use setups, only: setup_t
   use symmetry_images, only: find_images
+  use layered_zones, only: zones_of
   implicit none
   private
-  public :: create_model, zones_of, unrestrained
+  public :: create_model, unrestrained
 
   !> Stiffness of a rigid frame where its edge crosses a cell, relative to that of the laminate through its thickness:
   !> its effect on the deflection is far below round-off and tolerance, and the conditioning of the matrix is that of
@@ -252,30 +253,6 @@ contains
     if (self%struck > self%distribution%owned) self%struck = 0
   end subroutine find_struck_point
 
-  !> The cells of each interface's layered rectangle.
-  pure function zones_of(setup) result(zones)
-    type(setup_t), intent(in) :: setup
-    !> One zone an interface
-    type(zone_t), allocatable :: zones(:)
-    type(cell_line_t) :: columns, rows
-    integer :: i
-
-    if (.not. allocated(setup%delaminations)) then
-      allocate (zones(0))
-      return
-    end if
-    columns = cells_from_struck(setup%plate, setup%mesh, 1)
-    rows = cells_from_struck(setup%plate, setup%mesh, 2)
-    allocate (zones(size(setup%delaminations)))
-    do i = 1, size(zones)
-      associate (interface => setup%delaminations(i))
-        zones(i)%below_ply = interface%below_ply
-        zones(i)%columns = columns%within(interface%zone(1))
-        zones(i)%rows = rows%within(interface%zone(2))
-      end associate
-    end do
-  end function zones_of
-
   !> Supports of this rank's points by rigs, and the contact with unilateral frames: that of the laminate's face with a
   !> rigid one.
   subroutine build_rigs(self)
@@ -321,7 +298,9 @@ contains
       allocate (self%contact_laws(size(mesh%zones)), self%cohesive_laws(size(mesh%zones)))
       do zone = 1, size(mesh%zones)
         associate (below => mesh%zones(zone)%below_ply, interface => self%setup%delaminations(zone))
-          thickness = min(plies(below)%z_bottom - plies(1)%z_top, plies(size(plies))%z_bottom - plies(below)%z_bottom)
+          thickness = plies(size(plies))%z_bottom - plies(below)%z_bottom
+          if (interface%bonds_doublers()) thickness = mesh%zones(zone)%thickness
+          thickness = min(plies(below)%z_bottom - plies(1)%z_top, thickness)
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
                                                        plies(below)%elasticity%e2/thickness, thickness, &
                                                        moving=self%setup%has_inertia())
@@ -335,7 +314,8 @@ contains
     end associate
   end subroutine build_interfaces
 
-  !> True if a point lies next to the border of its zone, except where this is the border of the model.
+  !> True if a point lies next to the border of its zone, except where this is the border of the model or the free edge
+  !> of a doubler.
   pure logical function beside_border(mesh, point)
     type(layered_mesh_t), intent(in) :: mesh
     !> The point
@@ -343,7 +323,7 @@ contains
     integer :: line(2)
 
     beside_border = .false.
-    if (mesh%point_zone(point) == 0) return
+    if (mesh%point_zone(point) == 0 .or. mesh%bonds_doubler(point)) return
     line = [modulo(mesh%point_node(point) - 1, 2*mesh%cells(1) + 1), (mesh%point_node(point) - 1)/(2*mesh%cells(1) + 1)]
     associate (zone => mesh%zones(mesh%point_zone(point)))
       beside_border = near(line(1), zone%columns, mesh%cells(1)) .or. near(line(2), zone%rows, mesh%cells(2))

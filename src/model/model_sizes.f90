@@ -4,7 +4,7 @@ module model_sizes
   use layer_extents, only: largest_extents
   use layered_meshes, only: zone_t
   use idle_membranes, only: is_membrane_idle
-  use model_building, only: zones_of
+  use layered_zones, only: zones_of
   use cell_lines, only: cell_line_t
   use cell_grids, only: cells_along
   use setups, only: setup_t

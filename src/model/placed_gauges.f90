@@ -83,16 +83,17 @@ contains
     type(exact_sum_t), intent(inout) :: total
     real(wp) :: at(2), angle, direction(3)
     integer, allocatable :: columns(:), rows(:)
-    integer :: element, ply, i, j
+    integer :: element, cell, i, j
 
     call find_place(model, gauge, at, angle)
     direction = [cos(angle*degree)**2, sin(angle*degree)**2, sin(angle*degree)*cos(angle*degree)]
     columns = model%mesh%along(1)%touching(at(1))
     rows = model%mesh%along(2)%touching(at(2))
-    ply = merge(model%mesh%plies, 1, gauge%face == face_back)
     do j = 1, size(rows)
       do i = 1, size(columns)
-        element = model%mesh%element_at(columns(i) + (rows(j) - 1)*model%mesh%cells(1), ply)
+        cell = columns(i) + (rows(j) - 1)*model%mesh%cells(1)
+        element = model%mesh%first_element(cell)
+        if (gauge%face == face_back) element = model%mesh%first_element(cell + 1) - 1
         element = findloc(model%distribution%elements, element, dim=1)
         if (element == 0) cycle
         call total%add(dot_product(direction, surface_strain(model, gauge, motion, element, &

@@ -163,9 +163,12 @@ contains
     end do
     do point = first_point, last
       if (self%load%layer /= all_layers .and. point /= chosen) cycle
+      ! Lines act on the laminate; doublers only where the line names their layer.
+      if (self%load%layer == all_layers .and. mesh%bonds_doubler(point)) cycle
       top = plies(1)%z_top
       if (point > first_point) top = plies(mesh%zones(mesh%point_zone(point))%below_ply)%z_bottom
       bottom = plies(size(plies))%z_bottom
+      if (mesh%bonds_doubler(point)) bottom = bottom + mesh%zones(mesh%point_zone(point))%thickness
       if (point < last) bottom = plies(mesh%zones(mesh%point_zone(point + 1))%below_ply)%z_bottom
       self%weight = [self%weight, weight*merge((bottom - top)/total, 1.0_wp, self%load%layer == all_layers)]
       self%height = [self%height, (top + bottom)/2]

@@ -96,6 +96,8 @@ contains
         if (model%zone(i) > 0) z(i) = model%map%height(i)
         if (point < last) then
           z(i) = (z(i) + model%map%height(model%distribution%local(point + 1)))/2
+        else if (mesh%bonds_doubler(point)) then
+          z(i) = z(i) + mesh%zones(mesh%point_zone(point))%thickness/2
         else
           z(i) = (z(i) + model%thickness/2)/2
         end if

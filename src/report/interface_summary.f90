@@ -1,6 +1,7 @@
 !> Results of the interfaces in the summary.
 module interface_summary
   use deck_contents, only: deck_t
+  use doubler_bonds, only: names_of_doublers
   use delamination_parameters, only: law_cohesive
   use json_text, only: json_t
   use kinds, only: wp
@@ -31,6 +32,7 @@ contains
       associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
         call json%open_object('')
         call json%put('ply_above', interface%below_ply)
+        if (interface%bonds_doublers()) call json%put('doublers', names_of_doublers(deck%zones, interface))
         call json%put('is_cohesive', interface%law == law_cohesive)
         call json%put('area', figure%area)
         call json%put('energy', figure%energy)

@@ -2,6 +2,7 @@
 module summary_lines
   use compression_summary, only: collapse_text, compression_text
   use deck_contents, only: deck_t
+  use doubler_bonds, only: names_of_doublers
   use kinds, only: wp
   use run_errors, only: run_errors_t
   use run_figures, only: run_figures_t
@@ -248,6 +249,8 @@ contains
         call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
                   results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
                   range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, energy_kind))
+        if (deck%delaminations(zone)%bonds_doublers()) &
+          call add_figure(lines, '', 'bond of '//names_of_doublers(deck%zones, deck%delaminations(zone)))
         call add_event('onset', record%onset(:, zone))
         call add_event('first growth', record%growth(:, zone))
         if (deck%has_impactor) &
