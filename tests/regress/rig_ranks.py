@@ -1,4 +1,4 @@
-"""Rigs, spherical contact areas and damping to rest on 1 to 4 ranks: the histories are equal to the last bit.
+"""Rigs, spherical contact areas and damping to rest on 1 and 3 ranks: the histories are equal to the last bit.
 Usage: rig_ranks.py IMPLAM FOLDER LAUNCHER...     (LAUNCHER takes the number of ranks as its last word)
 
 rig      an eccentric impact with a spherical contact area on a unilateral circular frame with clamps of a given force,
@@ -48,10 +48,10 @@ DECKS = {
 
 
 def check(implam, folder, launcher):
-    """Run every deck on every number of ranks."""
+    """Run every deck on 1 and 3 ranks."""
     for name, text in DECKS.items():
         histories = []
-        for ranks in range(1, 5):
+        for ranks in (1, 3):
             deck = folder / name / str(ranks) / "deck.nml"
             deck.parent.mkdir(parents=True, exist_ok=True)
             deck.write_text(f"&case name='{name}' /\n{text}", encoding="utf-8")
@@ -59,7 +59,7 @@ def check(implam, folder, launcher):
             require_same(histories[-1], histories[0], f"{name} on {ranks} ranks")
         rows = read_history(histories[0])
         require(max(rows["energy_damping"]) > 0, f"{name} is not damped.")
-        print(f"{name}: {len(rows['time'])} rows, the same to the last bit on 1 to 4 ranks", flush=True)
+        print(f"{name}: {len(rows['time'])} rows, the same to the last bit on 1 and 3 ranks", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 """Equal histories of a deck run in two ways.
 Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTING...]
+       same_history.py all_ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTING...]
        same_history.py PART IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
-ranks    on 1 to 3 ranks, and from a checkpoint on another number of ranks, up to 4
+ranks    on 1 and 3 ranks, and from the checkpoint of 3 ranks on 2
+all_ranks  on 1 to 3 ranks, and from a checkpoint on another number of ranks, up to 4
 quarter  a quarter of the plate against the full one
 half_x   a half along x against the full plate
 half_y   a half along y against the full plate
@@ -42,8 +44,8 @@ from solver_runs import (
 COUNTS = ("iterations", "force_iterations", "contact_iterations", "total_iterations", "total_force_iterations",
           "total_contact_iterations", "refactorisations", "solves", "complementarity")
 PARTS = ("quarter", "half_x", "half_y", "point")
-# Ranks before and after the restarts.
-CHANGES = ((1, 4), (3, 1), (3, 2))
+# Numbers of ranks, and those before and after the restarts. Ranks beyond the cores take turns, and most of the time.
+RANKS = {"ranks": ((1, 3), ((3, 2),)), "all_ranks": ((1, 2, 3), ((1, 4), (3, 1), (3, 2)))}
 
 
 def within(deck, settings):
@@ -52,16 +54,17 @@ def within(deck, settings):
     return [*settings, f"output%checkpoint_every={0.53 * float(found[1] if found else 1)!r}"]
 
 
-def histories_of_ranks(implam, deck, folder, launcher, settings):
-    """Yield name and history of the runs on 1 to 3 ranks, and of those continued on 4, 1 and 2."""
+def histories_of_ranks(kind, implam, deck, folder, launcher, settings):
+    """Yield name and history of the runs on several numbers of ranks, and of those continued on others."""
     settings = within(deck, settings)
-    for ranks in (1, 2, 3):
+    numbers, changes = RANKS[kind]
+    for ranks in numbers:
         path = write_deck(folder / f"ranks_{ranks}", deck, settings)
         history = run_deck(implam, path, [*launcher, str(ranks)])
         log = next(path.parent.glob("*.log")).read_text(encoding="utf-8")
         require(f"{ranks} rank" in log, f"The log does not name {ranks} ranks.")
         yield f"{ranks} ranks", read_history(history), damage_of(history)
-    for first, second in CHANGES:
+    for first, second in changes:
         again = folder / f"ranks_{first}_{second}"
         shutil.rmtree(again, ignore_errors=True)
         shutil.copytree(folder / f"ranks_{first}", again)
@@ -122,9 +125,10 @@ def compare(kind, implam, deck, folder, tolerance, *words):
     launcher, settings = words[:divide], words[divide + 1:]
     if kind in PARTS:
         runs = histories_of_part(kind, implam, deck, Path(folder), settings)
+    elif kind in RANKS:
+        runs = histories_of_ranks(kind, implam, deck, Path(folder), launcher, settings)
     else:
-        histories = {"ranks": histories_of_ranks, "mirror": histories_of_mirror,
-                     "tolerances": histories_of_tolerances}[kind]
+        histories = {"mirror": histories_of_mirror, "tolerances": histories_of_tolerances}[kind]
         runs = histories(implam, deck, Path(folder), launcher, settings)
     passed = True
     _, reference, reference_damage = next(runs)
