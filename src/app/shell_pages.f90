@@ -9,6 +9,7 @@ module shell_pages
   use result_explain, only: result_topics
   use text, only: line_t, append
   use usage_texts, only: command_rows, explained_options, of_term, option_rows, code_rows, notes
+  use usual_ranges, only: range_in_words
   implicit none
   private
   public :: manual_page, completion
@@ -79,6 +80,7 @@ contains
       if (key%unit /= '-') unit = '; unit: '//key%unit
       conditions = ''
       if (key%used_with /= '') conditions = '; '//conditions_in_words(key%used_with, '')
+      if (key%usual /= '') conditions = conditions//'; '//range_in_words(key%usual)
       call append(lines, '.TP')
       call append(lines, '.B '//key%name)
       call append(lines, escaped(key%meaning//' ('//allowed_sentence(key)//unit//'; default: '//key%default// &

@@ -108,7 +108,7 @@ contains
     call set_flaws(deck, problems)
     call check_scales(deck, problems)
     call check_softening_steps(deck, problems)
-    call check_units(deck, problems)
+    call check_units(deck, vocabulary, problems)
     if (problems%errors() == 0) call note_symmetry(deck)
     deck%remarks = problems%remarks()
   end subroutine read_deck_text

@@ -9,6 +9,7 @@ module deck_units
   use deck_magnitudes, only: magnitude_t, magnitudes_of
   use deck_problems, only: problems_t
   use deck_remarks, only: remark
+  use deck_vocabulary, only: vocabulary_t
   use delamination_deck, only: key_starter, key_zone
   use gauge_deck, only: gauge_group, key_gauge_at
   use hertz_contact, only: sun_stiffness
@@ -54,15 +55,17 @@ module deck_units
 contains
 
   !> Warns of values in other units.
-  subroutine check_units(deck, problems)
+  subroutine check_units(deck, vocabulary, problems)
     !> The deck, checked, with its expected results
     type(deck_t), intent(in) :: deck
+    !> The table with the usual ranges
+    type(vocabulary_t), intent(in) :: vocabulary
     type(problems_t), intent(inout) :: problems
     type(magnitude_t), allocatable :: list(:)
     character(len=:), allocatable :: fits
     integer :: system, i
 
-    call magnitudes_of(deck, problems, list)
+    call magnitudes_of(deck, vocabulary, problems, list)
     system = probable_system(deck, list)
     if (system == 0) return
     do i = 1, size(list)

@@ -5,6 +5,7 @@ module deck_explain
   use errors, only: error_t, fail, exit_usage
   use key_conditions, only: conditions_in_words
   use text, only: line_t, append, ended, joined, lower_case, nearest_name, words_of
+  use usual_ranges, only: range_in_words
   implicit none
   private
   public :: explain, explain_table
@@ -141,7 +142,7 @@ contains
     end if
   end subroutine require_group
 
-  !> Two lines on a key, and one on its conditions.
+  !> Two lines on a key, one on its conditions, and one on its usual range.
   subroutine explain_key(key, lines)
     type(key_entry_t), intent(in) :: key
     !> Lines are added
@@ -153,6 +154,7 @@ contains
     call append(lines, '  '//key%name//repeat(' ', max(1, 18 - len(key%name)))//key%meaning)
     call append(lines, repeat(' ', 20)//allowed_sentence(key)//unit//'; '//ended(default_in_words(key)))
     if (key%used_with /= '') call append(lines, repeat(' ', 20)//conditions_in_words(key%used_with, '')//'.')
+    if (key%usual /= '') call append(lines, repeat(' ', 20)//range_in_words(key%usual)//'.')
   end subroutine explain_key
 
   !> Whether a group is required and repeatable, in words.
@@ -238,7 +240,9 @@ contains
       allowed = '`'''//joined(choices, '''`, `''')//'''`'//allowed(index(allowed, ','):)
     end if
     conditions = ''
-    if (key%used_with /= '') conditions = ' ('//conditions_in_words(key%used_with, '`')//')'
+    if (key%used_with /= '') conditions = '; '//conditions_in_words(key%used_with, '`')
+    if (key%usual /= '') conditions = conditions//'; '//range_in_words(key%usual)
+    if (conditions /= '') conditions = ' ('//conditions(3:)//')'
     row = '| `'//key%name//'` | '//key%kind//' | '//key%values//' | '//key%unit//' | '//default//' | '//allowed// &
           ' | '//key%meaning(:len(key%meaning) - 1)//conditions//'. |'
   end function table_row

@@ -38,6 +38,8 @@ module deck_vocabulary
     character(len=:), allocatable :: meaning
     !> Conditions under which it has an effect (key_conditions); empty: always
     character(len=:), allocatable :: used_with
+    !> Quantity whose usual range (usual_ranges) its values have; empty: any values
+    character(len=:), allocatable :: usual
   contains
     procedure :: has_literal_default
   end type key_entry_t
@@ -63,7 +65,7 @@ contains
     !> Rows of groups: name, presence and meaning, separated by bars
     character(len=*), intent(in) :: group_rows(:)
     !> Rows of keys: group, key, type, number of values, unit, default, allowed, meaning and, if there are any, the
-    !> conditions under which it has an effect, separated by bars
+    !> conditions under which it has an effect and the quantity of a usual range, separated by bars
     character(len=*), intent(in) :: key_rows(:)
     !> The table as data
     type(vocabulary_t), intent(out) :: vocabulary
@@ -99,6 +101,8 @@ contains
     key%meaning = column(8)%text
     key%used_with = ''
     if (size(column) > 8) key%used_with = column(9)%text
+    key%usual = ''
+    if (size(column) > 9) key%usual = column(10)%text
   end subroutine set_key
 
   !> True: the default is a value that may be written in the deck.

@@ -40,9 +40,10 @@ module delamination_deck
     'delamination | doubler | text | 1 or more | - | none | names of &doubler groups | &
       &Instead of below_ply: doublers whose bond to the laminate may delaminate.', &
     'delamination | G_c | real | 1 | energy/area | none | > 0 | &
-      &Critical energy release rate of every mode; given instead of G_Ic and G_IIc.', &
+      &Critical energy release rate of every mode; given instead of G_Ic and G_IIc. | | toughness', &
     'delamination | G_Ic | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure opening.', &
-    'delamination | G_IIc | real | 1 | energy/area | none | > 0 | Critical energy release rate of pure shear.', &
+    'delamination | G_IIc | real | 1 | energy/area | none | > 0 | &
+      &Critical energy release rate of pure shear. | | toughness', &
     'delamination | eta | real | 1 | - | 1.75 | > 0, <= 10 | &
       &Exponent of Benzeggagh and Kenane''s mixed-mode law. | not G_c', &
     'delamination | zone | real | 2 | length | = adaptive, with law = cohesive | > 0 | &
@@ -60,7 +61,7 @@ module delamination_deck
     'delamination | strength_opening | real | 1 | pressure | = YT of the weaker ply beside it | > 0 | &
       &Strength of the cohesive law in pure opening. | law = cohesive', &
     'delamination | strength_shear | real | 1 | pressure | = S12 of the weaker ply beside it | > 0 | &
-      &Strength of the cohesive law in pure shear. | law = cohesive', &
+      &Strength of the cohesive law in pure shear. | law = cohesive | strength', &
     'delamination | stiffness | real | 1 | pressure/length | = 5 E2/h of the thinner side | > 0 | &
       &Stiffness of the undamaged cohesive law in opening; h: thickness of the laminate on the thinner side. | &
       &law = cohesive', &

@@ -43,7 +43,8 @@ module central_differences
   !> steps.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data of the method that are not part of the state.
+  !> Data of the method that are not part of the state. They are many because nodes, stacks, lines, rigs and impactor
+  !> each move by a rule of their own.
   type, extends(nodal_steps_t) :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters

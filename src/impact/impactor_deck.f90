@@ -24,9 +24,9 @@ module impactor_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
     'impactor | mass | real | 1 | mass | none | > 0 | &
-      &Mass of the full impactor, also under symmetry; needed unless travel is given. | not travel', &
+      &Mass of the full impactor, also under symmetry; needed unless travel is given. | not travel | mass', &
     'impactor | velocity | real | 1 | length/time | = sqrt(2 energy/mass) | >= 0 | &
-      &Speed towards the plate at first contact. | not travel', &
+      &Speed towards the plate at first contact. | not travel | velocity', &
     'impactor | at | real | 2 | length | none | any | &
       &The struck point, from the plate''s centre (default); patch, core, zones and starters are centred on it.', &
     'impactor | energy | real | 1 | energy | none | >= 0 | &
@@ -37,7 +37,7 @@ module impactor_deck
       &Time in which the prescribed velocity of the impactor rises smoothly to its constant value. | &
       &travel, not &static', &
     'impactor | radius | real | 1 | length | none | > 0 | &
-      &Radius of the nose; needed if the contact stiffness k is not given.', &
+      &Radius of the nose; needed if the contact stiffness k is not given. | | radius', &
     'impactor | contact_area | choice | 1 | - | ''patch'' | patch sphere | &
       &Area on which the contact force acts: the patch, or that in contact with a spherical nose, point by point.', &
     'impactor | gravity | real | 1 | length/time^2 | 0 | any | &

@@ -34,11 +34,11 @@ module laminate_deck
     'laminate | angles | real | plies | degree | = stacking | >= -360, <= 360 | &
       &Fibre angle of each ply from x; their number is the number of plies.', &
     'laminate | thicknesses | real | 1 or plies | length | = ply_thickness | > 0 | &
-      &Thickness of each ply; one value serves all.', &
+      &Thickness of each ply; one value serves all. | | laminate thickness', &
     'laminate | stacking | text | 1 | - | none | not empty | &
       &Plies as in [45/0/-45/90]2s, instead of angles and thicknesses.', &
     'laminate | ply_thickness | real | 1 | length | none | > 0 | &
-      &Thickness of every ply of stacking.', &
+      &Thickness of every ply of stacking. | | laminate thickness', &
     'laminate | shear_correction | choice | 1 | - | = energy if shear moduli differ tenfold, else 5/6 | 5/6 energy | &
       &Correction of the transverse shear stiffness: the factor 5/6, or equal shear energy.', &
     'laminate | bending_error | real | 1 | - | 0.005 | >= 1e-6, <= 1 | &

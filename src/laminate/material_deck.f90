@@ -33,49 +33,49 @@ module material_deck
     'material | library | choice | 1 | - | none | t700_m21 t700gc_m21 im7_8552 as4_3501_6 t300_976 e_glass_my750 | &
       &Published material whose values fill in keys left out.', &
     'material | density | real | 1 | mass/volume | none | > 0 | &
-      &Mass per volume; needed unless the analysis is static.', &
+      &Mass per volume; needed unless the analysis is static. | | density', &
     'material | E | real | 1 | pressure | none | > 0 | &
-      &Young''s modulus of an isotropic material, given with nu instead of E1 to nu23.', &
+      &Young''s modulus of an isotropic material, given with nu instead of E1 to nu23. | | modulus', &
     'material | nu | real | 1 | - | none | > -1, < 0.5 | &
       &Poisson''s ratio of an isotropic material.', &
     'material | E1 | real | 1 | pressure | none | > 0 | &
-      &Young''s modulus along the fibres, in tension.', &
+      &Young''s modulus along the fibres, in tension. | | modulus', &
     'material | E1c | real | 1 | pressure | = E1 | > 0 | &
       &Young''s modulus along the fibres in compression.', &
     'material | E2 | real | 1 | pressure | none | > 0 | &
-      &Transverse Young''s modulus.', &
+      &Transverse Young''s modulus. | | modulus', &
     'material | G12 | real | 1 | pressure | none | > 0 | &
-      &In-plane shear modulus.', &
+      &In-plane shear modulus. | | modulus', &
     'material | G13 | real | 1 | pressure | = G12 | > 0 | &
-      &Shear modulus between the fibres and the normal.', &
+      &Shear modulus between the fibres and the normal. | | modulus', &
     'material | G23 | real | 1 | pressure | none | > 0 | &
-      &Transverse shear modulus.', &
+      &Transverse shear modulus. | | modulus', &
     'material | nu12 | real | 1 | - | none | > -10, < 10 | &
       &Major Poisson''s ratio; its magnitude is below sqrt(E1/E2).', &
     'material | nu23 | real | 1 | - | 0 | > -1, < 1 | &
       &Transverse Poisson''s ratio; it has no effect on results, as plies are in plane stress.', &
     'material | XT | real | 1 | pressure | none | > 0 | &
-      &Tensile strength along the fibres.', &
+      &Tensile strength along the fibres. | | strength', &
     'material | XC | real | 1 | pressure | none | > 0 | &
-      &Compressive strength along the fibres, a positive number; left out: XT is used.', &
+      &Compressive strength along the fibres, a positive number; left out: XT is used. | | strength', &
     'material | YT | real | 1 | pressure | none | > 0 | &
-      &Transverse tensile strength.', &
+      &Transverse tensile strength. | | strength', &
     'material | YC | real | 1 | pressure | none | > 0 | &
-      &Transverse compressive strength, a positive number.', &
+      &Transverse compressive strength, a positive number. | | strength', &
     'material | S12 | real | 1 | pressure | none | > 0 | &
-      &In-plane shear strength.', &
+      &In-plane shear strength. | | strength', &
     'material | Sf | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the criterion of fibre failure.', &
+      &Shear strength in the criterion of fibre failure. | | strength', &
     'material | Sm23 | real | 1 | pressure | none | > 0 | &
-      &Shear strength in the 2-3 plane in the criterion of matrix failure.', &
+      &Shear strength in the 2-3 plane in the criterion of matrix failure. | | strength', &
     'material | G_ft | real | 1 | energy/area | none | > 0 | &
-      &Fracture energy of fibres in tension; with G_fc, G_mt and G_mc plies soften.', &
+      &Fracture energy of fibres in tension; with G_fc, G_mt and G_mc plies soften. | | fibre toughness', &
     'material | G_fc | real | 1 | energy/area | none | > 0 | &
-      &Fracture energy of fibres in compression.', &
+      &Fracture energy of fibres in compression. | | fibre toughness', &
     'material | G_mt | real | 1 | energy/area | none | > 0 | &
-      &Fracture energy of the matrix in transverse tension.', &
+      &Fracture energy of the matrix in transverse tension. | | toughness', &
     'material | G_mc | real | 1 | energy/area | none | > 0 | &
-      &Fracture energy of the matrix in shear or transverse compression.', &
+      &Fracture energy of the matrix in shear or transverse compression. | | toughness', &
     'material | shear_failure_strain | real | 1 | - | none | > 0 | &
       &In-plane shear strain at S12; left out: S12/G12, shear is linear. | &ply_damage, G_ft', &
     'material | alpha1 | real | 1 | 1/temperature | 0 | any | &

@@ -32,7 +32,8 @@ module layered_meshes
     integer :: plies(2) = 0
   end type layer_t
 
-  !> Cells, layers and the points (node and layer pairs) that carry five unknowns each.
+  !> Cells, layers and the points (node and layer pairs) that carry five unknowns each. It has many components because a
+  !> layered mesh has all those of the grid of cells.
   type, extends(cell_grid_t) :: layered_mesh_t
     !> Zones, from the struck face downwards
     type(zone_t), allocatable :: zones(:)

@@ -26,7 +26,7 @@ module plate_deck
   !> Rows of the keys.
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
-      &Lengths of the full plate along x and y, also under symmetry.', &
+      &Lengths of the full plate along x and y, also under symmetry. | | length', &
     'plate | edges | choice | 1 or 4 | - | required | clamped simple free elastic | &
       &Supports at x-min, x-max, y-min, y-max; one value serves all.', &
     'plate | edge_stiffness | real | 1 | pressure | none | > 0 | &

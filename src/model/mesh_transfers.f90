@@ -15,7 +15,8 @@ module mesh_transfers
   private
   public :: mesh_transfer_t
 
-  !> The archive: a state is saved to it, the archive is switched to another mesh, and the state is loaded from it.
+  !> The archive: a state is saved to it, the archive is switched to another mesh, and the state is loaded from it. It
+  !> has many components because it serves where the transfer to more layers does, with its maps.
   type, extends(layer_transfer_t) :: mesh_transfer_t
     !> The mesh saved, and the one to load
     type(layered_mesh_t), private :: old, new

@@ -9,7 +9,7 @@ module plate_loads
   private
   public :: loaded_plate_t
 
-  !> A discretization with its supports and loads.
+  !> A discretization with its supports and loads. It has many components because it has those of the discretization.
   type, extends(discretization_t) :: loaded_plate_t
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)

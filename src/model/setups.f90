@@ -16,7 +16,8 @@ module setups
   private
   public :: setup_t
 
-  !> A load case and its plate: geometry, mesh, laminate and damage.
+  !> A load case and its plate: geometry, mesh, laminate and damage. It has many components because every group of the
+  !> deck on the plate or its loads has one.
   type, extends(load_case_t) :: setup_t
     !> kinematics_von_karman or kinematics_linear
     integer :: kinematics = kinematics_von_karman

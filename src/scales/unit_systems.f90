@@ -2,16 +2,17 @@
 module unit_systems
   use kinds, only: wp
   use text, only: lower_case
+  use usual_ranges, only: ranges
   implicit none
   private
   public :: is_unusual, unit_that_fits, unit_name, system_named, base_units, units_in_metre, decades_of
 
-  !> Kinds of quantities.
+  !> Kinds of quantities, in the order of the usual ranges.
   integer, parameter, public :: of_pressure = 1, of_density = 2, of_length = 3, of_thickness = 4, of_radius = 5, &
                                 of_mass = 6, of_velocity = 7, of_toughness = 8, of_time = 9, of_strength = 10, &
                                 of_fibre_toughness = 11
   !> Number of kinds of quantities.
-  integer, parameter, public :: quantities = 11
+  integer, parameter, public :: quantities = size(ranges)
   !> The systems: metre, kilogram, second; millimetre, tonne, second; millimetre, kilogram, millisecond; millimetre,
   !> millinewton, kilogram, second.
   character(len=*), parameter, public :: systems(4) = [character(len=10) :: 'SI', 'mm-t-s', 'mm-kg-ms', 'mm-mN-kg-s']
@@ -50,19 +51,6 @@ module unit_systems
     'MPa', 't/mm^3', 'mm', 'mm', 'mm', 't', 'mm/s', 'N/mm', 's', &
     'GPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'm/s', 'kN/mm', 'ms', &
     'kPa', 'kg/mm^3', 'mm', 'mm', 'mm', 'kg', 'mm/s', 'mN/mm', 's'], [9, 4])
-  !> Smallest and largest usual values of plates, impactors and their materials, SI. Moduli reach from foam to diamond,
-  !> densities from foam to platinum, velocities from a tool that slips to a fragment, strengths from glue to fibres.
-  !> Fracture energies of fibres are of 10 to 200 kJ/m^2.
-  real(wp), parameter :: least(quantities) = &
-    [1.0e7_wp, 10.0_wp, 1.0e-3_wp, 2.0e-5_wp, 1.0e-4_wp, 1.0e-6_wp, 0.05_wp, 5.0_wp, 1.0e-8_wp, 1.0e5_wp, &
-     1.0e3_wp]
-  real(wp), parameter :: largest(quantities) = &
-    [1.5e12_wp, 2.5e4_wp, 20.0_wp, 0.5_wp, 1.0_wp, 1.0e5_wp, 1.0e3_wp, 1.0e5_wp, 1.0e2_wp, 2.0e10_wp, &
-     1.0e6_wp]
-  !> Usual values, by which one of several fitting units is chosen.
-  real(wp), parameter :: usual(quantities) = &
-    [7.0e10_wp, 1.6e3_wp, 0.2_wp, 2.0e-3_wp, 1.0e-2_wp, 0.3_wp, 3.0_wp, 6.0e2_wp, 1.0e-3_wp, 5.0e8_wp, &
-     5.0e4_wp]
 
 contains
 
@@ -122,7 +110,7 @@ contains
     nearest = huge(nearest)
     do i = 1, size(units)
       if (units(i)%quantity /= dimension_of(quantity) .or. .not. in_range(quantity, value*units(i)%size)) cycle
-      decades = abs(log(value*units(i)%size/usual(quantity)))
+      decades = abs(log(value*units(i)%size/ranges(quantity)%usual))
       if (decades < nearest) name = trim(units(i)%name)
       nearest = min(nearest, decades)
     end do
@@ -157,7 +145,7 @@ contains
     !> The value, SI
     real(wp), intent(in) :: value
 
-    in_range = value >= least(quantity) .and. value <= largest(quantity)
+    in_range = value >= ranges(quantity)%least .and. value <= ranges(quantity)%largest
   end function in_range
 
   !> SI units in a unit.

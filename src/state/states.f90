@@ -61,7 +61,7 @@ module states
     real(wp) :: largest_forces(2) = 0
   end type small_state_t
 
-  !> The state of plate, impactor and contact at one time.
+  !> The state of plate, impactor and contact at one time. It has many components because a step changes all of them.
   type, extends(small_state_t) :: state_t
     !> Motion of the plate
     type(motion_t) :: motion

@@ -23,7 +23,8 @@ module implicit_steppers
   private
   public :: implicit_stepper_t
 
-  !> A stepper of implicit steps in time or by load.
+  !> A stepper of implicit steps in time or by load. It has many components because it has those of any stepper and of
+  !> trial, operator and step control.
   type, extends(implicit_steps_t) :: implicit_stepper_t
   contains
     procedure :: start

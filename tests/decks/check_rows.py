@@ -23,9 +23,12 @@ OTHERS = (
     ("report/interface_summary.f90", "at energy force", "names in NAME_summary.json"),
     ("app/simulations.f90", "history fields", "items of a checkpoint, which must stay readable"),
     ("app/simulations.f90", "steps", "a timer"),
+    ("report/run_warnings.f90", "core indentation steps stringer contact", "warnings"),
+    ("report/warning_rows.f90", "core indentation steps stringer contact", "warnings"),
     ("report/summary_file.f90", "angle at plies doubler", "a name in NAME_summary.json"),
     ("case/deck_integrators.f90", "plies", "a part of the model that softens"),
     ("deck/allowed_values.f90", "plies", "a number of values"),
+    ("deck/usual_ranges.f90", "density length laminate thickness radius mass velocity time", "quantities"),
     ("report/summary_file.f90", "thickness", "a name in NAME_summary.json"),
     ("scales/unit_systems.f90", "g", "a unit of mass"),
     ("report/summary_file.f90", "case", "a name in NAME_summary.json"),
@@ -103,7 +106,7 @@ def breaches(sources, groups, keys):
     rows, owners = {}, {}
     for path, line, text in quoted:
         cells = [cell.strip() for cell in text.split("|")]
-        named = {3: cells[:1], 8: cells[:2], 9: cells[:2]}.get(len(cells))
+        named = {3: cells[:1], 8: cells[:2], 9: cells[:2], 10: cells[:2]}.get(len(cells))
         if len(cells) == 9 and not KIND.match(cells[2]):
             continue
         # A row begins with a name; texts that begin with a bar are parts of other tables.

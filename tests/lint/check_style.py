@@ -2,8 +2,8 @@
 check_style.py FOLDER... [--layout FOLDER...]
 
 In folders after --layout, those of tests, only the layout is checked. Prints one line a breach, as
-file:line: sentence, and ends with code 1 if there is any. A type may exceed the number of components if its
-documentation gives the reason, in a sentence with "because".
+file:line: sentence, and ends with code 1 if there is any. A type may exceed the number of components, inherited ones
+included, if its documentation gives the reason, in a sentence with "because".
 """
 
 import re
@@ -79,6 +79,7 @@ class Scope:
     arguments: set = field(default_factory=set)
     statements: set = field(default_factory=set)
     components: int = 0
+    parent: str = ""
     branches: int = 1
 
 
@@ -198,6 +199,7 @@ class Checker:
         self.breaches = []
         self.scopes = []
         self.bound = set()
+        self.types = []
 
     def report(self, line, sentence):
         """Add a breach."""
@@ -287,7 +289,8 @@ class Checker:
         elif kind and not text.startswith("type is"):
             name = kind.group(1) or kind.group(2)
             self.require_doc(statement, f"type {name}")
-            self.scopes.append(Scope("type", statement.line, name))
+            extended = re.search(r"extends\s*\(\s*(\w+)", text)
+            self.scopes.append(Scope("type", statement.line, name, parent=extended.group(1) if extended else ""))
         elif re.match(r"(abstract\s+)?interface\b", text):
             self.scopes.append(Scope("interface", statement.line))
         elif self.opens_construct(text):
@@ -332,11 +335,8 @@ class Checker:
         if scope.kind == "procedure" and core and scope.branches > MAX_BRANCHES:
             self.report(scope.line, f"{scope.name} has {scope.branches} branches, more than {MAX_BRANCHES}")
         doc = doc_above(self.lines, scope.line)
-        if scope.kind == "type" and scope.components > MAX_COMPONENTS and "because" not in doc:
-            self.report(
-                scope.line,
-                f"type {scope.name} has more than {MAX_COMPONENTS} components and does not say because of what",
-            )
+        if scope.kind == "type":
+            self.types.append((scope, f"{self.path}:{scope.line}", "because" in doc))
 
     def require_doc(self, statement, what):
         """Check that documentation is above a statement."""
@@ -378,6 +378,22 @@ def folder_breaches(folder, files):
     return [f"{Path(folder, name)}:1: {lines[name]} of {total} lines are more than {MAX_FOLDER:.0%}" for name in large]
 
 
+def large_types(types):
+    """Breaches of types with too many components, inherited ones included, and no reason."""
+    by_name = {scope.name: scope for scope, _, _ in types}
+
+    def total(scope):
+        inherited = total(by_name[scope.parent]) if scope.parent in by_name else 0
+        return scope.components + inherited
+
+    return [
+        f"{place}: type {scope.name} has {total(scope)} components, more than {MAX_COMPONENTS}, and does not say "
+        "because of what"
+        for scope, place, has_reason in types
+        if total(scope) > MAX_COMPONENTS and not has_reason
+    ]
+
+
 def main(arguments):
     """Check folders; return the exit code."""
     count, breaches, whole = 0, [], True
@@ -387,7 +403,9 @@ def main(arguments):
             continue
         files = sorted(p for p in Path(argument).rglob("*") if p.suffix in SUFFIXES)
         count += len(files)
-        breaches += [breach for path in files for breach in Checker(path).check(whole)]
+        checkers = [Checker(path) for path in files]
+        breaches += [breach for checker in checkers for breach in checker.check(whole)]
+        breaches += large_types([found for checker in checkers for found in checker.types])
         breaches += folder_breaches(argument, files) if whole else []
     print("\n".join(breaches) if breaches else f"{count} files keep the rules")
     return 1 if breaches or not count else 0

@@ -125,7 +125,7 @@ BREACHES = {
     "indent": ("        twice = 3", "       twice = 3", "indented by 7, not 8"),
     "long procedure": ("        twice = 3\n", "        twice = 3\n" * 100, "more than 100 lines"),
     "long file": ("!> A thing.\n", "! Why\n" * 400 + "!> A thing.\n", "more than 400 lines"),
-    "many components": ("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n", "more than 15 components"),
+    "many components": ("    real(wp) :: size = 0\n", f"    real(wp) :: {MANY}\n", "has 16 components, more than 15"),
     "spelling": ("!> A thing.\n", "!> A Factorised thing.\n", "another name or spelling of factorization"),
     "selector": ("v => value", "v => self%list(self%area(i))%size", "area is called within the selector"),
     "march": ("    !> Size\n", "    !> The march\n", "another name or spelling of time stepping"),
@@ -173,6 +173,21 @@ class StyleTest(unittest.TestCase):
         self.assertEqual(
             self.check(many.replace("!> Thing\n", "!> Thing with much, because it is\n  !> large\n"))[0], 0
         )
+
+    def test_inherited_components_count(self):
+        """A type of two components that extends one of fourteen needs a reason."""
+        few = MANY.rsplit(", &", 2)[0]
+        heir = (
+            "\n\n  !> Heir\n  type, extends(thing_t) :: heir_t\n    !> Both\n    real(wp) :: more = 0, other = 0\n"
+            "  end type heir_t"
+        )
+        parent = GOOD.replace("    real(wp) :: size = 0\n", f"    real(wp) :: {few}\n")
+        end = "  end type thing_t"
+        self.assertIn(end, parent)
+        self.assertEqual(self.check(parent)[0], 0)
+        code, report = self.check(parent.replace(end, end + heir))
+        self.assertEqual(code, 1)
+        self.assertIn("type heir_t has 16 components", report)
 
     def test_large_folders_are_found(self):
         """A folder with 16 % of the lines is a breach, not one with 14 %, nor any of a small program."""
