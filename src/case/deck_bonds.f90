@@ -22,7 +22,6 @@ contains
   !> off.
   subroutine check_bonds_across_groups(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults are added
     type(problems_t), intent(inout) :: problems
     integer :: i, k
 
@@ -73,7 +72,6 @@ contains
   !> Refuses ply drops that move the face of the laminate at a bond.
   subroutine check_drops(deck, doubler, problems)
     type(deck_t), intent(in) :: deck
-    !> The doubler
     type(doubler_t), intent(in) :: doubler
     type(problems_t), intent(inout) :: problems
     integer :: i

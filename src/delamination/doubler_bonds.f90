@@ -16,7 +16,8 @@ module doubler_bonds
 
   !> Name of the key.
   character(len=*), parameter, public :: key_bond = 'doubler'
-  character(len=*), parameter :: group = delamination_group
+  character(len=*), parameter :: group = delamination_group, &
+                                 unavailable = 'is not available for the bond of a doubler; leave it out.'
 
 contains
 
@@ -74,6 +75,7 @@ contains
 
   !> Strengths of the weaker ply beside an interface.
   pure function weaker_beside(interface, strengths, of_doublers) result(weaker)
+    !> The interface
     type(delamination_t), intent(in) :: interface
     !> Strengths YT and S12 of each ply of the laminate and of the doublers, 0 where not given, (2, plies)
     real(wp), intent(in) :: strengths(:, :), of_doublers(:, :)
@@ -109,8 +111,8 @@ contains
     do place = 1, settings%groups_named(group)
       if (.not. are_clear(settings, problems, group, key_below_ply//' '//key_bond, place)) cycle
       if (is_bond(settings, place) .and. settings%is_given(group, key_below_ply, place)) then
-        call report(settings, problems, group, key_bond, 'the interface lies below a ply of the laminate or between '// &
-                    'the laminate and a doubler; give below_ply or doubler, not both.', place)
+        call report(settings, problems, group, key_bond, 'the interface lies below a ply of the laminate or '// &
+                    'between the laminate and a doubler; give below_ply or doubler, not both.', place)
       else if (.not. (is_bond(settings, place) .or. settings%is_given(group, key_below_ply, place))) then
         call report(settings, problems, group, key_below_ply, 'is missing; give it, or doubler.', place)
       end if
@@ -151,8 +153,8 @@ contains
     end do
     if (settings%text_of(group, 'law', bond%group) == 'front') &
       call refuse('law', 'the bond of a doubler is cohesive; allowed: law = ''cohesive''.')
-    if (bond%cracks_as_flaws) call refuse('cracks_as_flaws', 'is not available for the bond of a doubler; leave it out.')
-    if (bond%shear_cracks) call refuse('shear_cracks', 'is not available for the bond of a doubler; leave it out.')
+    if (bond%cracks_as_flaws) call refuse('cracks_as_flaws', unavailable)
+    if (bond%shear_cracks) call refuse('shear_cracks', unavailable)
 
   contains
 

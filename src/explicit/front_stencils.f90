@@ -116,7 +116,8 @@ contains
     if (turned) point = -point
   end function point_at
 
-  !> Length that belongs to a line of nodes, by the integrals of the shape functions; 0 beyond the plate or the doublers.
+  !> Length that belongs to a line of nodes, by the integrals of the shape functions; 0 beyond the plate or the
+  !> doublers.
   pure real(wp) function width_of(mesh, zone, along, lines) result(width)
     type(layered_mesh_t), intent(in) :: mesh
     !> Zone of the interface, and direction, 1 or 2

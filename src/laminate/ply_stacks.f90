@@ -15,8 +15,8 @@ module ply_stacks
   type :: ply_stack_t
     !> Number of each ply among those of the plate
     integer, allocatable :: number(:)
-    !> Position of each ply in the order of the layers, ascending: its number, for a ply bonded rigidly to a face that of
-    !> the outermost ply of the laminate there, for one bonded by an interface the next number beyond it
+    !> Position of each ply in the order of the layers, ascending: its number, for a ply bonded rigidly to a face that
+    !> of the outermost ply of the laminate there, for one bonded by an interface the next number beyond it
     integer, allocatable, private :: station(:)
     !> The plies, with their heights here
     type(ply_t), allocatable :: plies(:)

@@ -23,8 +23,8 @@ module layered_meshes
     real(wp) :: thickness = 0
   end type zone_t
 
-  !> The plies between two interfaces, or a face: those of a cell's laminate whose positions in the order of the layers lie
-  !> in a range.
+  !> The plies between two interfaces, or a face: those of a cell's laminate whose positions in the order of the layers
+  !> lie in a range.
   type :: layer_t
     !> Laminate of the cell, among the different ones of the plate
     integer :: laminate = 1
@@ -51,8 +51,8 @@ module layered_meshes
     integer, allocatable :: first_element(:)
     !> Number of plies of the plate's laminate
     integer :: plies = 0
-    !> Position of each ply of the plate in the order of the layers: its number, for one bonded rigidly to a face that of
-    !> the outermost ply of the laminate there, for one bonded by an interface the next number beyond it
+    !> Position of each ply of the plate in the order of the layers: its number, for one bonded rigidly to a face that
+    !> of the outermost ply of the laminate there, for one bonded by an interface the next number beyond it
     integer, allocatable :: stations(:)
     !> The different layers of the plate
     type(layer_t), allocatable :: layers(:)

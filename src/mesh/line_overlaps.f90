@@ -116,8 +116,8 @@ contains
     overlaps = overlaps_of(node_bounds(line%bounds(), begins_on_cut) + origin, bounds, halved)
   end function overlaps_of_nodes
 
-  !> Overlaps of the three parts of each cell of a line, which are assigned to its nodes, with the parts of cells assigned
-  !> to the nodes of another line.
+  !> Overlaps of the three parts of each cell of a line, which are assigned to its nodes, with the parts of cells
+  !> assigned to the nodes of another line.
   pure function overlaps_of_node_parts(line, origin, others, halved) result(overlaps)
     !> The line, and the other one
     type(cell_line_t), intent(in) :: line, others

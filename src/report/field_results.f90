@@ -56,6 +56,8 @@ contains
       coordinates(1:2, :) = mesh%node_coordinates(:, mesh%point_node(partition%points(:partition%owned)))
       coordinates(3, :) = heights(model)
       values(:2, :) = reshape([(mesh%plies_of(partition%elements(i)), i=1, size(values, 2))], [2, size(values, 2)])
+      ! The layer of a doubler lies below the last ply of the laminate, and has none of them.
+      values(2, :) = min(values(2, :), mesh%plies)
       values(3, :) = starters_above(model)
       call fields%write_mesh(global_numbers_t(partition%points(:partition%owned), mesh%points()), &
                              global_numbers_t(partition%elements, mesh%elements()), coordinates, &

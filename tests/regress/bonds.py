@@ -233,7 +233,7 @@ SMALL = """&case units='mm-t-s' /
 &delamination below_ply='all' G_Ic=0.1 G_IIc=0.25 /
 &delamination doubler='flange','pad' G_Ic=0.1 G_IIc=0.25 /
 {more}
-&time integrator='central_difference' end={end} {settle} /
+&time integrator='central_difference' end={end} {rest} /
 &output history_every=1e-5 checkpoint_every=5e-5 fields_every=1e-4 /
 """
 
@@ -244,7 +244,7 @@ def try_ranks(implam, folder, launcher):
     for ranks in range(1, 4):
         path = folder / str(ranks) / "deck.nml"
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(SMALL.format(at="2,4", more="", end=2.2e-4, settle=""), encoding="utf-8")
+        path.write_text(SMALL.format(at="2,4", more="", end=2.2e-4, rest=""), encoding="utf-8")
         histories.append(run_deck(implam, path, [*launcher, str(ranks)]))
         require_same(histories[-1], histories[0], f"{ranks} ranks")
     require_same(go_on(implam, copy_run(folder / "1", folder / "again")), histories[0], "restart")
@@ -256,11 +256,11 @@ def try_ranks(implam, folder, launcher):
 def try_second(implam, folder):
     """Strike beside the first impact, on other mesh lines: areas are kept until the contact begins, and grow."""
     ends = []
-    for name, at, more, settle in (("first", "2,4", "", "settle=1e-4"),
+    for name, at, more, rest in (("first", "2,4", "", "settle=1e-4"),
                                    ("second", "-10,6", "&initial_state from='first_restart.h5' /", "settle=4e-4")):
         path = folder / f"{name}.nml"
         folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(SMALL.format(at=at, more=more, end=8e-4, settle=settle).replace(
+        path.write_text(SMALL.format(at=at, more=more, end=8e-4, rest=rest).replace(
             "&case", f"&case name='{name}'"), encoding="utf-8")
         run([implam, path.name], folder=folder)
         rows = read_history(folder / f"{name}_history.csv")

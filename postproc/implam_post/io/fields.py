@@ -332,7 +332,8 @@ def _mesh(group: h5py.Group) -> Mesh:
     corners = _finite(points[:, :2][connectivity[:, :4]], "coordinates")
     first, last = (_finite(group[f"cells/{name}"][()].ravel(), name, len(corners)) for name in ("first_ply",
                                                                                                  "last_ply"))
-    if first.min() < 1 or np.any(last < first):
+    # The layer of a doubler that may come off lies below the laminate and has none of its plies.
+    if first.min() < 1 or np.any(last < first - 1):
         raise _MemberError("first_ply and last_ply are not numbers of plies")
     starter = group["cells/starter_above"][()].ravel() if "starter_above" in group["cells"] else np.zeros(len(first))
     return Mesh(corners, first, last, _finite(starter, "starter_above", len(first)) > 0)
