@@ -37,7 +37,7 @@ class Roof(NamedTuple):
 
 
 ROOFS = {"thick": Roof("roof.nml", 12.7e-3, 8, 25e-3, False, 0.5, 0.01, 0.04),
-         "thin": Roof("thin_roof.nml", 6.35e-3, 16, 18e-3, True, 0.15, 0.004, 0.015)}
+         "thin": Roof("thin_roof.nml", 6.35e-3, 16, 18e-3, True, 0.15, 0.004, 0.01)}
 # Relative difference of the displacements at which the path of the thin roof turns back. Measured: .4 %.
 TURN_ERROR = 0.006
 NO_CONVERGENCE_OF_CALCULIX = 201
