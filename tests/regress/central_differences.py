@@ -43,7 +43,7 @@ from solver_runs import checkpoint_of, history_of, read_history, require, run_de
 
 EXPLICIT = "time%integrator='central_difference'"
 # Failing plies and an interface, adaptive layers, turned halves on a unilateral frame, plies that soften and fail in
-# the fibres, with strengths by their stressed volume and by the strain rate, a curved plate, prescribed and loaded
+# the fibres, with strengths by their stressed volume and by the strain rate, curved plates, prescribed and loaded
 # lines, residual stresses that deflect the plate before the impact, and interfaces that grow by their energy release
 # rate on long cells.
 MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
@@ -59,6 +59,10 @@ MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
                                                      "mesh%cell=4e-3"]),
           "curved": ("../small/breaking_rounds.nml", [EXPLICIT, "plate%curvature_radius=0.2,0.15",
                                                       "plate%in_plane='tangential'", "time%end=150e-6"]),
+          # A curved skin that delaminates, on cells of 4 mm.
+          "curved_skin": ("../curved_skin.nml", ["mesh%elements=14, 12", "mesh%core=48e-3, 32e-3", "mesh%cell=4e-3",
+                                                 "delamination%zone=48e-3, 32e-3", "impactor%energy=30",
+                                                 "time%end=450e-6"]),
           "lines": ("three_point.nml", ["time%end=1e-4", EXPLICIT]),
           "cooled": ("../small/cohesive.nml", [EXPLICIT, "time%end=20e-6", "plate%edges='simple'",
                                                "plate%symmetry='point'", "laminate%angles=0, 45, 90",
@@ -127,7 +131,7 @@ def check_signal(implam, folder, _):
 def check_kill(implam, folder, _):
     """Killed at random moments until the end is reached, while plies fail and layers are added."""
     moments = random.Random(1)
-    for model, every in (("breaking", 5e-6), ("layers", 8e-6)):
+    for model, every in (("breaking", 5e-6), ("layers", 8e-6), ("curved_skin", 20e-6)):
         settings = [f"output%checkpoint_every={every!r}"]
         reference = run_deck(implam, deck_of(folder / model / "uninterrupted", model, *settings))
         deck = deck_of(folder / model / "killed", model, *settings)

@@ -66,9 +66,10 @@ STARTERS = [
 
 
 # A curved panel with a doubler, a ply drop and stringers, webs of shells in CalculiX and CBAR in MYSTRAN. Measured with
-# CalculiX: .74 %, by terms of the squared slope, which shallow shells neglect, and the bending of the webs.
+# CalculiX: .74 %, MYSTRAN: 1.09 %, by terms of the squared slope, which shallow shells neglect, and the bending of the
+# webs. Flat .46 % with MYSTRAN.
 STIFFENED = "stiffened.nml"
-STIFFENED_ERROR = 0.012
+STIFFENED_ERRORS = {"calculix": 0.012, "mystran": 0.015}
 # Relative difference of deflections and energy of the deck that is exported and read again. Measured: 1e-12.
 SAME = 1e-9
 
@@ -147,7 +148,7 @@ def check(program, implam, folder):
     solve, with_middles = (calculix, False) if program == "calculix" else (mystran, True)
     softest = {}
     panels = PANELS | (BY_CALCULIX if program == "calculix" else {})
-    panels |= {"stiffened": ([], STIFFENED_ERROR, STIFFENED_ERROR)}
+    panels |= {"stiffened": ([], *2 * [STIFFENED_ERRORS[program]])}
     for name, (settings, struck, back) in panels.items():
         here = folder / name
         history = run_deck(implam, write_deck(here, STIFFENED if name == "stiffened" else "exchange.nml", settings))

@@ -22,8 +22,9 @@ INCREMENT = 0.04
 
 
 class Roof(NamedTuple):
-    """A roof: deck, thickness, elements of CalculiX along a side, displacement of the centre, whether the path turns back before it; the force after the
-    limit load, over it, that must be reached; tolerances of the limit load, of forces over it, and of displacements.
+    """A roof: deck, thickness, elements of CalculiX along a side, displacement of the centre, whether the path turns back
+    before it; the force after the limit load, over it, that must be reached; tolerances of the limit load, and of forces
+    over it or of displacements.
     """
 
     deck: str
@@ -126,7 +127,8 @@ def main(trial, implam, folder):
     other = calculix(roof, folder)
     limits = limit_of(*own), limit_of(*other)
     difference = difference_of(roof, own, other, limits[1])
-    print(f"limit loads {limits[0]:.1f} and {limits[1]:.1f} N, {'displacements' if roof.turns_back else 'forces'} within "
+    what = "displacements" if roof.turns_back else "forces"
+    print(f"limit loads {limits[0]:.1f} and {limits[1]:.1f} N, {what} within "
           f"{100 * difference:.2f} %, followed to {1e3 * own[0][-1]:.2f} and {1e3 * other[0][-1]:.2f} mm")
     require(own[0][-1] > 0.9 * roof.travel, "The roof is not pressed through its limit load.")
     require(min(other[1][other[0] > roof.travel / 2]) < roof.left * limits[1], "CalculiX' roof does not snap through.")

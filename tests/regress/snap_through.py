@@ -1,11 +1,11 @@
 """Ritz's method: a clamped, curved panel of unsymmetric plies under pressure through its snap.
 Usage: snap_through.py IMPLAM FOLDER     (ends with 77 where numpy is not installed)
 
-The shallow-shell equations of Marguerre with the shear deformation of first order, for displacements and rotations that
-are products of Legendre polynomials and vanish at the edges. The path is followed by the mean deflection, through the
-limit pressure. Load steps of Implam jump over the snap: the last pressure before it and the first one behind it enclose
-the limit, and the strain energy that the snap releases is algorithmic dissipation. Measured: the limit lies between these
-pressures, deflections within .07 % before the snap and .25 % behind it, the energy within .3 %."""
+The shallow-shell equations of Marguerre with the shear deformation of first order, for displacements and rotations
+that are products of Legendre polynomials and vanish at the edges. The path is followed by the mean deflection, through
+the limit pressure. Load steps of Implam jump over the snap: the last pressure before it and the first one behind it
+enclose the limit, and the strain energy that the snap releases is algorithmic dissipation. Measured: the limit lies
+between these pressures, deflections within .07 % before the snap and .25 % behind it, the energy within .3 %."""
 
 import importlib.util
 import shutil
@@ -28,8 +28,8 @@ POLYNOMIALS, POINTS = 9, 16
 # Mean deflections at which the path is computed.
 MEANS = np.concatenate([np.linspace(0.04, 0.4, 13), np.linspace(0.45, 1.1, 14)])
 LOW = 0.02
-# Relative differences: of the limit pressure beyond the load steps that enclose it, of the deflections at the low and the
-# full pressure, of the energy that the snap releases.
+# Relative differences: of the limit pressure beyond the load steps that enclose it, of the deflections at the low and
+# the full pressure, of the energy that the snap releases.
 LIMIT_ERROR, DEFLECTION_ERROR, ENERGY_ERROR = 0.002, 0.004, 0.01
 
 
@@ -62,8 +62,9 @@ class Panel:
         slope = np.array([legendre.legval(x, legendre.legder(row)) for row in unit])
         value, slope = (1 - x**2) * value, (1 - x**2) * slope - 2 * x * value
         self.weights = np.outer(weights, weights).ravel() * SIDE**2 / 4
-        self.n, self.x, self.y = (np.einsum("ip,jq->ijpq", one, other).reshape(count**2, -1) * factor for one, other, factor
-                                  in ((value, value, 1), (slope, value, 2 / SIDE), (value, slope, 2 / SIDE)))
+        self.n, self.x, self.y = (
+            np.einsum("ip,jq->ijpq", one, other).reshape(count**2, -1) * factor
+            for one, other, factor in ((value, value, 1), (slope, value, 2 / SIDE), (value, slope, 2 / SIDE)))
         self.w = slice(2 * count**2, 3 * count**2)
         self.matrix = stiffness()
         self.strains = self._strains(count**2, np.repeat(x, points) * SIDE / 2, np.tile(x, points) * SIDE / 2)
@@ -92,7 +93,8 @@ class Panel:
         varied[:3, self.w] += [self.x * wx, self.y * wy, self.y * wx + self.x * wy]
         result = self.matrix @ strain * self.weights
         rows = varied.transpose(1, 0, 2).reshape(len(state), -1)
-        tangent = (np.tensordot(self.matrix, varied, 1) * self.weights).transpose(1, 0, 2).reshape(len(state), -1) @ rows.T
+        stiff = (np.tensordot(self.matrix, varied, 1) * self.weights).transpose(1, 0, 2)
+        tangent = stiff.reshape(len(state), -1) @ rows.T
         for one, other, force in ((self.x, self.x, 0), (self.y, self.y, 1), (self.x, self.y, 2), (self.y, self.x, 2)):
             tangent[self.w, self.w] += one * result[force] @ other.T
         return rows @ result.ravel(), tangent

@@ -42,7 +42,7 @@ def nastran_deck(panel: Panel, source: str, with_z0: bool = False) -> Iterator[s
         yield from _material(numbers[state], state, material)
     for number, stringer in enumerate(panel.stringers, 1):
         yield from _stringer(panel, mesh, stringer, len(sections) + number, len(numbers) + number)
-    yield from _supports(mesh)
+    yield from _supports(panel, mesh)
     if panel.pressure is not None:
         yield from card("PLOAD2", _LOAD, panel.pressure, 1, "THRU", 4 * mesh.struck)
     if panel.expands:
@@ -116,11 +116,21 @@ def _stringer(panel: Panel, mesh: ShellMesh, stringer: Stringer, number: int, ma
         yield from card("CBAR", element, number, start.grid, end.grid, *direction, None, None, None, *offsets)
 
 
-def _supports(mesh: ShellMesh) -> Iterator[str]:
-    """Return the supports; they include the rotation about the normal, which has no stiffness in a flat panel."""
+def _supports(panel: Panel, mesh: ShellMesh) -> Iterator[str]:
+    """Return the supports; they include the rotation about the normal, which has no stiffness in a flat panel.
+
+    At stringers it is free: their sections turn with the line of the centroid as the panel twists.
+    """
     for components, grids in mesh.supports.items():
         yield from card("SPC1", _SUPPORTS, int(components), *grids)
-    yield from card("SPC1", _SUPPORTS, 6, 1, "THRU", len(mesh.coordinates))
+    turning = {point.grid for stringer in panel.stringers for side in line_of(panel, mesh, stringer) for point in side}
+    start = 1
+    for grid in (*sorted(turning), len(mesh.coordinates) + 1):
+        if grid - start > 1:
+            yield from card("SPC1", _SUPPORTS, 6, start, "THRU", grid - 1)
+        elif grid > start:
+            yield from card("SPC1", _SUPPORTS, 6, start)
+        start = grid + 1
 
 
 def card(name: str, *fields: Field) -> Iterator[str]:

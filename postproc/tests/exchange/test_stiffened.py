@@ -361,6 +361,8 @@ class RoundTripTest(ExportTest):
             self.assertAlmostEqual(bar.ga_ref.xyz[1], 37, 9)
             slope = bar.wa[1] / bar.wa[2]
             self.assertAlmostEqual(slope, -37 / 800, 5)
+        held = {grid for each in model.spcs[1] if each.components == "6" for grid in each.node_ids}
+        self.assertEqual(set(model.nodes) - held, {grid for bar in bars for grid in bar.node_ids})
         self.assertAlmostEqual(sum(bar.Mass() for bar in blade) / (240 * 40 * 1.6e-9), 1, 6)
 
     def test_abaqus(self) -> None:
