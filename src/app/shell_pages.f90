@@ -45,7 +45,7 @@ contains
       call append(lines, '.SS &'//vocabulary%groups(i)%name)
       call append(lines, escaped(vocabulary%groups(i)%meaning))
       do j = 1, size(vocabulary%keys)
-        if (vocabulary%keys(j)%group == vocabulary%groups(i)%name) call append_key(vocabulary%keys(j))
+        if (vocabulary%keys(j)%group == vocabulary%groups(i)%name) call append_key(vocabulary%keys(j), lines)
       end do
     end do
     call append(lines, '.SH FILES')
@@ -70,23 +70,25 @@ contains
         call append(lines, escaped(trim(rows(2, row))))
       end do
     end subroutine append_terms
-
-    !> A key.
-    subroutine append_key(key)
-      type(key_entry_t), intent(in) :: key
-      character(len=:), allocatable :: unit, conditions
-
-      unit = ''
-      if (key%unit /= '-') unit = '; unit: '//key%unit
-      conditions = ''
-      if (key%used_with /= '') conditions = '; '//conditions_in_words(key%used_with, '')
-      if (key%usual /= '') conditions = conditions//'; '//range_in_words(key%usual)
-      call append(lines, '.TP')
-      call append(lines, '.B '//key%name)
-      call append(lines, escaped(key%meaning//' ('//allowed_sentence(key)//unit//'; default: '//key%default// &
-                                 conditions//')'))
-    end subroutine append_key
   end subroutine manual_page
+
+  !> A key in the manual page.
+  subroutine append_key(key, lines)
+    type(key_entry_t), intent(in) :: key
+    !> The page
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    character(len=:), allocatable :: unit, conditions
+
+    unit = ''
+    if (key%unit /= '-') unit = '; unit: '//key%unit
+    conditions = ''
+    if (key%used_with /= '') conditions = '; '//conditions_in_words(key%used_with, '')
+    if (key%usual /= '') conditions = conditions//'; '//range_in_words(key%usual)
+    call append(lines, '.TP')
+    call append(lines, '.B '//key%name)
+    call append(lines, escaped(key%meaning//' ('//allowed_sentence(key)//unit//'; default: '//key%default// &
+                               conditions//')'))
+  end subroutine append_key
 
   !> A line with dashes, backslashes and initial dots escaped.
   pure function escaped(line) result(safe)

@@ -65,7 +65,7 @@ contains
     associate (o => deck%expected, scales => deck%expected%scales)
       call put(trim(merge('thickness of the laminate    ', 'thickness at the struck point', deck%zones%is_empty())), &
                scales%thickness, length)
-      call put_sub_plies(stacked_plies(deck%laminate, deck%materials))
+      call put_sub_plies(lines, deck, stacked_plies(deck%laminate, deck%materials))
       call put('mass of the plate', scales%plate_mass, mass)
       call put('mass of the stringers', mass_of(deck%stringers), mass)
       call put('period of the first bending mode', scales%first_period, time)
@@ -101,27 +101,45 @@ contains
       type(dimension_t), intent(in) :: dimension
       !> True: the value is a lower bound
       logical, intent(in), optional :: is_bound
-      character(len=:), allocatable :: number
 
-      if (.not. value > 0) return
-      number = read_as(deck, value, dimension)
-      if (present(is_bound)) then
-        if (is_bound) number = '> '//number
-      end if
-      call append(lines, table_line(name, number, unit_of(deck, dimension)))
+      call put_scale(lines, deck, name, value, dimension, is_bound)
     end subroutine put
-
-    !> Adds the number of sub-plies where moduli in tension and compression differ, and the error that is left.
-    subroutine put_sub_plies(plies)
-      !> The plies
-      type(ply_t), intent(in) :: plies(:)
-
-      if (.not. any(is_bimodular(plies%elasticity))) return
-      call put('sub-plies of the ply that has most (E1c)', real(maxval(plies%sub_plies), wp), bare)
-      call put('error of the bending stiffness by their thickness', &
-               100*maxval(bending_error_of(plies, deck%expected%scales%thickness)), percent)
-    end subroutine put_sub_plies
   end function scale_lines
+
+  !> Adds a line for a known, non-zero value.
+  subroutine put_scale(lines, deck, name, value, dimension, is_bound)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    type(deck_t), intent(in) :: deck
+    !> Name of the quantity
+    character(len=*), intent(in) :: name
+    !> Its size, in the deck's units
+    real(wp), intent(in) :: value
+    !> Its dimension
+    type(dimension_t), intent(in) :: dimension
+    !> True: the value is a lower bound
+    logical, intent(in), optional :: is_bound
+    character(len=:), allocatable :: number
+
+    if (.not. value > 0) return
+    number = read_as(deck, value, dimension)
+    if (present(is_bound)) then
+      if (is_bound) number = '> '//number
+    end if
+    call append(lines, table_line(name, number, unit_of(deck, dimension)))
+  end subroutine put_scale
+
+  !> Adds the number of sub-plies where moduli in tension and compression differ, and the error that is left.
+  subroutine put_sub_plies(lines, deck, plies)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    type(deck_t), intent(in) :: deck
+    !> The plies
+    type(ply_t), intent(in) :: plies(:)
+
+    if (.not. any(is_bimodular(plies%elasticity))) return
+    call put_scale(lines, deck, 'sub-plies of the ply that has most (E1c)', real(maxval(plies%sub_plies), wp), bare)
+    call put_scale(lines, deck, 'error of the bending stiffness by their thickness', &
+             100*maxval(bending_error_of(plies, deck%expected%scales%thickness)), percent)
+  end subroutine put_sub_plies
 
   !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a
   !> line.

@@ -144,24 +144,9 @@ contains
       place = i
       return
     end do
-    if (allocated(deck%zones%doublers)) then
-      do i = 1, size(deck%zones%doublers)
-        if (.not. any(is_side(deck%zones%doublers(i)%edges(row%direction)))) cycle
-        group = doubler_group
-        key = key_zone_size
-        place = i
-        return
-      end do
-    end if
-    if (allocated(deck%zones%drops)) then
-      do i = 1, size(deck%zones%drops)
-        if (.not. any(is_side(deck%zones%drops(i)%edges(row%direction)))) cycle
-        group = ply_drop_group
-        key = key_zone_size
-        place = i
-        return
-      end do
-    end if
+    call find_zone(deck, row, group, place)
+    if (group /= '') key = key_zone_size
+    if (group /= '') return
     if (row%direction == 1) then
       if (.not. any([(has_side(deck%mesh%x_lines(i)), i=1, size(deck%mesh%x_lines))])) return
     else
@@ -180,6 +165,33 @@ contains
       has_side = any(abs(abs(row%sides) - abs(distance)) <= rounding*deck%plate%length(row%direction))
     end function has_side
 
+  end subroutine find_line
+
+  !> Group of the zone with an edge at a side of a row, within the plate.
+  pure subroutine find_zone(deck, row, group, place)
+    type(deck_t), intent(in) :: deck
+    type(row_t), intent(in) :: row
+    !> The group; empty: there is none
+    character(len=:), allocatable, intent(out) :: group
+    !> Index among the groups of this name
+    integer, intent(out) :: place
+    integer :: i
+
+    group = ''
+    place = 0
+    if (allocated(deck%zones%doublers)) &
+      place = findloc([(any(is_side(deck%zones%doublers(i)%edges(row%direction))), &
+                        i=1, size(deck%zones%doublers))], .true., dim=1)
+    if (place > 0) group = doubler_group
+    if (group == '' .and. allocated(deck%zones%drops)) then
+      place = findloc([(any(is_side(deck%zones%drops(i)%edges(row%direction))), i=1, size(deck%zones%drops))], &
+                      .true., dim=1)
+      if (place > 0) group = ply_drop_group
+    end if
+    place = max(place, 1)
+
+  contains
+
     !> True if the row has a side at this coordinate within the plate.
     elemental logical function is_side(at)
       !> The coordinate
@@ -189,5 +201,5 @@ contains
         is_side = any(abs(row%sides - at) <= rounding*length) .and. abs(at) < length/2*(1 - rounding)
       end associate
     end function is_side
-  end subroutine find_line
+  end subroutine find_zone
 end module shortest_cells

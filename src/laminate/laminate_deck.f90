@@ -24,6 +24,7 @@ module laminate_deck
                                          key_bending_error = 'bending_error'
   !> Names used here more than once.
   character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking'
+  character(len=*), parameter :: either = 'give stacking and ply_thickness, or angles and thicknesses.'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: laminate_group_row = &
     'laminate | required | The plies, from the struck face to the back.'
@@ -123,7 +124,6 @@ contains
     type(problems_t), intent(inout) :: problems
     character(len=*), parameter :: listed(2) = [character(len=11) :: key_angles, key_thicknesses], &
                                    noted(2) = [character(len=13) :: key_stacking, key_ply_thickness]
-    character(len=*), parameter :: either = 'give stacking and ply_thickness, or angles and thicknesses.'
     character(len=:), allocatable :: fault
     real(wp), allocatable :: angles(:)
     integer :: i
@@ -134,7 +134,7 @@ contains
         if (settings%is_given(laminate_group, listed(i))) call report(settings, problems, laminate_group, &
           trim(listed(i)), trim(noted(i))//' is another form of this key; '//either)
       end do
-      call require(noted)
+      call require(settings, noted, problems)
       if (.not. are_clear(settings, problems, laminate_group, key_stacking)) return
       if (any([(settings%is_given(laminate_group, listed(i)), i=1, 2)])) return
       call read_sequence(settings%text_of(laminate_group, key_stacking), angles, fault)
@@ -147,7 +147,7 @@ contains
       call settings%derive_numbers(laminate_group, key_thicknesses, &
                                    settings%reals_of(laminate_group, key_ply_thickness))
     else
-      call require(listed)
+      call require(settings, listed, problems)
       if (are_clear(settings, problems, laminate_group, key_angles) .and. &
           settings%is_given(laminate_group, key_angles)) &
         call remark_large(key_angles, settings%reals_of(laminate_group, key_angles), '')
@@ -170,19 +170,21 @@ contains
         call remark(settings, problems, laminate_group, key, 'the angle '//to_text(values(largest))// &
                     ' is beyond 180 degrees'//hint//'.')
     end subroutine remark_large
-
-    !> Reports those of some keys that are missing.
-    subroutine require(keys)
-      !> Their names
-      character(len=*), intent(in) :: keys(:)
-      integer :: j
-
-      do j = 1, size(keys)
-        if (settings%is_given(laminate_group, keys(j)) .or. problems%concern(laminate_group, trim(keys(j)))) cycle
-        call report(settings, problems, laminate_group, trim(keys(j)), 'is missing; '//either)
-      end do
-    end subroutine require
   end subroutine resolve_stacking
+
+  !> Reports those of some keys that are missing.
+  subroutine require(settings, keys, problems)
+    type(settings_t), intent(in) :: settings
+    !> Their names
+    character(len=*), intent(in) :: keys(:)
+    type(problems_t), intent(inout) :: problems
+    integer :: i
+
+    do i = 1, size(keys)
+      if (settings%is_given(laminate_group, keys(i)) .or. problems%concern(laminate_group, trim(keys(i)))) cycle
+      call report(settings, problems, laminate_group, trim(keys(i)), 'is missing; '//either)
+    end do
+  end subroutine require
 
   !> Checks that a list has one value, or one per ply.
   subroutine check_number(settings, key, number, plies, problems)

@@ -7,7 +7,7 @@ module stringer_deck
   use deck_vocabulary, only: group_row_length, key_row_length
   use kinds, only: wp
   use roundings, only: rounding
-  use stringer_sections, only: section_of_sizes, section_of_stiffness
+  use stringer_sections, only: section_of_sizes, section_of_stiffness, stringer_section_t
   use stringers, only: face_back, face_front, stringer_t
   use text, only: line_t, lower_case, to_text, words_of
   implicit none
@@ -87,7 +87,7 @@ contains
     real(wp), intent(in) :: length(2)
     !> Receives them
     type(stringer_t), allocatable, intent(out) :: all(:)
-    real(wp) :: shear_modulus
+    real(wp) :: modulus
     integer :: place, i
 
     allocate (all(settings%groups_named(group)))
@@ -106,45 +106,55 @@ contains
             call s%derive(group, trim(key_ends(i)), to_text(stringer%ends(i)), .false., place)
           end if
         end do
-        shear_modulus = value_of('E')/isotropic_ratio
-        if (s%is_given(group, 'G', place)) shear_modulus = value_of('G')
-        select case (section_of(s, place))
-        case (given)
-          stringer%section = section_of_stiffness(value_of('EA'), value_of('EI'), value_of('EI_lateral'), &
-                                                  value_of('GJ'), ratio(shear_modulus, value_of('E')), &
-                                                  value_of('mass_per_length'), value_of('eccentricity'))
-        case (with_cap)
-          stringer%section = section_of_sizes([value_of('height'), value_of('thickness')], &
-                                              [value_of('cap_width'), value_of('cap_thickness')], value_of('E'), &
-                                              shear_modulus, value_of('density'))
-        case default
-          stringer%section = section_of_sizes([value_of('height'), value_of('thickness')], [0.0_wp, 0.0_wp], &
-                                              value_of('E'), shear_modulus, value_of('density'))
-        end select
-        if (value_of('E') > 0) stringer%failure_strains = [value_of('XT'), value_of('XC')]/value_of('E')
+        stringer%section = section_of_group(s, place)
+        modulus = value_of(s, 'E', place)
+        if (modulus > 0) stringer%failure_strains = [value_of(s, 'XT', place), value_of(s, 'XC', place)]/modulus
       end associate
     end do
+  end subroutine fill_stringers
+
+  !> Section of a stringer, by its sizes or its stiffness.
+  type(stringer_section_t) function section_of_group(settings, place) result(section)
+    type(settings_t), intent(in) :: settings
+    !> Index of its group
+    integer, intent(in) :: place
+    real(wp) :: shear_modulus, ratio, cap(2)
+
+    shear_modulus = of('E')/isotropic_ratio
+    if (settings%is_given(group, 'G', place)) shear_modulus = of('G')
+    if (section_of(settings, place) == given) then
+      ratio = 1/isotropic_ratio
+      if (of('E') > 0) ratio = shear_modulus/of('E')
+      section = section_of_stiffness(of('EA'), of('EI'), of('EI_lateral'), of('GJ'), ratio, of('mass_per_length'), &
+                                     of('eccentricity'))
+    else
+      cap = 0
+      if (section_of(settings, place) == with_cap) cap = [of('cap_width'), of('cap_thickness')]
+      section = section_of_sizes([of('height'), of('thickness')], cap, of('E'), shear_modulus, of('density'))
+    end if
 
   contains
 
-    !> Value of a key; 0: it is not given.
-    real(wp) function value_of(key) result(value)
+    !> Value of one of its keys.
+    real(wp) function of(key)
       !> Its name
       character(len=*), intent(in) :: key
 
-      value = 0
-      if (settings%is_known(group, key, place)) value = settings%real_of(group, key, place)
-    end function value_of
+      of = value_of(settings, key, place)
+    end function of
+  end function section_of_group
 
-    !> G/E, also where they are not given.
-    pure real(wp) function ratio(g, e)
-      !> The moduli; 0: not given
-      real(wp), intent(in) :: g, e
+  !> Value of a key of a stringer; 0: it is not given.
+  real(wp) function value_of(settings, key, place) result(value)
+    type(settings_t), intent(in) :: settings
+    !> Its name
+    character(len=*), intent(in) :: key
+    !> Index of its group
+    integer, intent(in) :: place
 
-      ratio = 1/isotropic_ratio
-      if (e > 0) ratio = g/e
-    end function ratio
-  end subroutine fill_stringers
+    value = 0
+    if (settings%is_known(group, key, place)) value = settings%real_of(group, key, place)
+  end function value_of
 
   !> Kind of a section.
   integer function section_of(settings, place) result(section)

@@ -113,13 +113,13 @@ contains
       call add('below_nose', now%depth_below_impactor(model) > limit_of('below_nose')*thickness)
     call add('steps', stepper%exceeds_tolerance())
     call add('mapping', record%mapping%raises_strain())
-    if (is_new('slopes')) call add('slopes', is_steep(model, now))
-    if (is_new('stringer') .and. have_strengths(deck)) &
+    if (is_new(record, 'slopes')) call add('slopes', is_steep(model, now))
+    if (is_new(record, 'stringer') .and. have_strengths(deck)) &
       call add('stringer', weakest_stringer(model, now%motion%displacement) > 0)
-    if (is_new('membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
+    if (is_new(record, 'membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
       call add('membrane', has_fibre_failure(deck, model, now))
     ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
-    if (is_new('perforation') .and. deck%has_ply_damage .and. now%force > 0 .and. now%impactor%velocity >= 0) &
+    if (is_new(record, 'perforation') .and. deck%has_ply_damage .and. now%force > 0 .and. now%impactor%velocity >= 0) &
       call add('perforation', is_perforated(model, now))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
@@ -134,14 +134,6 @@ contains
 
   contains
 
-    !> True: the warning, which concerns no zone, has not been given.
-    pure logical function is_new(name)
-      !> Its name
-      character(len=*), intent(in) :: name
-
-      is_new = .not. record%has_warned(kind_of(name), 0)
-    end function is_new
-
     !> Adds a warning at its first occurrence.
     subroutine add(name, occurs, at_zone)
       !> Its name
@@ -154,6 +146,15 @@ contains
       call add_warning(name, occurs, deck, stepper, record, warnings, at_zone)
     end subroutine add
   end subroutine find_warnings
+
+  !> True: the warning, which concerns no zone, has not been given.
+  pure logical function is_new(record, name)
+    type(run_record_t), intent(in) :: record
+    !> Its name
+    character(len=*), intent(in) :: name
+
+    is_new = .not. record%has_warned(kind_of(name), 0)
+  end function is_new
 
   !> Adds warnings of energies.
   subroutine add_energy_warnings(exceeded, deck, stepper, record, warnings)

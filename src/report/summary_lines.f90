@@ -60,17 +60,34 @@ contains
     if (struck .and. .not. results%value('in_contact') > 0) call add_dent(lines, deck, results)
     if (struck) call add_impact_energy(lines, results)
     call add_energies(lines, results)
-    if (results%has('kinetic_share')) &
-      call add_figure(lines, label_of_result('kinetic_share'), 'kinetic energy at most '// &
-                      rounded_text(100*results%value('kinetic_share'), 2)//' % of the work')
-    if (results%has('scaled_kinetic_share')) &
-      call add_figure(lines, label_of_result('scaled_kinetic_share'), 'kinetic energy at most '// &
-                      rounded_text(100*results%value('scaled_kinetic_share'), 2)//' % of the total')
+    call add_share('kinetic_share', 'the work')
+    call add_share('scaled_kinetic_share', 'the total')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, results, record, figures, errors)
-    if (deck%has_ply_damage) call add_figure(lines, 'failed plies', counted_of('fibre_failures')//', '// &
-      counted_of('matrix_cracks')//', '//counted_of('matrix_crushings')//' (counted in each element)')
+    if (deck%has_ply_damage) call add_failed_plies(lines, results)
     if (len(unknown_because) > 0) call add_figure(lines, 'errors', unknown_because)
     call add_warnings(lines, deck, given)
+
+  contains
+
+    !> Adds a share of the kinetic energy, if there is one.
+    subroutine add_share(name, whole)
+      !> Name of the result, and what it is a share of
+      character(len=*), intent(in) :: name, whole
+
+      if (results%has(name)) &
+        call add_figure(lines, label_of_result(name), 'kinetic energy at most '// &
+                        rounded_text(100*results%value(name), 2)//' % of '//whole)
+    end subroutine add_share
+  end function lines_of_summary
+
+  !> Numbers of failed plies.
+  subroutine add_failed_plies(lines, results)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    !> Results of the run
+    type(results_t), intent(in) :: results
+
+    call add_figure(lines, 'failed plies', counted_of('fibre_failures')//', '//counted_of('matrix_cracks')//', '// &
+                    counted_of('matrix_crushings')//' (counted in each element)')
 
   contains
 
@@ -83,7 +100,7 @@ contains
 
       words = label_of_result(name)//' '//to_text(nint(results%value(name)))
     end function counted_of
-  end function lines_of_summary
+  end subroutine add_failed_plies
 
   !> Adds a line.
   subroutine add_figure(lines, label, figures)
@@ -245,42 +262,10 @@ contains
                       results%shown('delaminated_area_before')//' of all interfaces, '// &
                       results%shown('projected_area_before')//' projected')
     do zone = 1, size(figures%interfaces)
-      associate (figure => figures%interfaces(zone))
-        call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
-                  results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
-                  range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, energy_kind))
-        if (deck%delaminations(zone)%bonds_doublers()) &
-          call add_figure(lines, '', 'bond of '//names_of_doublers(deck%zones, deck%delaminations(zone)))
-        call add_event('onset', record%onset(:, zone))
-        call add_event('first growth', record%growth(:, zone))
-        if (deck%has_impactor) &
-          call add_figure(lines, '', 'threshold force (closed form) '// &
-                          results%with_unit(figures%threshold(zone), force_kind)// &
-                          ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
-                          of_starter())
-      end associate
+      call add_interface(lines, deck, results, record, figures, zone)
     end do
 
   contains
-
-    !> Time and force of an event, if it occurred.
-    subroutine add_event(name, event)
-      !> Its name
-      character(len=*), intent(in) :: name
-      !> Time, contact force, deflection; time 0: never, negative: before the run
-      real(wp), intent(in) :: event(3)
-
-      if (event(1) < 0) then
-        call add_figure(lines, '', name//' before this run')
-      else if (.not. event(1) > 0) then
-        call add_figure(lines, '', 'no '//name)
-      else if (deck%has_impactor) then
-        call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
-                        moment(deck, event(1)))
-      else
-        call add_figure(lines, '', name//' at '//moment(deck, event(1)))
-      end if
-    end subroutine add_event
 
     !> Estimated error of the area.
     pure function error_of_area() result(clause)
@@ -290,6 +275,36 @@ contains
       clause = ''
       if (errors%area >= 0) clause = ' (+-'//results%with_unit(errors%area, area_kind, 2)//')'
     end function error_of_area
+  end subroutine add_interfaces
+
+  !> Results of an interface.
+  subroutine add_interface(lines, deck, results, record, figures, zone)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    type(deck_t), intent(in) :: deck
+    !> Results of the run
+    type(results_t), intent(in) :: results
+    type(run_record_t), intent(in) :: record
+    !> Results of the state reached
+    type(run_figures_t), intent(in) :: figures
+    !> The interface
+    integer, intent(in) :: zone
+
+    associate (figure => figures%interfaces(zone))
+      call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
+                results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
+                range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, energy_kind))
+      if (deck%delaminations(zone)%bonds_doublers()) &
+        call add_figure(lines, '', 'bond of '//names_of_doublers(deck%zones, deck%delaminations(zone)))
+      call add_event(lines, deck, results, 'onset', record%onset(:, zone))
+      call add_event(lines, deck, results, 'first growth', record%growth(:, zone))
+      if (deck%has_impactor) &
+        call add_figure(lines, '', 'threshold force (closed form) '// &
+                        results%with_unit(figures%threshold(zone), force_kind)// &
+                        ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
+                        of_starter())
+    end associate
+
+  contains
 
     !> Least and greatest.
     pure function range_of(bounds) result(words)
@@ -310,7 +325,30 @@ contains
       if (results%has('threshold_force_at_starter')) &
         clause = ', '//results%shown('threshold_force_at_starter')//' with the starter under this patch'
     end function of_starter
-  end subroutine add_interfaces
+  end subroutine add_interface
+
+  !> Time and force of an event, if it occurred.
+  subroutine add_event(lines, deck, results, name, event)
+    type(line_t), allocatable, intent(inout) :: lines(:)
+    type(deck_t), intent(in) :: deck
+    !> Results of the run
+    type(results_t), intent(in) :: results
+    !> Its name
+    character(len=*), intent(in) :: name
+    !> Time, contact force, deflection; time 0: never, negative: before the run
+    real(wp), intent(in) :: event(3)
+
+    if (event(1) < 0) then
+      call add_figure(lines, '', name//' before this run')
+    else if (.not. event(1) > 0) then
+      call add_figure(lines, '', 'no '//name)
+    else if (deck%has_impactor) then
+      call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
+                      moment(deck, event(1)))
+    else
+      call add_figure(lines, '', name//' at '//moment(deck, event(1)))
+    end if
+  end subroutine add_event
 
   !> Warnings on the deck and those of the run.
   subroutine add_warnings(lines, deck, given)

@@ -60,7 +60,7 @@ contains
     !> False: there are no cells around the dent, or they lie on one line, so that the plane is not determined
     logical, intent(out) :: is_known
     type(exact_sum_t) :: sums(9)
-    real(wp) :: totals(9), place(2), centred(5), w, area
+    real(wp) :: totals(9), terms(9), place(2), centred(5), area
     integer :: element, point, i
     logical :: is_free(2)
 
@@ -74,9 +74,9 @@ contains
               norm2(place) > farthest*model%setup%impactor%radius) cycle
           area = mesh%cell_area(mesh%place_of(mesh%element_cell(global)))
         end associate
-        w = displacement(3, model%distribution%local(point))
+        terms = area*terms_of(place(1), place(2), displacement(3, model%distribution%local(point)))
         do i = 1, size(sums)
-          call sums(i)%add(area*term(i))
+          call sums(i)%add(terms(i))
         end do
       end do
       totals = totals_of(model%communicator, sums)
@@ -91,37 +91,16 @@ contains
       call fit_slopes(centred, totals(4) + totals(6), is_free, plane(2:3), is_known)
       plane(1) = totals(7) - dot_product(plane(2:3), totals(2:3))
     end associate
-
-  contains
-
-    !> One term of the sums: 1, x, y, xx, xy, yy, w, xw, yw.
-    pure real(wp) function term(number)
-      !> Which
-      integer, intent(in) :: number
-
-      associate (x => place(1), y => place(2))
-        term = merge(1.0_wp, 0.0_wp, number == 1)
-        select case (number)
-        case (2)
-          term = x
-        case (3)
-          term = y
-        case (4)
-          term = x*x
-        case (5)
-          term = x*y
-        case (6)
-          term = y*y
-        case (7)
-          term = w
-        case (8)
-          term = x*w
-        case (9)
-          term = y*w
-        end select
-      end associate
-    end function term
   end subroutine find_plane
+
+  !> Terms of the sums of the plane: 1, x, y, xx, xy, yy, w, xw, yw.
+  pure function terms_of(x, y, w) result(terms)
+    !> Place, and height
+    real(wp), intent(in) :: x, y, w
+    real(wp) :: terms(9)
+
+    terms = [1.0_wp, x, y, x*x, x*y, y*y, w, x*w, y*w]
+  end function terms_of
 
   !> Slopes of the plane.
   pure subroutine fit_slopes(moments, square, is_free, slopes, is_known)

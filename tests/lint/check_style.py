@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 MAX_COLUMNS = 120
-MAX_PROCEDURE = 100
-# Lines and branches of a procedure in the folders of the implicit solution, where control flow is hard to follow.
+MAX_PROCEDURE = 60
+# Branches of a procedure in the folders of the implicit solution, where control flow is hard to follow.
 CORE = {"newton", "linalg", "statics", "dynamics", "stepping"}
-MAX_CORE_PROCEDURE, MAX_BRANCHES = 60, 15
+MAX_BRANCHES = 15
 BRANCH = re.compile(r"\bif\s*\(|\.and\.|\.or\.|^case\s*\(|^(?:\w+\s*:\s*)?do\b(?!\s*=)")
 MAX_FILE = 400
 MAX_FILE_OF_TESTS = 600
@@ -329,9 +329,8 @@ class Checker:
             if "private" not in scope.statements:
                 self.report(scope.line, f"module {scope.name} is not private")
         core = self.path.parent.name in CORE and self.path.parent.parent.name == "src"
-        longest = MAX_CORE_PROCEDURE if core else MAX_PROCEDURE
-        if scope.kind == "procedure" and statement.line - scope.line + 1 > longest:
-            self.report(scope.line, f"{scope.name} has more than {longest} lines")
+        if scope.kind == "procedure" and statement.line - scope.line + 1 > MAX_PROCEDURE:
+            self.report(scope.line, f"{scope.name} has more than {MAX_PROCEDURE} lines")
         if scope.kind == "procedure" and core and scope.branches > MAX_BRANCHES:
             self.report(scope.line, f"{scope.name} has {scope.branches} branches, more than {MAX_BRANCHES}")
         doc = doc_above(self.lines, scope.line)
