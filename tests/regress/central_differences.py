@@ -131,7 +131,7 @@ def check_signal(implam, folder, _):
 def check_kill(implam, folder, _):
     """Killed at random moments until the end is reached, while plies fail and layers are added."""
     moments = random.Random(1)
-    for model, every in (("breaking", 5e-6), ("layers", 8e-6), ("curved_skin", 20e-6)):
+    for model, every in (("breaking", 5e-6), ("layers", 8e-6), ("curved_skin", 85e-6)):
         settings = [f"output%checkpoint_every={every!r}"]
         reference = run_deck(implam, deck_of(folder / model / "uninterrupted", model, *settings))
         deck = deck_of(folder / model / "killed", model, *settings)

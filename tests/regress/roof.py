@@ -22,9 +22,9 @@ INCREMENT = 0.04
 
 
 class Roof(NamedTuple):
-    """A roof: deck, thickness, elements of CalculiX along a side, displacement of the centre, whether the path turns back
-    before it; the force after the limit load, over it, that must be reached; tolerances of the limit load, and of forces
-    over it or of displacements.
+    """A roof: deck, thickness, elements of CalculiX along a side, displacement of the centre, whether the path turns
+    back before it; the force after the limit load, over it, that must be reached; tolerances of the limit load, and of
+    forces over it or of displacements.
     """
 
     deck: str
