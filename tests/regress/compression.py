@@ -288,7 +288,6 @@ def check_cut(implam, folder, launcher):
     friction = impact["energy_friction"] - (dissipated - kept)
     print(f"dissipated {dissipated:.4g} with heat of friction {dissipated - kept:.4g}, {friction:.2g} of it cut away")
     require(0 < dissipated - kept < impact["energy_friction"], "The ledger has heat of what is cut away.")
-    total = max(sum(rows[f"energy_{name}"][i] for name in ENERGIES) for i in range(len(rows["time"])))
     rest = max(i for i, time in enumerate(rows["time"]) if time <= REST_TIME)
     error = max(abs(rows["energy_error"][i + 1] - rows["energy_error"][i]) for i in (rest - 1, rest, rest + 1))
     print(f"energy error at the release {error:.1e} J, strain energy {rows['energy_strain'][rest]:.1e} J")
@@ -525,8 +524,8 @@ def main(trial, implam, folder, launcher):
     """Run one trial."""
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
               "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
-              "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped, "mapped_ranks": check_mapped,
-              "cut": check_cut, "cut_ranks": check_cut}
+              "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped,
+              "mapped_ranks": check_mapped, "cut": check_cut, "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 

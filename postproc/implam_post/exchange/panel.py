@@ -135,7 +135,7 @@ class Panel:
         for axis in (0, 1):
             step = np.zeros(2)
             step[axis] = 1e-4 * np.ptp((self.x, self.y)[axis])
-            ahead, behind = (self.initial_deflection(*place) for place in ((x, y) + step, (x, y) - step))
+            ahead, behind = (self.initial_deflection(x + sign * step[0], y + sign * step[1]) for sign in (1, -1))
             slopes.append((ahead - behind) / (2 * step[axis]))
         normal = np.array([-slopes[0], -slopes[1], 1.0])
         return np.asarray(normal / np.linalg.norm(normal))

@@ -115,7 +115,7 @@ def split(numbers: tuple[int, ...], ends: Sequence[int], plies: int) -> list[tup
     for number in numbers:
         if number <= plies:
             part = sum(end < number for end in ends)
-        elif parts[0] and parts[0][-1] <= plies or part > 0:
+        elif (parts[0] and parts[0][-1] <= plies) or part > 0:
             part = len(ends)
         parts[part].append(number)
     return [tuple(found) for found in parts]
