@@ -28,6 +28,8 @@ COARSE = {"t700_m21_cai": ["mesh%elements=20,30", "mesh%cell=5e-3", "mesh%patch=
           "t700_m21": ["mesh%elements=16,18", "mesh%cell=5e-3", "mesh%patch=5e-3"],
           "im7_8552": ["mesh%elements=10,12", "mesh%core=36e-3,36e-3", "mesh%cell=9e-3", "mesh%patch=9e-3",
                        "time%end=1e-3"],
+          "stiffened_panel": ["mesh%elements=20,32", "mesh%grading=1", "mesh%core=48e-3,48e-3", "mesh%cell=6e-3",
+                              "time%end=0.2e-3"],
           "crossply_1.25mm": ["mesh%elements=16,16", "mesh%patch=6.25e-3"]}
 STEPS = 3
 

@@ -75,8 +75,8 @@ module stiffened_decks
     '! core=66e-3, 300e-3  cell=3e-3  patch=6e-3 have such cells, and take some six times as long.', &
     panel, &
     '&initial_state from=''results/stiffened_restart.h5'' /   ! of the impact; relative to the working directory', &
-    '&line         at=-200e-3  component=''u''  displacement=2e-3   rise=1.5e-3 /   ! ends: skin and webs are loaded', &
-    '&line         at=200e-3   component=''u''  displacement=-2e-3  rise=1.5e-3 /', &
+    '&line         at=-200e-3  component=''u''  displacement=2.7e-3   rise=1.5e-3 /   ! of skin and webs', &
+    '&line         at=200e-3   component=''u''  displacement=-2.7e-3  rise=1.5e-3 /', &
     '', damage, &
     '! The panel comes to rest during settle: at least 1.3 periods of its first bending mode, which `implam check`', &
     '! prints. The undamaged panel, for comparison: leave out &initial_state and settle.', &
