@@ -8,11 +8,11 @@ import numpy as np
 from implam_post.exchange.degradation import degradation_of
 from implam_post.exchange.panel import Cell, Panel, Stack
 from implam_post.exchange.starters import starters_of
+from implam_post.exchange.stringers import Stringer, stringers_of
 from implam_post.io.deck import Deck, read_deck, recorded_deck
 from implam_post.io.errors import FileError, ImplamError
 from implam_post.io.fields import IMAGES, Snapshot, opened, read_fields
 from implam_post.io.shapes import curvatures_of
-from implam_post.exchange.stringers import Stringer, stringers_of
 from implam_post.laminate.decks import plies_of
 from implam_post.laminate.sections import Ply
 from implam_post.laminate.zones import LayUp, Zones, with_lines, zones_of
@@ -93,10 +93,13 @@ def _stacks(snapshot: Snapshot, x: np.ndarray, y: np.ndarray, zones: Zones) -> d
 def _stacks_of_cell(snapshot: Snapshot, elements: list[int], lay_up: LayUp, zones: Zones) -> tuple[Stack, ...]:
     """Return the stacks of a cell with its layers from the struck face on."""
     mesh, plies = snapshot.mesh, len(zones.laminate)
-    ends = [int(mesh.last_ply[element]) for element in elements[:-1]] + [plies]
+    firsts, ends = ([int(numbers[element]) for element in elements] for numbers in (mesh.first_ply, mesh.last_ply))
+    if not _is_regular(lay_up, zones):  # outer layers may begin and end with a ply of a doubler, or at a missing one
+        ends[-1] = plies
+        firsts = [1, *(end + 1 for end in ends[:-1])]
     found: list[Stack] = []
-    for element, (first, last), numbers in zip(elements, zip([1, *(end + 1 for end in ends)], ends, strict=False),
-                                               split(lay_up.numbers, ends[:-1], plies), strict=True):
+    for element, first, last, numbers in zip(elements, firsts, ends, split(lay_up.numbers, ends[:-1], plies),
+                                             strict=True):
         failures = tuple(int(snapshot.failures[ply][element]) if ply in snapshot.failures else 0 for ply in numbers)
         if found and not snapshot.delaminated[element]:
             above = found.pop()
@@ -121,6 +124,11 @@ def split(numbers: tuple[int, ...], ends: Sequence[int], plies: int) -> list[tup
     return [tuple(found) for found in parts]
 
 
+def _is_regular(lay_up: LayUp, zones: Zones) -> bool:
+    """Return whether a lay-up is that of the laminate."""
+    return lay_up == LayUp(tuple(range(1, len(zones.laminate) + 1)), lay_up.front)
+
+
 def placed(stacks: Sequence[Stack], lay_up: LayUp, zones: Zones) -> tuple[Stack, ...]:
     """Return stacks with their height, without a lay-up of their own where their plies are those of the laminate."""
     found, front, every = [], lay_up.front, zones.plies
@@ -128,8 +136,7 @@ def placed(stacks: Sequence[Stack], lay_up: LayUp, zones: Zones) -> tuple[Stack,
         numbers = stack.lay_up.numbers
         if not numbers:
             raise ImplamError(f"the delamination below ply {stack.last} has no ply on one of its sides.")
-        regular = lay_up == LayUp(tuple(range(1, len(zones.laminate) + 1)), lay_up.front)
-        found.append(stack._replace(lay_up=None if regular else LayUp(numbers, front)))
+        found.append(stack._replace(lay_up=None if _is_regular(lay_up, zones) else LayUp(numbers, front)))
         front += sum(every[number - 1].thickness for number in numbers)
     return tuple(found)
 
