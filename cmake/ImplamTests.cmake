@@ -20,6 +20,12 @@ function(implam_settle_test test label)
   set_tests_properties(${test} PROPERTIES LABELS ${label} ENVIRONMENT "${IMPLAM_TEST_ENVIRONMENT}" TIMEOUT 600)
 endfunction()
 
+# implam_on_demand(<test>...): tests of half a minute and more beside quicker ones of the same kind. They have the label
+# slow, which the presets leave out: `ctest --test-dir build -L slow` runs them.
+function(implam_on_demand)
+  set_property(TEST ${ARGN} APPEND PROPERTY LABELS slow)
+endfunction()
+
 # implam_share_cores(<test>...): tests of several ranks; one that waits for another leaves its core to others.
 function(implam_share_cores)
   set_property(TEST ${ARGN} APPEND PROPERTY ENVIRONMENT OMPI_MCA_mpi_yield_when_idle=1)
