@@ -1,7 +1,7 @@
 !> Decks that `implam new --rig` writes: a drop-weight test after ASTM D7136 on a panel with the thickness and energy of
 !> the standard, the compression of the struck panel after ASTM D7137, and those of a stiffened panel.
 module rig_decks
-  use stiffened_decks, only: stiffened, stiffened_compression
+  use stiffened_decks, only: stiffened, stiffened_compression, width
   use text, only: line_t, append
   implicit none
   private
@@ -10,9 +10,6 @@ module rig_decks
   !> Names of rigs with a deck, and the names as printed.
   character(len=*), parameter, public :: rigs(*) = [character(len=21) :: 'd7136', 'd7137', 'stiffened', &
     'stiffened_compression'], rig_names = 'd7136, d7137, stiffened, stiffened_compression'
-  !> Characters of a line.
-  integer, parameter :: width = 110
-
   !> Plate and symmetry, in both decks.
   character(len=*), parameter :: panel(*) = [character(len=width) :: &
     '&case         units=''SI'' /                   ! m, kg, s, N, Pa, J', &

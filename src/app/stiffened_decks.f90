@@ -4,8 +4,8 @@ module stiffened_decks
   implicit none
   private
 
-  !> Characters of a line.
-  integer, parameter :: width = 110
+  !> Characters of the longest line of all decks of rigs; blanks after shorter ones are not written.
+  integer, parameter, public :: width = 110
 
   !> Material, skin and stiffeners, in both decks.
   character(len=*), parameter :: panel(*) = [character(len=width) :: &

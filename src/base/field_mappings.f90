@@ -5,7 +5,8 @@ module field_mappings
   private
   public :: area_field, field_mapping_t, motion_field, ply_field, ply_shear_field, vector_field, vector_fields
 
-  !> Most vectors of a field.
+  !> Most vectors of a field: displacements and rotations of lines in explicit steps, of reactions, changes and
+  !> offsets each.
   integer, parameter :: max_vectors = 6
 
   !> Properties of a field that its mapping needs.

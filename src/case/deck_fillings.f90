@@ -41,7 +41,8 @@ module deck_fillings
   private
   public :: changes_of_angle, fill_loads, fill_model, fill_steps, note_groups
 
-  !> Default rise of a travel, relative to the run, after which the velocity is constant: 8/7 of the mean velocity.
+  !> Default rise of a travel, relative to the run. The velocity rises smoothly, by half of it in the mean, and is then
+  !> constant at 1/(1 - .25/2) = 8/7 of the mean velocity.
   real(wp), parameter :: usual_rise = 0.25_wp
 
 contains
