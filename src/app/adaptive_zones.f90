@@ -50,6 +50,7 @@ contains
     character(len=*), intent(in) :: since, units
     !> One line each
     type(line_t), allocatable :: notes(:)
+    character(len=:), allocatable :: place
     logical, dimension(size(delaminations)) :: noted, alike
     integer :: first, zone
 
@@ -57,11 +58,14 @@ contains
     noted = .not. delaminations%is_adaptive
     do first = 1, size(delaminations)
       if (noted(first)) cycle
-      associate (extent => delaminations(first)%zone)
+      associate (extent => delaminations(first)%zone, centre => delaminations(first)%zone_at)
+        place = ''
+        if (any(abs(centre) > 0)) place = ', centred '//in_usual_unit(centre(1), length_kind, units, 3)//', '// &
+          in_usual_unit(centre(2), length_kind, units, 3)//' from the plate''s centre,'
         alike = [(all(abs(delaminations(zone)%zone - extent) <= 0), zone=1, size(delaminations))] .and. .not. noted
         call append(notes, 'Layers below '//plies_text(pack(delaminations%below_ply, alike))//': '// &
                     in_usual_unit(extent(1), length_kind, units, 3)//' x '// &
-                    in_usual_unit(extent(2), length_kind, units, 3)//' from '//since//' on.')
+                    in_usual_unit(extent(2), length_kind, units, 3)//place//' from '//since//' on.')
       end associate
       noted = noted .or. alike
     end do
@@ -86,18 +90,20 @@ contains
     !> The interfaces
     type(delamination_t), intent(inout) :: delaminations(:)
     class(archive_t), intent(inout) :: archive
-    real(wp), allocatable :: extents(:)
-    integer :: zone
+    real(wp), allocatable :: places(:)
+    integer :: zone, zones
 
     if (.not. any(delaminations%is_adaptive)) return
-    allocate (extents(2*size(delaminations)))
-    do zone = 1, size(delaminations)
-      extents(2*zone - 1:2*zone) = delaminations(zone)%zone
-    end do
-    call archive%item('layers/zones', extents)
-    if (.not. archive%loading .or. size(extents) /= 2*size(delaminations)) return
-    do zone = 1, size(delaminations)
-      delaminations(zone)%zone = extents(2*zone - 1:2*zone)
+    zones = size(delaminations)
+    ! Extents, then centres if any is not the struck point.
+    places = [(delaminations(zone)%zone, zone=1, zones)]
+    if (any([(abs(delaminations(zone)%zone_at) > 0, zone=1, zones)])) &
+      places = [places, [(delaminations(zone)%zone_at, zone=1, zones)]]
+    call archive%item('layers/zones', places)
+    if (.not. archive%loading .or. all(size(places) /= [2, 4]*zones)) return
+    do zone = 1, zones
+      delaminations(zone)%zone = places(2*zone - 1:2*zone)
+      if (size(places) > 2*zones) delaminations(zone)%zone_at = places(2*(zones + zone) - 1:2*(zones + zone))
     end do
   end subroutine visit_zones
 end module adaptive_zones

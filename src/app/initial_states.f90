@@ -8,7 +8,7 @@ module initial_states
   use communicators, only: communicator_t
   use deck_contents, only: deck_t
   use deck_initial_states, only: has_same_contact, inheritance_objection, is_mapped
-  use deck_plate_cuts, only: cut_of, moved_centre
+  use deck_plate_cuts, only: cut_of
   use deck_problems, only: problems_t
   use deck_reader, only: read_deck_text
   use errors, only: error_t, exit_deck, exit_files, fail
@@ -16,7 +16,7 @@ module initial_states
   use inherited_states, only: visit_inheritance
   use initial_state_deck, only: initial_state_group
   use initial_state_parameters, only: motion_rest
-  use adaptive_zones, only: visit_zones
+  use adaptive_zones, only: visit_zones, zone_notes
   use delamination_deck, only: key_zone
   use kinds, only: wp
   use layer_transfers, only: layer_transfer_t
@@ -24,6 +24,7 @@ module initial_states
   use mapped_interfaces, only: put_fractions, set_damage, set_slips
   use mesh_transfers, only: mesh_transfer_t
   use logger, only: log_t
+  use mesh_parameters, only: symmetry_none
   use model_building, only: create_model
   use models, only: model_t
   use plate_cuts, only: plate_cut_t
@@ -55,6 +56,7 @@ contains
     character(len=:), allocatable :: objection
     type(line_t) :: remark
     real(wp) :: contact_end, force
+    logical :: failed
     integer :: i
 
     if (present(lacks)) lacks = .false.
@@ -71,6 +73,7 @@ contains
     call archive%item(time_item, deck%initial%reached)
     call archive%item('record/contact_end', contact_end)
     call archive%item('record/force', force)
+    call archive%item('compression/failed', failed)
     call archive%close(error)
     if (allocated(error)) return
     objection = inheritance_objection(deck, old)
@@ -85,11 +88,15 @@ contains
     end if
     do i = 1, size(deck%delaminations)
       if (.not. deck%delaminations(i)%is_adaptive) cycle
-      if (is_mapped(deck, old) .or. any(moved_centre(deck, old) > 0)) &
+      if (.not. deck%has_impactor .and. deck%plate%symmetry == symmetry_none .and. &
+          .not. any(deck%delaminations%starter > 0)) &
+        deck%delaminations(i)%zone_at = deck%delaminations(i)%zone_at + centre_distance(deck, old, i)
+      if (is_mapped(deck, old) .or. any(abs(centre_distance(deck, old, i)) > 0)) &
         old%delaminations(i)%zone = covering_extents(deck, old, i)
       deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
     end do
     deck%initial%end = merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())
+    if (old%stepping%time%ends_at_failure .and. failed) deck%initial%end = deck%initial%reached
     call remark_stopped(deck, remark)
     if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
@@ -177,14 +184,29 @@ contains
     real(wp) :: distance(2)
     integer :: direction
 
-    distance = moved_centre(deck, old)
+    distance = abs(centre_distance(deck, old, zone))
     do direction = 1, 2
       line = cells_from_struck(old%plate, old%mesh, direction)
+      line = line%from(old%delaminations(zone)%zone_at(direction))
       extents(direction) = line%extent_of(old%delaminations(zone)%zone(direction)) + 2*distance(direction)
       line = cells_from_struck(deck%plate, deck%mesh, direction)
+      line = line%from(deck%delaminations(zone)%zone_at(direction))
       extents(direction) = line%widened(extents(direction), 1)
     end do
   end function covering_extents
+
+  !> Distance from the centre of a zone to that of the other run's zone.
+  pure function centre_distance(deck, old, zone) result(distance)
+    !> The deck, and that of the other run with the zones at its end
+    type(deck_t), intent(in) :: deck, old
+    !> Index of the zone
+    integer, intent(in) :: zone
+    !> Along x and y
+    real(wp) :: distance(2)
+
+    distance = old%mesh%struck + old%delaminations(zone)%zone_at &
+               - deck%initial%cut_at - deck%mesh%struck - deck%delaminations(zone)%zone_at
+  end function centre_distance
 
   !> Opens a checkpoint and reads its deck, with the zones at its end. Collective.
   subroutine open_checkpoint(path, communicator, archive, old, error)
@@ -222,11 +244,17 @@ contains
     !> Set if the checkpoint cannot be read, or has damage where the deck has no interface
     type(error_t), allocatable, intent(inout) :: error
     class(layer_transfer_t), allocatable :: transfer
+    type(line_t), allocatable :: notes(:)
     type(deck_t) :: old
+    integer :: i
 
     call load_transfer(deck, model, stepper, transfer, record%mapping, old, error)
     if (allocated(error)) return
     call log%note('The plate starts from the end of the run of '//deck%initial%from//'.')
+    notes = zone_notes(model%setup%delaminations, 'the start', deck%units)
+    do i = 1, size(notes)
+      call log%note(notes(i)%text)
+    end do
     ! At rest, damage would only grow by errors of the mapping.
     call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%load_start > 0 .and. &
                                  deck%initial%motion == motion_rest)

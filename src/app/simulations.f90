@@ -239,7 +239,16 @@ contains
 
     end_of = 1
     if (.not. self%deck%is_static()) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
+    if (has_ended_by_failure(self)) end_of = self%stepper%now%time
   end function end_of
+
+  !> True: the plate has failed, and the run need not show more. The record is in the checkpoint, so that a restart ends
+  !> at the same step.
+  pure logical function has_ended_by_failure(self) result(ended)
+    class(simulation_t), intent(in) :: self
+
+    ended = self%deck%stepping%time%ends_at_failure .and. self%record%compression%failed
+  end function has_ended_by_failure
 
   !> Steps until the end, or until a signal or the wall-clock limit.
   subroutine run(self, error)
@@ -357,6 +366,8 @@ contains
     if (self%deck%output%fields_every <= 0 .or. self%fields%is_empty()) &
       call write_fields(self%model, self%stepper, self%deck%output, self%fields, error)
     if (allocated(error)) return
+    if (has_ended_by_failure(self)) call self%log%note('The plate has failed, which ends the run at '// &
+                                                       moment(self%deck, self%stepper%now%time)//'.')
     call self%history%close(error)
     call self%progress%finish(self%log, self%stepper%cost())
     call log_costs(self%timers, self%stepper%operator, self%log)

@@ -20,6 +20,7 @@ module deck_cross_checks
   use indentation_deck, only: indentation_group, key_k, key_alpha_critical
   use kinds, only: wp
   use laminate_deck, only: laminate_group
+  use line_columns, only: has_ends
   use line_deck, only: line_group
   use line_loads, only: line_load_t
   use material_deck, only: key_compressive, material_group, require_densities
@@ -32,7 +33,7 @@ module deck_cross_checks
   use short_numbers, only: short_text
   use static_deck, only: static_group
   use text, only: line_t, append, joined, words_of
-  use time_deck, only: time_group
+  use time_deck, only: key_until, time_group
   implicit none
   private
   public :: check_across_groups
@@ -158,6 +159,10 @@ contains
     if (.not. deck%has_time) return
     if (.not. problems%concern(time_group)) &
       call check_intervals(deck%settings, deck%stepping%time%step, deck%stepping%time%end, problems)
+    if (deck%stepping%time%ends_at_failure .and. .not. (has_ends(deck%plate, deck%lines) .or. &
+                                                        problems%concern(line_group))) &
+      call report(deck%settings, problems, time_group, key_until, &
+                  'failure is that of a plate whose ends lines displace; give such a &line, or leave it out.')
   end subroutine check_transient
 
   !> Keys of &time to be given: central differences, the default where plies or interfaces soften, choose the step, and

@@ -134,6 +134,7 @@ contains
     do i = 1, size(setup%delaminations)
       associate (d => setup%delaminations(i))
         d%zone = setup%plate%length
+        d%zone_at = 0
         d%is_adaptive = .false.
         d%starter = 0
         d%starter_strip = 0

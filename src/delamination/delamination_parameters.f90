@@ -43,9 +43,11 @@ module delamination_parameters
     real(wp) :: toughness_opening = 0, toughness_shear = 0
     !> Exponent eta of Benzeggagh and Kenane
     real(wp) :: mixing_exponent = 1.75_wp
-    !> Full extents of the layered rectangle along x and y, centred on the struck point; if it is adaptive, the present
-    !> extents
+    !> Full extents of the layered rectangle along x and y; if it is adaptive, the present extents
     real(wp) :: zone(2) = 0
+    !> Its centre, from the struck point: elsewhere only where the rectangle is adaptive and the damage is that of
+    !> another run
+    real(wp) :: zone_at(2) = 0
     !> True: the layered rectangle is adaptive
     logical :: is_adaptive = .false.
     !> Side of the square starter, or diameter of the round one

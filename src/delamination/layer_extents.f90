@@ -1,5 +1,5 @@
 !> Extents of an adaptive layered rectangle: full extents along x and y, centred on the struck point, so that a quarter
-!> and the full plate have the same layers.
+!> and the full plate have the same layers, or on that of the run whose damage the plate inherits.
 module layer_extents
   use kinds, only: wp
   implicit none

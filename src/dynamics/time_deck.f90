@@ -18,7 +18,7 @@ module time_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: time_group = 'time', key_end = 'end', key_step = 'step', &
                                          key_mass_scaling = 'mass_scaling', key_integrator = 'integrator', &
-                                         key_settle = 'settle', &
+                                         key_settle = 'settle', key_until = 'until', &
                                          key_longest_step = 'step_max'
   !> Row of the group.
   character(len=group_row_length), parameter, public :: time_group_row = &
@@ -27,6 +27,9 @@ module time_deck
   character(len=key_row_length), parameter, public :: time_rows(*) = [character(len=key_row_length) :: &
     'time | end | real | 1 | time | = by &case accuracy, central differences: after the contact | > 0 | &
       &End of the run.', &
+    'time | until | choice | 1 | - | ''end'' | end failure | &
+      &failure: a compression by lines ends once the plate has failed, as told by has_failed of the summary, at the &
+      &latest at end.', &
     'time | step | real | 1 | time | = by &case accuracy, central differences: the stable one | > 0 | &
       &Initial time step, constant unless steps are adaptive; central differences limit it to the stable step.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &
@@ -76,6 +79,7 @@ contains
     associate (s => settings)
       time%end = s%real_of(time_group, key_end)
       time%step = s%real_of(time_group, key_step)
+      time%ends_at_failure = code_of(s%text_of(time_group, key_until), 'end failure', [0, 1]) == 1
       time%wall_limit = s%real_of(time_group, 'wall_limit')
       time%integrator = integrator_of(s)
       central%step_factor = s%real_of(time_group, 'step_factor')

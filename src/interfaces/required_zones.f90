@@ -63,14 +63,16 @@ contains
                                                           displacement))
     do zone = 1, size(extents, 2)
       extents(:, zone) = model%setup%delaminations(zone)%zone
-      call extend(model, onset(:, zone), extents(:, zone))
+      call extend(model, centre_of(model, zone), onset(:, zone), extents(:, zone))
     end do
   end function around_onset
 
   !> Extends a rectangle by adjacent cells whose index requires it. Distant cells with an index between a half and 1, as
   !> at a clamped edge, are not included.
-  pure subroutine extend(model, onset, extents)
+  pure subroutine extend(model, centre, onset, extents)
     type(model_t), intent(in) :: model
+    !> Centre of the rectangle
+    real(wp), intent(in) :: centre(2)
     !> Onset index of the cells without layers, (cells)
     real(wp), intent(in) :: onset(:)
     !> Full extents along x and y
@@ -79,14 +81,14 @@ contains
     real(wp) :: before(2), near(2)
     integer :: cell
 
-    columns = model%mesh%along(1)%from(model%mesh%struck(1))
-    rows = model%mesh%along(2)%from(model%mesh%struck(2))
+    columns = model%mesh%along(1)%from(centre(1))
+    rows = model%mesh%along(2)%from(centre(2))
     do
       before = extents
       near = [columns%widened(extents(1), 1), rows%widened(extents(2), 1)]*(1 + rounding)
       do cell = 1, size(onset)
         if (onset(cell) < onset_of_layers) cycle
-        associate (reach => extents_to(model, cell))
+        associate (reach => extents_to(model, centre, cell))
           if (onset(cell) >= 1 .or. all(reach <= near)) extents = max(extents, reach)
         end associate
       end do
@@ -95,18 +97,30 @@ contains
   end subroutine extend
 
   !> Full extents that include a cell.
-  pure function extents_to(model, cell) result(extents)
+  pure function extents_to(model, centre, cell) result(extents)
     type(model_t), intent(in) :: model
+    !> Centre of the rectangle
+    real(wp), intent(in) :: centre(2)
     !> The cell
     integer, intent(in) :: cell
     !> Along x and y
     real(wp) :: extents(2)
 
     associate (mesh => model%mesh, place => model%mesh%place_of(cell))
-      extents = 2*[maxval(abs(mesh%along(1)%ends(place(1)) - mesh%struck(1))), &
-                   maxval(abs(mesh%along(2)%ends(place(2)) - mesh%struck(2)))]
+      extents = 2*[maxval(abs(mesh%along(1)%ends(place(1)) - centre(1))), &
+                   maxval(abs(mesh%along(2)%ends(place(2)) - centre(2)))]
     end associate
   end function extents_to
+
+  !> Centre of a layered rectangle.
+  pure function centre_of(model, zone) result(centre)
+    type(model_t), intent(in) :: model
+    !> Its index
+    integer, intent(in) :: zone
+    real(wp) :: centre(2)
+
+    centre = model%mesh%struck + model%setup%delaminations(zone)%zone_at
+  end function centre_of
 
   !> Extents of the damaged points. Collective.
   function around_damage(model, interfaces) result(extents)
@@ -122,7 +136,7 @@ contains
     do i = 1, model%distribution%owned
       if (.not. damage(i) > 0) cycle
       associate (place => model%mesh%node_coordinates(:, model%mesh%point_node(model%distribution%points(i))))
-        extents(:, model%zone(i)) = max(extents(:, model%zone(i)), 2*abs(place - model%mesh%struck))
+        extents(:, model%zone(i)) = max(extents(:, model%zone(i)), 2*abs(place - centre_of(model, model%zone(i))))
       end associate
     end do
     list = reshape(extents, [size(extents)])
@@ -142,13 +156,15 @@ contains
     !> (2, zones)
     real(wp) :: wider(2, size(extents, 2))
     type(cell_line_t) :: columns, rows
+    real(wp) :: centre(2)
     integer :: zone
 
-    columns = model%mesh%along(1)%from(model%mesh%struck(1))
-    rows = model%mesh%along(2)%from(model%mesh%struck(2))
     wider = 0
     do zone = 1, size(extents, 2)
       if (.not. any(extents(:, zone) > 0)) cycle
+      centre = centre_of(model, zone)
+      columns = model%mesh%along(1)%from(centre(1))
+      rows = model%mesh%along(2)%from(centre(2))
       wider(:, zone) = [columns%widened(extents(1, zone), cells, least), rows%widened(extents(2, zone), cells, least)]
     end do
   end function with_margin

@@ -15,15 +15,14 @@ contains
     type(setup_t), intent(in) :: setup
     !> One zone an interface
     type(zone_t), allocatable :: zones(:)
-    type(cell_line_t) :: columns, rows
+    type(cell_line_t) :: lines(2), columns, rows
     integer :: i
 
     if (.not. allocated(setup%delaminations)) then
       allocate (zones(0))
       return
     end if
-    columns = cells_from_struck(setup%plate, setup%mesh, 1)
-    rows = cells_from_struck(setup%plate, setup%mesh, 2)
+    lines = [cells_from_struck(setup%plate, setup%mesh, 1), cells_from_struck(setup%plate, setup%mesh, 2)]
     allocate (zones(size(setup%delaminations)))
     do i = 1, size(zones)
       associate (interface => setup%delaminations(i))
@@ -32,6 +31,8 @@ contains
           call find_bond(setup, interface%doublers, zones(i))
           cycle
         end if
+        columns = lines(1)%from(interface%zone_at(1))
+        rows = lines(2)%from(interface%zone_at(2))
         zones(i)%columns = columns%within(interface%zone(1))
         zones(i)%rows = rows%within(interface%zone(2))
       end associate

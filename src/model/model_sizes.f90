@@ -105,6 +105,7 @@ contains
     if (.not. allocated(setup%delaminations)) return
     do i = 1, size(setup%delaminations)
       if (.not. setup%delaminations(i)%is_adaptive) cycle
+      largest%delaminations(i)%zone_at = 0
       largest%delaminations(i)%zone = largest_extents(setup%delaminations(i)%zone, setup%mesh%core, &
                                                       merge(0.0_wp, setup%mesh%cell, explicit), setup%plate%length)
     end do

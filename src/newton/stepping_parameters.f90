@@ -30,6 +30,8 @@ module stepping_parameters
     real(wp) :: end = 0
     !> True: the run is extended until the impactor has left
     logical :: extends_to_contact_end = .false.
+    !> True: a compression ends once the plate has failed
+    logical :: ends_at_failure = .false.
     !> First time step
     real(wp) :: step = 0
     !> Smallest step tried before giving up, and largest step taken

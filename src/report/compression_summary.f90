@@ -24,6 +24,8 @@ contains
     character(len=:), allocatable :: text
 
     text = results%shown('residual_strength')//' at a shortening of '//results%shown('shortening_at_strength')//', '//at
+    if (results%has('failure_load')) text = text//', failure load '//results%shown('failure_load')// &
+      ', stress of the laminate '//results%shown('skin_stress_at_strength')
     if (results%has('effective_modulus')) text = text//', effective modulus '//results%shown('effective_modulus')
     if (results%has('buckling_strain')) text = text//', buckled at a strain of '//results%shown('buckling_strain')
     if (.not. results%value('has_failed') > 0) text = text//'; a lower bound, as the plate has not failed'

@@ -3,6 +3,7 @@ module run_figures
   use compressed_damage, only: compressed_damage_t, between_supports, damage_of
   use delamination_parameters, only: toughnesses
   use dent_depths, only: dent_depth
+  use end_sections, only: skin_share
   use errors, only: error_t, exit_done, exit_stopped
   use failed_plies_areas, only: failed_areas, failed_counts
   use interface_figures, only: figures_of, interface_figures_t
@@ -50,6 +51,8 @@ module run_figures
     type(compressed_damage_t) :: compressed
     !> Length between the supports along that load, and thickness of the plate
     real(wp) :: length = 0, thickness = 0
+    !> Width times thickness of the laminate across that load, and its share in the axial stiffness of the section
+    real(wp) :: skin_area = 0, skin_share = 1
   end type run_figures_t
 
 contains
@@ -74,6 +77,8 @@ contains
       figures%compressed = damage_of(model, now, along)
       figures%length = between_supports(model, along)
       figures%thickness = model%thickness
+      figures%skin_area = model%setup%plate%length(3 - along)*model%thickness
+      figures%skin_share = skin_share(model%setup, along)
     end if
     zones = size(figures%interfaces)
     bending = effective_bending_stiffness(model%bending_section%stiffness)

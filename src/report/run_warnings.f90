@@ -212,8 +212,9 @@ contains
     type(delamination_t), intent(in) :: interface
 
     leaves = interface%is_adaptive .and. deck%mesh%cell > 0 .and. &
-             any(interface%zone > deck%mesh%core + 2*((cells_ahead + cells_at_once)*deck%mesh%cell + &
-                                                      thicknesses_ahead*deck%expected%scales%thickness))
+             any(interface%zone + 2*abs(interface%zone_at) > deck%mesh%core + &
+                 2*((cells_ahead + cells_at_once)*deck%mesh%cell + &
+                    thicknesses_ahead*deck%expected%scales%thickness))
   end function leaves_core
 
   !> True: a rotation of the plate exceeds the limit of moderate rotations. Collective.

@@ -48,7 +48,7 @@ contains
       call results%add('matrix_cracks', figures%failures(2))
       call results%add('matrix_crushings', figures%failures(3))
     end if
-    if (record%compression%strength > 0) call add_compression(results, deck, record)
+    if (record%compression%strength > 0) call add_compression(results, deck, record, figures)
   end function results_of
 
   !> Contact and impactor.
@@ -133,16 +133,22 @@ contains
   end subroutine add_interfaces
 
   !> Strength and modulus of a compression.
-  subroutine add_compression(results, deck, record)
+  subroutine add_compression(results, deck, record, figures)
     !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record
+    !> Results of the state reached
+    type(run_figures_t), intent(in) :: figures
 
     associate (of => record%compression)
       call results%add('residual_strength', of%strength)
       call results%add('residual_strength_at', of%at)
       call results%add('shortening_at_strength', of%shortening)
+      if (size(deck%stringers) > 0 .or. .not. deck%zones%is_empty()) then
+        call results%add('failure_load', of%strength*figures%skin_area)
+        call results%add('skin_stress_at_strength', of%strength*figures%skin_share)
+      end if
       call results%add('has_failed', of%failed)
       call results%add('effective_modulus', of%modulus(), of%modulus() > 0)
       if (.not. all(back_to_back(deck%gauges) > 0)) return

@@ -75,6 +75,10 @@ module summary_rows
     'residual_strength | real | pressure | residual strength | Under compression by lines: largest far_field_stress.', &
     'residual_strength_at | real | time | time of strength | Its time.', &
     'shortening_at_strength | real | length | shortening | Shortening then.', &
+    'failure_load | real | force | failure load | Load of laminate, doublers and stringers then; only with these or &
+      &ply drops.', &
+    'skin_stress_at_strength | real | pressure | stress of the laminate | residual_strength times the share of the &
+      &laminate in the axial stiffness of the section at the loaded ends, with doublers, ply drops and stringers.', &
     'has_failed | logical | - | failed | Whether the stress has then dropped below 0.7 of the strength; if not, the &
       &strength is a lower bound.', &
     'effective_modulus | real | pressure | effective modulus | Slope between nominal strains of 0.001 and 0.003 (ASTM &

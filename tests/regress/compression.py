@@ -13,6 +13,8 @@ cut_ranks      the same on two ranks: bitwise
 whole    the full plate from the half in the impact: to round-off until it fails
 buckling the elastic panel in the frame against eigenvalue and postbuckling of CalculiX
 bent     the same panel with a stress-free imperfection instead of the pressure
+until    until='failure': the rows are those of the full run up to the failure, also from a checkpoint and on two ranks
+aside    struck beside the centre, and at the mirrored point: layers are where the damage is, the histories are equal
 closing  with cracks that close, also from a checkpoint: energies balance
 stiffened  two blades on the back are loaded with the skin, on the cells of the impact and on finer ones: the modulus is
          that of skin and blades
@@ -60,6 +62,8 @@ LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 1e-3, 1e-6
 # A plate within that of the impact, narrower than its delaminations, on cells of its own.
 CUT = ["plate%length=40e-3, 18e-3", "support%window=36e-3, 16e-3", "mesh%elements=9, 10", "mesh%lines_x=18e-3",
        "mesh%lines_y=8e-3", "line%at=20e-3", "line%displacement=-0.1e-3", "time%end=0.4e-3"]
+# Where the plate is struck beside its centre, in y.
+ASIDE = 6e-3
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
 # Modulus of [0/90]s; blades on the back of the panel: distance from its middle and axial stiffness. The load of this
@@ -439,6 +443,60 @@ def check_bent(implam, folder, _):
     require(0.5 * strongest < summary["buckling_strain"] < strongest, "Gauge strains reverse at another strain.")
 
 
+def check_until(implam, folder, launcher):
+    """The run ends at the row at which the stress has dropped to .7 of the strength, and a restart changes nothing."""
+    strike(implam, folder)
+    full = press(implam, folder).read_text(encoding="utf-8").splitlines()
+    settings = ["time%until='failure'", "output%checkpoint_every=0.46e-3", "output%checkpoint_at_end=.false."]
+    path = press(implam, folder, settings)
+    rows = path.read_text(encoding="utf-8").splitlines()
+    first = next(i for i, line in enumerate(rows) if not line.startswith("#"))
+    # The hash in the comments is that of the deck.
+    require(rows[first:] == full[first:len(rows)] and len(rows) < len(full), "The rows differ from those of the full run.")
+    stress = read_history(path)["far_field_stress"]
+    require(stress[-1] < 0.7 * max(stress) <= min(stress[stress.index(max(stress)):-1]),
+            "The run does not end at the first row after the failure.")
+    summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
+    require(summary["has_failed"] and summary["exit"]["kind"] == "done", "The run has not ended by the failure.")
+    reference = folder / "reference.csv"
+    shutil.copy(path, reference)
+    check_restart(implam, folder, reference)
+    require(filecmp.cmp(press(implam, folder, settings, [*launcher, "2"]), reference, shallow=False),
+            "The history of two ranks differs.")
+    check = run([implam, "check", deck_of(folder, IMPACT, ["time%until='failure'"])], EXIT_DECK, folder)
+    require("until" in check and "&line" in check, f"A deck without compressed ends: {check}")
+
+
+def check_aside(implam, folder, _):
+    """An impact beside the centre, and its mirror image, compressed on finer cells."""
+    whole = ["plate%symmetry='none'", "mesh%elements=20, 16"]
+    histories, layers = [], []
+    for side in (1, -1):
+        shutil.rmtree(folder, ignore_errors=True)
+        run([implam, deck_of(folder, IMPACT, [*whole, f"impactor%at=0, {side * ASIDE}", "impactor%velocity=6"])],
+            folder=folder)
+        deck = folder / deck_of(folder, COMPRESSION, [whole[0], "mesh%elements=28, 22", "time%end=0.42e-3"])
+        text = deck.read_text(encoding="utf-8")
+        line = re.search(r"&line .*/", text).group()
+        other = line.replace("at=30e-3", "at=-30e-3").replace("-0.4e-3", "0.4e-3")
+        deck.write_text(text.replace(line, f"{line}\n{other}"), encoding="utf-8")
+        run([implam, deck.name], folder=folder)
+        histories.append(read_history(folder / f"{COMPRESSION}_history.csv"))
+        log = (folder / f"{COMPRESSION}.log").read_text(encoding="utf-8")
+        layers.append(re.search(r"Layers below plies 1 and 3: (\S+) mm x (\S+) mm, centred 0 mm, (\S+) mm", log))
+    require(all(layers), "The log does not report layers beside the centre.")
+    extents = [tuple(map(float, found.groups())) for found in layers]
+    print(f"layers of {extents[0][:2]} mm at y = {extents[0][2]} and {extents[1][2]} mm")
+    # Centred on the plate, layers that cover the damage reach from side to side.
+    require(extents[0][:2] == extents[1][:2] and extents[0][2] == -extents[1][2] == 1e3 * ASIDE and
+            extents[0][1] < 40, "Layers are not where the damage is.")
+    for name in ("far_field_stress", "energy_strain", "energy_delamination", "energy_ply_damage", "work_external"):
+        here, there = (history[name][:len(history[name]) // 2] for history in histories)
+        difference = max(abs(a - b) for a, b in zip(here, there, strict=True)) / max(map(abs, here))
+        print(f"{name}: {difference:.1e}")
+        require(difference < ROUNDED, f"{name} differs from that of the mirrored impact.")
+
+
 def check_closing(implam, folder, _):
     """Fibres with closed tensile cracks of the impact carry compression."""
     closing = ["ply_damage%crack_closure=.true."]
@@ -525,7 +583,7 @@ def main(trial, implam, folder, launcher):
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
               "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
               "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped,
-              "mapped_ranks": check_mapped, "cut": check_cut, "cut_ranks": check_cut}
+              "mapped_ranks": check_mapped, "until": check_until, "aside": check_aside, "cut": check_cut, "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 

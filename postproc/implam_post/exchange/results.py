@@ -48,7 +48,7 @@ def _from_results(path: Path, time: float | None) -> Panel:
     if snapshot.mesh.last_ply.max() != len(plies):
         raise FileError(f"{path} is damaged: it has {snapshot.mesh.last_ply.max()} plies, but its deck {len(plies)}.")
     x, y = (_lines(snapshot.mesh.corners[..., axis]) for axis in (0, 1))
-    zones = _zones(deck, plies)
+    zones = zones_of(deck, plies)
     stacks = _stacks(snapshot, x, y, zones)
     x, y, stacks = _completed(x, y, stacks, fields.part)
     every_cell = {(column, row) for column in range(len(x) - 1) for row in range(len(y) - 1)}
@@ -57,18 +57,13 @@ def _from_results(path: Path, time: float | None) -> Panel:
     return _panel(deck, zones, x, y, stacks)
 
 
-def _zones(deck: Deck, plies: list[Ply]) -> Zones:
-    """Return doublers and ply drops; refuse doublers with an interface of their own."""
-    if any("doubler" in group for group in deck.groups.get("delamination", [])):
-        raise deck.error("delamination", "the interface of a doubler cannot be exported: leave out this group, so that "
-                                         "the doubler is bonded rigidly.")
-    return zones_of(deck, plies)
-
-
 def _is_complete(stacks: tuple[Stack, ...], plies: int) -> bool:
-    """Return whether stacks have every ply once, from the struck face to the back."""
+    """Return whether stacks have every ply once, from the struck face to the back.
+
+    A layer of doublers that may come off counts as one more ply.
+    """
     ends = [0, *(stack.last for stack in stacks)]
-    return ends[-1] == plies and all(stack.first == above + 1 and len(stack.failures) == stack.last - above
+    return ends[-1] in (plies, plies + 1) and all(stack.first == above + 1 and len(stack.failures) == stack.last - above
                                      for above, stack in zip(ends, stacks, strict=False) if stack.lay_up is None)
 
 
@@ -95,12 +90,16 @@ def _stacks_of_cell(snapshot: Snapshot, elements: list[int], lay_up: LayUp, zone
     mesh, plies = snapshot.mesh, len(zones.laminate)
     firsts, ends = ([int(numbers[element]) for element in elements] for numbers in (mesh.first_ply, mesh.last_ply))
     if not _is_regular(lay_up, zones):  # outer layers may begin and end with a ply of a doubler, or at a missing one
-        ends[-1] = plies
+        if firsts[-1] > plies:  # doublers that may come off
+            ends[-2:] = [plies, plies + 1]
+        else:
+            ends[-1] = plies
         firsts = [1, *(end + 1 for end in ends[:-1])]
+    flags = snapshot.failures | snapshot.added
     found: list[Stack] = []
     for element, first, last, numbers in zip(elements, firsts, ends, split(lay_up.numbers, ends[:-1], plies),
                                              strict=True):
-        failures = tuple(int(snapshot.failures[ply][element]) if ply in snapshot.failures else 0 for ply in numbers)
+        failures = tuple(int(flags[ply][element]) if ply in flags else 0 for ply in numbers)
         if found and not snapshot.delaminated[element]:
             above = found.pop()
             first, failures, numbers = above.first, above.failures + failures, (*above.lay_up.numbers, *numbers)
@@ -162,7 +161,7 @@ def _completed(x: np.ndarray, y: np.ndarray, stacks: dict[Cell, tuple[Stack, ...
 def _from_deck(deck: Deck) -> Panel:
     """Return the panel with the starters of a deck, in equal cells, as many as the full plate has elements."""
     plies = plies_of(deck)
-    zones = _zones(deck, plies)
+    zones = zones_of(deck, plies)
     lengths, elements = deck.lengths(), deck.numbers("mesh", "elements")
     if len(elements) != 2 or min(elements) < 1 or any(count % 1 for count in elements):
         raise deck.error("mesh", "elements must be two integers greater than zero.")
@@ -178,19 +177,22 @@ def _from_deck(deck: Deck) -> Panel:
     stacks = {}
     for i in range(len(x) - 1):
         for j in range(len(y) - 1):
-            ends = [*sorted({ply for ply, cells in starters if cells[i, j]}), len(plies)]
-            lay_up = zones.at((x[i] + x[i + 1]) / 2, (y[j] + y[j + 1]) / 2)
+            middle = (x[i] + x[i + 1]) / 2, (y[j] + y[j + 1]) / 2
+            lay_up, below = zones.at(*middle), len(plies) - (not zones.may_separate(*middle))
+            ends = sorted({ply for ply, cells in starters if cells[i, j] and ply <= below} | {below + 1})
             stacks[i, j] = placed([Stack(above + 1, end, len(numbers) * (0,), LayUp(numbers, 0.0))
                                    for above, end, numbers in zip([0, *ends], ends, split(
                                        lay_up.numbers, ends[:-1], len(plies)), strict=False)], lay_up, zones)
     return _panel(deck, zones, x, y, stacks, *([_STATE] if deck.has("initial_state") else []))
 
 
-def _unwritten(deck: Deck) -> Iterator[str]:
+def _unwritten(deck: Deck, zones: Zones) -> Iterator[str]:
     """Return notes on loads, supports and section of the deck that are not exported."""
     yield from (f"&{group} is not written: add its supports or loads" for group in filter(deck.has, _UNWRITTEN))
     if deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "sine":
         yield "the pressure is not written, as its distribution is a sine: add a load, or give a uniform --pressure"
+    if any(doubler.may_separate for doubler in zones.doublers):
+        yield "the bond of doublers is written as rigid where it has not delaminated"
     if deck.values("laminate", "shear_correction") == ["energy"]:
         yield _BY_OTHERS
 
@@ -214,6 +216,6 @@ def _panel(deck: Deck, zones: Zones, x: np.ndarray, y: np.ndarray, stacks: dict[
     uniform = deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "uniform"
     return Panel(deck.name, zones.laminate, x, y, stacks, deck.edges(), in_plane, degradation_of(deck),
                  deck.number("pressure", "value") if uniform else None,
-                 deck.number("thermal", "delta_T") if deck.has("thermal") else None, (*_unwritten(deck), *notes),
+                 deck.number("thermal", "delta_T") if deck.has("thermal") else None, (*_unwritten(deck, zones), *notes),
                  deck.number("plate", "imperfection", 0.0), (int(half_waves[0]), int(half_waves[1])),
                  curvatures_of(deck), zones.plies[len(zones.laminate):], _stringers(deck, zones.laminate))

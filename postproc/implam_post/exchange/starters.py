@@ -29,14 +29,17 @@ def starters_of(deck: Deck, plies: Sequence[Ply], x: np.ndarray, y: np.ndarray, 
     struck = _pair(deck, deck.groups.get("impactor", [{}])[0], "impactor", "at")
     for group in deck.groups.get("delamination", []):
         for below_ply in _interfaces(deck, group, plies):
-            cells = _cells(deck, group, _is_front(group, plies[below_ply - 1:below_ply + 1]),
+            cells = _cells(deck, group, below_ply < len(plies) and _is_front(group, plies[below_ply - 1:below_ply + 1]),
                            x - struck[0], y - struck[1])
             found.append((below_ply, np.any([cells[::along, ::across] for along, across in images], axis=0)))
     return found
 
 
 def _interfaces(deck: Deck, group: Group, plies: Sequence[Ply]) -> Iterator[int]:
-    """Yield the plies above the interfaces of a group."""
+    """Yield the plies above the interfaces of a group; the bond of doublers, always cohesive, is below the last."""
+    if "doubler" in group:
+        yield len(plies)
+        return
     named = group.get("below_ply", [0.0])
     if str(named[0]).lower() in ("all", "between_angles"):
         named = [float(place) for place, (above, below) in enumerate(itertools.pairwise(plies), start=1)

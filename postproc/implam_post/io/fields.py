@@ -66,7 +66,9 @@ class Interface:
 @dataclass(frozen=True)
 class Snapshot:
     """State at one time, by element: fraction of the toughness dissipated at the nine points of the interface on top,
-    ply failures, G/G_c ahead of fronts, plies with crushed fibres; also figures of interfaces and projected area."""
+    ply failures, G/G_c ahead of fronts, plies with crushed fibres; also figures of interfaces and projected area.
+
+    `added` are the failures of plies of doublers, by their number, with 0 in elements without them."""
 
     time: float
     mesh: Mesh
@@ -76,6 +78,7 @@ class Snapshot:
     interfaces: dict[int, Interface] = field(default_factory=dict)
     projected_area: float | None = None
     crushed: dict[int, np.ndarray] = field(default_factory=dict)
+    added: dict[int, np.ndarray] = field(default_factory=dict)
 
     @property
     def delaminated(self) -> np.ndarray:
@@ -350,7 +353,9 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
                                   for name in ("delaminated_above", "energy_release_above"))
     names = (name for name in map(re.compile(r"ply_(\d+)_failure").fullmatch, cells) if name)
     found = sorted((int(name[1]), name.string) for name in names)
-    failures = {ply: _flags(cells[name][()].ravel(), name, len(nothing)) for ply, name in found if ply in mesh.plies}
+    every = {ply: _flags(cells[name][()].ravel(), name, len(nothing)) for ply, name in found}
+    failures, added = ({ply: flags for ply, flags in every.items() if (ply in mesh.plies) == of_laminate}
+                       for of_laminate in (True, False))
     crushed = {ply: _finite(cells[name][()].ravel(), name, len(nothing)) > 0 for ply in failures
                if (name := f"ply_{ply}_fibres_crushed") in cells}
     interfaces, projected = _figures(group.get("interfaces", {}))
@@ -362,7 +367,7 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
         shares = np.where(np.isin(mesh.first_ply, cohesive)[:, None], at_points, shares)
     time = float(_finite(group["time"][()], "time"))
     return Snapshot(time, mesh, np.clip(shares, 0, 1), failures, release_ratio, interfaces, projected,
-                    crushed)
+                    crushed, added)
 
 
 def _figures(group: h5py.Group | dict[str, Any]) -> tuple[dict[int, Interface], float | None]:

@@ -23,7 +23,9 @@ class Section:
     `height` is that of the stress-free plate, from the struck point along z, `deflection` that of the layer, `share`
     the delaminated fraction of the interface on top of it, `opening` the gap there (NaN: not written), and `levels`
     the fraction, by ply above, from which this interface counts as delaminated. `failures` has the sums of modes by
-    ply and row, `crushed` whether the fibres failed in compression, if known."""
+    ply and row, `crushed` whether the fibres failed in compression, if known. `middles` are the middles of the parts
+    of the line, from the centre of the plate, (rows, 2); the numbers of plies are those of the laminate, and a layer
+    of doublers alone begins after its last one."""
 
     angle: float
     time: float
@@ -37,6 +39,7 @@ class Section:
     levels: dict[int, float]
     failures: dict[int, np.ndarray]
     crushed: dict[int, np.ndarray]
+    middles: np.ndarray
 
     @property
     def delaminated(self) -> np.ndarray:
@@ -45,9 +48,8 @@ class Section:
         return np.asarray(self.share >= level[:, None])
 
     def failed(self, ply: int, mode: str) -> np.ndarray:
-        """Return the rows in which a ply failed in a mode."""
-        has = (self.first_ply <= ply) & (ply <= self.last_ply)
-        return np.flatnonzero(has & (self.failures[ply] & MODES[mode] > 0))
+        """Return the rows in which a ply failed in a mode; layers without the ply have no failure of it."""
+        return np.flatnonzero(self.failures[ply] & MODES[mode] > 0)
 
     @property
     def damaged(self) -> tuple[float, float]:
@@ -73,13 +75,14 @@ def section_at(fields: Fields, angle: float, place: int = -1) -> Section:
     deflection, opening = _at_points(fields, place)
     owns = {below: snapshot.of_interface(below) for below in mesh.interfaces}
     levels = {below: max(level_of(mesh.corners[own], snapshot.shares[own]), 1e-9) for below, own in owns.items()}
-    failed, pressed = ({ply: flags[row] for ply, flags in given.items()} for given in (snapshot.failures,
-                                                                                               snapshot.crushed))
+    failed, pressed = ({ply: flags[row] for ply, flags in given.items()} for given in (
+        snapshot.failures | snapshot.added, snapshot.crushed))
     deck = deck_in(fields.path)
     height = heights_of(deck, middle + along[..., None] * direction) - heights_of(deck, middle)
     return Section(angle, snapshot.time, along, height, _between(deflection[row], places),
                    _between(opening[row], places), _between(snapshot.shares[row], places),
-                   mesh.first_ply[row].astype(int), mesh.last_ply[row].astype(int), levels, failed, pressed)
+                   mesh.first_ply[row].astype(int), mesh.last_ply[row].astype(int), levels, failed, pressed,
+                   middle + along.mean(axis=1)[:, None] * direction)
 
 
 def _crossed(corners: np.ndarray, start: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, ...]:

@@ -30,7 +30,7 @@ _REQUIRED = {
 # Members that functions of this package compute with, so that they are never null.
 _NEVER_NULL = ("energy_kinetic", "energy_strain", "energy_indentation", "energy_delamination", "energy_ply_damage",
                "energy_contact", "energy_friction", "residual_strength", "residual_strength_at",
-               "shortening_at_strength", "percent_bending")
+               "shortening_at_strength", "failure_load", "skin_stress_at_strength", "percent_bending")
 _KINDS = {"real": OrNull(float), "integer": OrNull(int), "logical": bool}
 ACROSS = "failed_across_width"
 _ACROSS_BEFORE = "went_across"  # the name in summaries of version 0.1.0

@@ -33,12 +33,13 @@ class Rectangle(NamedTuple):
 
 
 class Doubler(NamedTuple):
-    """Plies added on a face."""
+    """Plies added on a face; `may_separate` is whether their bond is an interface, so that they are a layer."""
 
     name: str
     face: str
     area: Rectangle
     plies: tuple[Ply, ...]
+    may_separate: bool = False
 
 
 class PlyDrop(NamedTuple):
@@ -94,6 +95,10 @@ class Zones:
                 front -= sum(ply.thickness for ply in doubler.plies) if is_front else 0.0
         return LayUp(tuple(numbers), float(front))
 
+    def may_separate(self, x: float, y: float) -> bool:
+        """Return whether a doubler at a place has a layer of its own."""
+        return any(doubler.may_separate and doubler.area.contains(x, y) for doubler in self.doublers)
+
 
 def zones_of(deck: Deck, laminate: Sequence[Ply]) -> Zones:
     """Return the doublers and ply drops of a deck."""
@@ -120,8 +125,10 @@ def _doubler(deck: Deck, group: Group) -> Doubler:
     if thickness <= 0:
         raise deck.error("doubler", "ply_thickness must be greater than zero.")
     plies = tuple(Ply(materials[name], angle, thickness) for name, angle in zip(names, angles, strict=True))
+    bonds = {str(name).lower() for interface in deck.groups.get("delamination", [])
+             for name in interface.get("doubler", [])}
     return Doubler(text("name"), _face(deck, "doubler", text("face", "back")), _rectangle(deck, "doubler", group),
-                   plies)
+                   plies, text("name").lower() in bonds)
 
 
 def _drop(deck: Deck, group: Group, plies: int) -> PlyDrop:

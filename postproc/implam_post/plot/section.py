@@ -12,6 +12,7 @@ from implam_post.io.fields import Fields, deck_in
 from implam_post.io.history import History
 from implam_post.io.section import Section, section_at
 from implam_post.laminate.decks import plies_of
+from implam_post.laminate.zones import zones_of
 from implam_post.plot.plan_frame import state_of
 from implam_post.plot.section_drawing import ORDER, Dent, Drawing, Plate
 from implam_post.plot.style import PictureStyle
@@ -32,13 +33,11 @@ def plate_of(fields: Fields) -> Plate | None:
     """Return the plies of a run; None if its deck is not known."""
     deck = deck_in(fields.path)
     try:
-        plies = [] if deck is None else plies_of(deck)
+        if deck is None or not (plies := plies_of(deck)):
+            return None
+        return Plate(zones_of(deck, plies))
     except ImplamError:
         return None
-    if not plies:
-        return None
-    heights = np.concatenate([[0.0], np.cumsum([ply.thickness for ply in plies])])
-    return Plate(heights, np.array([ply.angle for ply in plies]))
 
 
 def dent_of(fields: Fields, history: History | None, time: float) -> Dent | None:

@@ -1,6 +1,7 @@
 """One section through the plate: its plies, deformed, delaminations, cracks, failed fibres, and the dent."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,6 +11,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from implam_post.io.section import Section
+from implam_post.laminate.zones import Zones
 from implam_post.plot.style import FAILURES, HATCHES, PictureStyle
 
 # Plies are light grey (fibres along the section) to grey (across it).
@@ -31,17 +33,45 @@ _LETTERS = 7.0
 _PIXELS = 2.5
 
 
-@dataclass(frozen=True)
+class Layer(NamedTuple):
+    """Plies of a layer at a place: their numbers, and depths of their faces below that of the laminate, one more."""
+
+    plies: tuple[int, ...]
+    depths: np.ndarray
+
+    def of(self, ply: int) -> tuple[float, float]:
+        """Return the depths of both faces of a ply."""
+        place = self.plies.index(ply)
+        return float(self.depths[place]), float(self.depths[place + 1])
+
+
 class Plate:
-    """Plies from the struck face: heights of their upper faces and of the back face, and angles in degrees."""
+    """Plies of the plate: its laminate, with doublers and ply drops."""
 
-    heights: np.ndarray
-    angles: np.ndarray
+    def __init__(self, zones: Zones) -> None:
+        """Store them; angles are in degrees, those of the plies of doublers after those of the laminate."""
+        self.zones = zones
+        self.thickness = float(sum(ply.thickness for ply in zones.laminate))
+        self.angles = np.array([ply.angle for ply in zones.plies])
+        self.thinnest = min(ply.thickness for ply in zones.plies)
 
-    @property
-    def thickness(self) -> float:
-        """Thickness of the plate."""
-        return float(self.heights[-1])
+    def layer(self, place: np.ndarray, first: int, last: int) -> Layer:
+        """Return the layer of some plies of the laminate at a place, and of the doublers that are bonded to them.
+
+        A layer of doublers that may come off begins after the last ply of the laminate, and has none of it.
+        """
+        lay_up, plies = self.zones.at(*map(float, place)), len(self.zones.laminate)
+        skin = [at for at, number in enumerate(lay_up.numbers) if number <= plies]
+        inside = [at for at in skin if first <= lay_up.numbers[at] <= last]
+        begin, end = (inside[0], inside[-1] + 1) if inside else (skin[-1] + 1, len(lay_up.numbers))
+        if first == 1:
+            begin = 0
+        if last == plies and inside and not self.zones.may_separate(*map(float, place)):
+            end = len(lay_up.numbers)
+        numbers = lay_up.numbers[begin:end]
+        thicknesses = [self.zones.plies[number - 1].thickness for number in lay_up.numbers[:end]]
+        depths = lay_up.front + self.thickness / 2 + np.concatenate([[0.0], np.cumsum(thicknesses)])
+        return Layer(numbers, depths[begin:])
 
 
 @dataclass(frozen=True)
@@ -66,7 +96,9 @@ class Drawing:
         indentation only: it is drawn so that it decreases linearly to the back."""
         inside = np.flatnonzero(np.any(np.abs(section.along) <= half, axis=1))
         self.section, self.plate, self.half, self.rows = section, plate, half, inside
-        self.tops, self.bottoms = plate.heights[section.first_ply - 1], plate.heights[section.last_ply]
+        self.layers = [plate.layer(*row) for row in zip(section.middles, section.first_ply, section.last_ply,
+                                                        strict=True)]
+        self.tops, self.bottoms = (np.array([layer.depths[end] for layer in self.layers]) for end in (0, -1))
         self.mean = self._mean()
         shown = self.mean[inside]
         self.range = float(np.ptp(shown))
@@ -111,7 +143,7 @@ class Drawing:
              inches: float) -> dict[str, Patch | Line2D]:
         """Draw everything, a unit of depth `inches` high; return the entries of the legend by name."""
         # Lines are at most half as wide as a ply.
-        self.width = min(1.8, 36 * inches * float(np.min(np.diff(self.plate.heights))))
+        self.width = min(1.8, 36 * inches * self.plate.thinnest)
         handles = self._plies(axes)
         handles |= self._failures(axes)
         handles |= self._cracks(axes)
@@ -139,27 +171,32 @@ class Drawing:
         bands, colours, lines = [], [], []
         across = np.abs(np.sin(np.radians(self.plate.angles - self.section.angle)))
         for row in self.rows:
-            for ply in range(self.section.first_ply[row], self.section.last_ply[row] + 1):
-                bands.append(self._band(row, *self.plate.heights[ply - 1:ply + 1]))
+            layer = self.layers[row]
+            for ply, top, bottom in zip(layer.plies, layer.depths[:-1], layer.depths[1:], strict=True):
+                bands.append(self._band(row, top, bottom))
                 colours.append(_shade(across[ply - 1]))
-                lines.append(np.column_stack([self.section.along[row], self.height(row, self.plate.heights[ply])]))
+                lines.append(np.column_stack([self.section.along[row], self.height(row, bottom)]))
             lines.append(np.column_stack([self.section.along[row], self.height(row, self.tops[row])]))
         axes.add_collection(PolyCollection(bands, facecolors=colours, edgecolors=colours, linewidths=0.2))
         axes.add_collection(LineCollection(lines, colors="0.55", linewidths=0.4))
         return {name: Patch(facecolor=_shade(value), edgecolor="0.55", label=name)
                 for name, value in ((_ALONG, 0), (_ACROSS, 1))}
 
+    def _failed(self, ply: int, mode: str) -> list[int]:
+        """Return the rows shown in which a ply failed in a mode."""
+        return [row for row in np.intersect1d(self.section.failed(ply, mode), self.rows)
+                if ply in self.layers[row].plies]
+
     def _failures(self, axes: Axes) -> dict[str, Patch | Line2D]:
         """Draw crushed matrix and failed fibres as filled parts of plies."""
         bands: dict[str, list[np.ndarray]] = {name: [] for name in _FILLED}
         for ply in self.section.failures:
-            shown = self.plate.heights[ply - 1:ply + 1]
-            for row in np.intersect1d(self.section.failed(ply, "matrix crushing"), self.rows):
-                bands["matrix crushing"].append(self._band(row, *shown))
+            for row in self._failed(ply, "matrix crushing"):
+                bands["matrix crushing"].append(self._band(row, *self.layers[row].of(ply)))
             crushed = self.section.crushed.get(ply)
-            for row in np.intersect1d(self.section.failed(ply, "fibre failure"), self.rows):
+            for row in self._failed(ply, "fibre failure"):
                 name = "fibre failure" if crushed is None else "fibres crushed" if crushed[row] else "fibres torn"
-                bands[name].append(self._band(row, *shown))
+                bands[name].append(self._band(row, *self.layers[row].of(ply)))
         handles = {}
         for name, found in bands.items():
             if found:
@@ -173,10 +210,9 @@ class Drawing:
         """Draw a line through the ply for each cracked element; along the ply where the crack is in the drawing."""
         across, along = [], []
         for ply in self.section.failures:
-            top, bottom = self.plate.heights[ply - 1:ply + 1]
             turned = (self.plate.angles[ply - 1] - self.section.angle + 90) % 180 - 90
-            for row in np.intersect1d(self.section.failed(ply, "matrix cracking"), self.rows):
-                places = self.section.along[row]
+            for row in self._failed(ply, "matrix cracking"):
+                places, (top, bottom) = self.section.along[row], self.layers[row].of(ply)
                 middle = len(places) // 2
                 if abs(turned) < _IN_PLANE:
                     along.append(np.column_stack([places, self.height(row, (top + bottom) / 2)]))
@@ -195,7 +231,7 @@ class Drawing:
         """Draw delaminated interfaces: filled gaps where they are open, lines where they are closed."""
         section, handles = self.section, {}
         delaminated = section.delaminated
-        least = _GAP * float(np.min(np.diff(self.plate.heights)))
+        least = _GAP * self.plate.thinnest
         for row in self.rows[np.any(delaminated[self.rows], axis=1)]:
             lower = self.height(row, self.tops[row])
             gap = np.nan_to_num(section.opening[row])
@@ -217,7 +253,7 @@ class Drawing:
         """Draw the struck face, with the dent, and an arrow at the struck point."""
         own = [row for row in self.rows if self.section.first_ply[row] == 1]
         along, heights = (np.concatenate(values) for values in (
-            [self.section.along[row] for row in own], [self.height(row, 0.0) for row in own]))
+            [self.section.along[row] for row in own], [self.height(row, self.tops[row]) for row in own]))
         order = np.argsort(along, kind="stable")
         axes.plot(along[order], heights[order], color="black", linewidth=1, zorder=6)
         axes.annotate("struck point", (0, np.interp(0, along[order], heights[order])), (0, 14), ha="center",
@@ -228,13 +264,14 @@ class Drawing:
 
     def _numbers(self, axes: Axes, inches: float) -> None:
         """Write numbers and angles of the plies beside the section, as many as there is room for."""
-        least = float(np.min(np.diff(self.plate.heights))) * inches * 72
+        least = self.plate.thinnest * inches * 72
         step = max(1, int(np.ceil(1.15 * _LETTERS / least)))
-        ends = self.rows[np.argmax(self.section.along[self.rows].max(axis=1))]
-        moved = self.deflection[ends][-1]
-        for ply in range(0, len(self.plate.angles), step):
-            height = np.mean(self.plate.heights[ply:ply + 2]) + moved
-            axes.text(1.01, height, f"{ply + 1}: {self.plate.angles[ply]:g}°", fontsize=_LETTERS, va="center",
+        reached = self.section.along[self.rows].max(axis=1)
+        ends = self.rows[reached >= reached.max()]
+        shown = [(ply, row) for row in ends for ply in self.layers[row].plies]
+        for ply, row in shown[::step]:
+            height = np.mean(self.layers[row].of(ply)) + self.deflection[row][-1]
+            axes.text(1.01, height, f"{ply}: {self.plate.angles[ply - 1]:g}°", fontsize=_LETTERS, va="center",
                       transform=axes.get_yaxis_transform())
 
 

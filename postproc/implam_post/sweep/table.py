@@ -55,6 +55,8 @@ FIGURES = {
     "projected_area": Figure("projected_area", "projected delaminated area"),
     "residual_strength": Figure("residual_strength", "residual strength", True),
     "shortening_at_strength": Figure("shortening_at_strength", "shortening at the strength", True),
+    "failure_load": Figure("failure_load", "failure load", True),
+    "skin_stress_at_strength": Figure("skin_stress_at_strength", "stress of the laminate at the strength", True),
     "effective_modulus": Figure("effective_modulus", "effective modulus", True),
     "has_failed": Figure("has_failed", "whether the plate has failed", True),
     "failure_code": Figure("failure_code", "failure code", True),

@@ -406,13 +406,25 @@ class RoundTripTest(ExportTest):
                                 ("plies=4,5", "plies=9", "plies must be integers from 1 to 8"),
                                 ("[0/30]'", "[0//30]'", "cannot be read from character 4"),
                                 ("size=60,30", "size=60", "size must be two numbers"),
-                                ("face='back'", "face='side'", "'side' is not one of front, back"),
-                                ("&static /", "&delamination doubler='pad' /\n&static /", "interface of a doubler")):
+                                ("face='back'", "face='side'", "'side' is not one of front, back")):
             with self.subTest(words):
                 self.keep(text.replace(old, new, 1))
                 code, printed = self.run_command(to_nastran, self.path)
                 self.assertEqual((code, printed.count("\n")), (2, 1), printed)
                 self.assertIn(words, printed)
+
+    def test_bond(self) -> None:
+        """A bond that may delaminate is rigid, except where it has a starter; the command says so."""
+        text = STIFFENED.format(in_plane="fixed")
+        for starter, parts in (("", {((1, 2, 3, 4, 5, 6, 7, 8, 9, 10),)}),
+                               ("starter=30 starter_at=-60,40", {((1, 2, 3, 4, 5, 6, 7, 8), (9, 10))})):
+            self.keep(text.replace("&static /", f"&delamination doubler='pad' G_c=1 {starter} /\n&static /"))
+            code, printed = self.run_command(to_nastran, self.path)
+            self.assertEqual(code, 0, printed)
+            self.assertIn("the bond of doublers is written as rigid", printed)
+            panel = read_panel(self.path)
+            found = [tuple(panel.section(stack).numbers for stack in stacks) for stacks in panel.stacks.values()]
+            self.assertEqual({numbers for numbers in found if any(9 in part for part in numbers)}, parts)
 
     def test_lines(self) -> None:
         """Lines of equal cells move to what they must follow, or one is added."""
