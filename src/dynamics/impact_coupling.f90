@@ -7,7 +7,7 @@ module impact_coupling
   use tan_sun_indentation, only: indentation_t
   use impactor_integrators, only: predict, takes_mean_force
   use newmark_integrators, only: plate_integrator_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use newton_iterations, only: newton_iteration_t
   use states, only: state_t
   implicit none
@@ -43,7 +43,7 @@ contains
 
   !> Coupling in a step.
   pure function begin_coupling(model, integrator, old, step) result(coupling)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old

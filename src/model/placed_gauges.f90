@@ -6,7 +6,7 @@ module placed_gauges
   use gauges, only: face_back, face_front, gauge_t
   use kinds, only: wp
   use mathematical_constants, only: degree
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use roundings, only: rounding
@@ -25,7 +25,7 @@ contains
 
   !> Strains of all gauges, the same on every rank. Collective.
   function gauge_strains(model, displacement) result(strains)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> One per gauge
@@ -75,7 +75,7 @@ contains
   !> Adds the strain of a gauge: that of its cell, or the mean over the cells that meet there. Only cells of this rank
   !> contribute.
   subroutine add_strain(model, gauge, motion, total)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -105,7 +105,7 @@ contains
 
   !> Strain of a surface in an element.
   function surface_strain(model, gauge, motion, element, place) result(strain)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The gauge, on one of the surfaces
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
@@ -129,7 +129,7 @@ contains
 
   !> Position of a gauge or its image in the modelled part, and its direction there.
   pure subroutine find_place(model, gauge, at, angle)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(gauge_t), intent(in) :: gauge
     !> The point
     real(wp), intent(out) :: at(2)

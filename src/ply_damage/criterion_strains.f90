@@ -3,7 +3,7 @@ module criterion_strains
   use kinds, only: wp
   use element_batches, only: lanes, first_element
   use strain_recovery, only: mean_strains
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: mean_strains_of_elements
@@ -12,7 +12,7 @@ contains
 
   !> Mean strains of this rank's elements.
   function mean_strains_of_elements(model, displacement) result(strains)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; transverse shear gxz, gyz of the plate, (8, elements)

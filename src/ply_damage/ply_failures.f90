@@ -11,6 +11,7 @@ module ply_failures
   use ply_damage_parameters, only: energy_modes, failure_modes
   use stacking, only: in_plane_section
   use section_stiffnesses, only: visit_stiffness
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use rank_totals, only: totals_of
   use failed_modes, only: failed_modes_t, new_failed_modes
@@ -71,7 +72,7 @@ contains
 
   !> No failure. Collective.
   function new_ply_failure(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(ply_failure_t) :: self
 
     self%stiffness = model%elements%stiffness
@@ -131,7 +132,7 @@ contains
   !> Adds the forces of the elements on the layers; history variables of softening plies are accepted. Collective.
   subroutine add_layer_forces(self, model, motion, force, energies)
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
     !> Internal forces on the layers, (5, columns of the borders), added to
@@ -161,7 +162,7 @@ contains
   subroutine record(self, model, energy)
     !> The failures with the trial of the step
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Energy of all modes, of the full plate, the same on every rank
     real(wp), intent(out) :: energy
     real(wp) :: energies(energy_modes)
@@ -176,7 +177,7 @@ contains
   !> Computes the energy dissipated by softening plies so far in each mode. Collective.
   subroutine total_dissipation(self, model)
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp) :: energies(energy_modes + 1)
 
     energies = totals_of(model%communicator, self%bands%dissipated())*model%mesh%multiplicity
@@ -220,7 +221,7 @@ contains
   !> Failed modes of a ply in all elements.
   pure function failed_in_elements(self, model, ply) result(failed)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> True for failed modes, (modes, elements); false in elements without this ply
@@ -236,7 +237,7 @@ contains
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
     !> The constants
@@ -264,7 +265,7 @@ contains
   !> Plies of an element with their permanent strains.
   pure function strained_plies(self, model, element) result(plies)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
     type(ply_t), allocatable :: plies(:)
@@ -292,7 +293,7 @@ contains
   !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
     !> Those of the element's plies
@@ -307,7 +308,7 @@ contains
   !> Finds new failures in an accepted state and reduces the stiffness. Collective.
   subroutine grow(self, model, displacement)
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     logical, allocatable :: failing(:)
@@ -330,7 +331,7 @@ contains
   !> Computes the reduced stiffness of an element.
   subroutine soften(self, model, element)
     type(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
 
@@ -347,7 +348,7 @@ contains
   subroutine restack(self, model, is_split)
     !> The failures, loaded from elements with more plies
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> True for these elements, (elements)
     logical, intent(in) :: is_split(:)
     integer :: element
@@ -372,7 +373,7 @@ contains
   subroutine visit(self, archive, model)
     class(ply_failure_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer :: mode, element, i
 
     call self%modes%visit(archive, model)

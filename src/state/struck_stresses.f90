@@ -4,7 +4,7 @@ module struck_stresses
   use kinds, only: wp
   use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: mean_strains
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   implicit none
   private
@@ -14,7 +14,7 @@ contains
 
   !> Magnitude of the surface stress 6 M / h**2 around the struck point, the same on every rank.
   real(wp) function struck_stress(model, displacement) result(stress)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
