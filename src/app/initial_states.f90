@@ -228,7 +228,7 @@ contains
     if (allocated(error)) return
     call log%note('The plate starts from the end of the run of '//deck%initial%from//'.')
     ! At rest, damage would only grow by errors of the mapping.
-    call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%load_start > 0 .and. &
+    call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%loading%start > 0 .and. &
                                  deck%initial%motion == motion_rest)
     call begin_contact(deck, old, stepper%now%indentation, log)
     call stepper%begin_inherited(model, transfer, deck%initial%motion, error)

@@ -223,7 +223,7 @@ contains
     integer :: direction
 
     lengths = [huge(1.0_wp), 0.0_wp]
-    joined = is_halved(deck%plate%symmetry) .or. deck%has_impactor
+    joined = is_halved(deck%plate%symmetry) .or. deck%impactor%is_present
     do direction = 1, 2
       line = cells_along(deck%plate, deck%mesh, direction)
       lengths = [min(lengths(1), minval(line%sides())), max(lengths(2), maxval(line%sides()))]

@@ -59,8 +59,9 @@ contains
     call check_bonds_across_groups(deck, problems)
     call check_impact(deck, problems)
     call check_interfaces(deck, problems)
-    if (deck%has_ply_damage) call check_strengths(deck, problems)
-    call remark_idle_fields(deck%settings, deck%output, size(deck%delaminations) > 0, deck%has_ply_damage, problems)
+    if (deck%ply_damage%is_present) call check_strengths(deck, problems)
+    call remark_idle_fields(deck%settings, deck%output, size(deck%delaminations) > 0, deck%ply_damage%is_present, &
+                            problems)
   end subroutine check_across_groups
 
   !> Checks that there is a load, and no conflicting ones.
@@ -70,15 +71,16 @@ contains
 
     if (deck%presses_impactor()) then
       call check_travel(deck, problems)
-    else if (deck%has_impactor .and. deck%settings%is_given(impactor_group, key_travel)) then
+    else if (deck%impactor%is_present .and. deck%settings%is_given(impactor_group, key_travel)) then
       call check_travel_in_time(deck, problems)
-    else if (deck%is_static() .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
-             problems%concern(pressure_group) .or. problems%concern(line_group))) then
+    else if (deck%is_static() .and. &
+             .not. (deck%pressure%is_present .or. deck%thermal%is_present .or. loads(deck%lines) .or. &
+                    problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call report(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
-    else if (.not. (deck%is_static() .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
-                    deck%initial%is_inherited .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
-                    problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
-                    problems%concern(pressure_group))) then
+    else if (.not. (deck%is_static() .or. deck%impactor%is_present .or. deck%pressure%is_present .or. &
+                    deck%thermal%is_present .or. deck%initial%is_inherited .or. loads(deck%lines) .or. &
+                    problems%concern(line_group) .or. problems%concern(static_group) .or. &
+                    problems%concern(impactor_group) .or. problems%concern(pressure_group))) then
       call problems%error(0, pressure_group, '', 'the plate has no load; give &impactor, &pressure or &line.')
     end if
   end subroutine check_loads
@@ -93,7 +95,7 @@ contains
       if (.not. problems%concern(impactor_group, key_travel)) &
         call report(deck%settings, problems, static_group, '', &
                     'an impactor needs &time, or a travel; give &impactor travel, or leave out &static or &impactor.')
-    else if (deck%has_pressure .or. loads(deck%lines)) then
+    else if (deck%pressure%is_present .or. loads(deck%lines)) then
       call report(deck%settings, problems, impactor_group, key_travel, &
                   'no other load is possible with a travel in a static analysis; leave out &pressure and lines '// &
                   'that move or load the plate.')
@@ -139,7 +141,7 @@ contains
     if (deck%settings%has_group(adapt_group)) &
       call remark(deck%settings, problems, adapt_group, '', 'has no effect on a static analysis.')
     if (.not. problems%concern(static_group)) &
-      call check_intervals(deck%settings, 1.0_wp/deck%static%steps, 1.0_wp, problems)
+      call check_intervals(deck%settings, 1.0_wp/deck%loading%steps, 1.0_wp, problems)
     if (any(deck%delaminations%law == law_front)) &
       call remark(deck%settings, problems, delamination_group, '', &
                   'in a static analysis the starter of a front does not grow.')
@@ -181,8 +183,8 @@ contains
     integer :: i
 
     associate (s => deck%settings)
-      if (.not. deck%has_impactor) then
-        if (deck%has_indentation .and. .not. problems%concern(impactor_group)) &
+      if (.not. deck%impactor%is_present) then
+        if (deck%impactor%indentation%is_given .and. .not. problems%concern(impactor_group)) &
           call remark(s, problems, indentation_group, '', 'has no effect without an impactor.')
         return
       end if
@@ -202,7 +204,7 @@ contains
         call report(s, problems, plate_group, key_curvature_radius, 'the nose of the impactor, radius '// &
                     short_text(deck%impactor%radius)//', does not fit into the concave side; allowed: a larger radius.')
       if (deck%is_static() .or. s%is_given(impactor_group, key_travel)) return
-      if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
+      if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%pressure%is_present .and. &
           .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &
         call report(s, problems, impactor_group, key_velocity, &
@@ -216,9 +218,9 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    if (deck%indentation%law == law_hertz .or. .not. allocated(deck%laminate%thickness)) return
+    if (deck%impactor%indentation%law == law_hertz .or. .not. allocated(deck%laminate%thickness)) return
     associate (thickness => sum(deck%laminate%thickness))
-      if (thickness > 0 .and. deck%indentation%alpha_critical > thickness) &
+      if (thickness > 0 .and. deck%impactor%indentation%alpha_critical > thickness) &
         call remark(deck%settings, problems, indentation_group, key_alpha_critical, 'is larger than the thickness '// &
                     'of the laminate, '//short_text(thickness)//': the contact is elastic and leaves no dent.')
     end associate

@@ -33,7 +33,7 @@ contains
                   'write &time integrator = ''generalized_alpha''.')
       if (s%has_group(adapt_group)) call remark(s, problems, adapt_group, '', no_effect)
       ! Equilibrium with residual stresses or fixed lines is found before the first step.
-      if (s%has_group(solver_group) .and. .not. (deck%has_thermal .or. any(deck%lines%precedes()))) &
+      if (s%has_group(solver_group) .and. .not. (deck%thermal%is_present .or. any(deck%lines%precedes()))) &
         call remark(s, problems, solver_group, '', no_effect)
     end associate
   end subroutine check_central_differences

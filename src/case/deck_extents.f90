@@ -148,7 +148,7 @@ contains
             are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call report(s, problems, delamination_group, key_starter, 'must lie within the plate.', place)
-        if (deck%has_impactor .and. d%law == law_front .and. d%starter < min_starter*deck%mesh%patch .and. &
+        if (deck%impactor%is_present .and. d%law == law_front .and. d%starter < min_starter*deck%mesh%patch .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
                       'patch: most of the shear force then acts within the starter, and growth may never start.', place)

@@ -19,7 +19,6 @@ module deck_fillings
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
   use line_deck, only: fill_lines
-  use load_cases, only: analysis_by_load_steps
   use material_deck, only: fill_materials
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh
@@ -51,13 +50,13 @@ contains
   subroutine note_groups(deck)
     type(deck_t), intent(inout) :: deck
 
-    deck%has_impactor = deck%settings%has_group(impactor_group)
-    deck%has_indentation = deck%settings%has_group(indentation_group)
-    deck%has_pressure = deck%settings%has_group(pressure_group)
-    deck%has_thermal = deck%settings%has_group(thermal_group)
-    if (deck%settings%has_group(static_group)) deck%analysis = analysis_by_load_steps
+    deck%impactor%is_present = deck%settings%has_group(impactor_group)
+    deck%impactor%indentation%is_given = deck%settings%has_group(indentation_group)
+    deck%pressure%is_present = deck%settings%has_group(pressure_group)
+    deck%thermal%is_present = deck%settings%has_group(thermal_group)
+    deck%loading%by_steps = deck%settings%has_group(static_group)
     deck%initial%is_inherited = deck%settings%has_group(initial_state_group)
-    deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
+    deck%ply_damage%is_present = deck%settings%has_group(ply_damage_group)
     deck%has_time = deck%settings%has_group(time_group) .or. &
                     has_accuracy(deck%settings) .and. .not. deck%is_static()
     if (.not. deck%has_time) call deck%settings%set_aside(time_group)
@@ -71,7 +70,7 @@ contains
 
     call fill_case(deck%settings, deck%source, deck%name, deck%title)
     call fill_accuracy(deck%settings, deck%accuracy, deck%units, deck%strict, deck%refine)
-    call fill_kinematics(deck%settings, deck%kinematics)
+    call fill_kinematics(deck%settings, deck%mesh%kinematics)
     call fill_plate(deck%settings, deck%plate)
     call fill_supports(deck%settings, deck%supports)
     call fill_stringers(deck%settings, deck%plate%length, deck%stringers)
@@ -142,9 +141,9 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call fill_impactor(deck%settings, deck%impactor, problems)
-    if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
-    if (deck%has_impactor) &
-      call fill_indentation(deck%settings, deck%contact_radius(), struck_face_of(deck), deck%indentation)
+    if (deck%impactor%is_present) deck%mesh%struck = deck%impactor%at
+    if (deck%impactor%is_present) &
+      call fill_indentation(deck%settings, deck%contact_radius(), struck_face_of(deck), deck%impactor%indentation)
     if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
@@ -157,14 +156,14 @@ contains
         .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
       deck%impactor%rise = usual_rise*deck%stepping%time%end
     call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
-    if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
+    if (deck%thermal%is_present) call fill_thermal(deck%settings, deck%thermal%temperature_change)
     call fill_initial_state(deck%settings, deck%initial)
     ! An impactor with a given travel does not leave the plate, so that the run is not extended until the contact ends.
     if (deck%impactor%travel > 0) deck%stepping%central%settle = 0
-    if (deck%initial%is_inherited .or. .not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
-    if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
-    call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
-    if (deck%is_static()) call fill_static(deck%settings, deck%static)
+    if (deck%initial%is_inherited .or. .not. deck%impactor%is_present) deck%loading%start = deck%stepping%central%settle
+    if (deck%has_time) deck%loading%ramp_time = deck%stepping%time%end - deck%loading%start
+    call fill_lines(deck%settings, merge(deck%loading%ramp_time, 0.0_wp, deck%has_time), deck%lines)
+    if (deck%is_static()) call fill_static(deck%settings, deck%loading)
   end subroutine fill_loads
 
   !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws
@@ -186,6 +185,6 @@ contains
     call fill_controls(deck%settings, deck%stepping)
     call fill_linear_solver(deck%settings, deck%linear_solver)
     call fill_output(deck%settings, deck%output)
-    call fill_gauges(deck%settings, deck%gauges)
+    call fill_gauges(deck%settings, deck%plate%gauges)
   end subroutine fill_steps
 end module deck_fillings

@@ -21,7 +21,7 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: apart
 
-    if (problems%errors() > 0 .or. .not. (deck%has_time .and. deck%has_impactor)) return
+    if (problems%errors() > 0 .or. .not. (deck%has_time .and. deck%impactor%is_present)) return
     apart = deck%output%history_every
     if (.not. apart > 0) apart = deck%stepping%time%step*deck%output%steps_between_rows
     if (deck%output%force_filter > 0 .and. deck%output%force_filter*deck%stepping%time%end < 1) then

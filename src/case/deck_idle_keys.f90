@@ -52,7 +52,7 @@ contains
       end if
     end if
     if (problems%concern(ply_damage_group)) return
-    if (deck%has_ply_damage) then
+    if (deck%ply_damage%is_present) then
       call remark_strengths(deck, place, problems)
       return
     end if
@@ -82,7 +82,7 @@ contains
   logical function has_yield_pressure(deck)
     type(deck_t), intent(in) :: deck
 
-    has_yield_pressure = deck%has_impactor .and. deck%indentation%law == law_thornton .and. &
+    has_yield_pressure = deck%impactor%is_present .and. deck%impactor%indentation%law == law_thornton .and. &
                          takes_laminate(deck%settings)
   end function has_yield_pressure
 

@@ -42,7 +42,7 @@ contains
     integer :: place
 
     associate (s => deck%settings)
-      if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
+      if (deck%loading%start > 0 .and. .not. deck%loading%start < deck%stepping%time%end .and. &
           are_clear(s, problems, time_group, key_settle//' end')) &
         call report(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
                   to_text(deck%stepping%time%end)//'.')
@@ -60,7 +60,7 @@ contains
           'plate before the run cannot be combined with &initial_state; give it a rise > 0.', place)
       end do
       do place = 1, size(deck%supports)
-        if (deck%supports(place)%unilateral .and. .not. deck%has_impactor) &
+        if (deck%supports(place)%unilateral .and. .not. deck%impactor%is_present) &
           call report(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
                     '&initial_state; allowed: .false., or an &impactor.', place)
       end do
@@ -75,8 +75,8 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
-    if (deck%kinematics /= old%kinematics) then
-      objection = both('&case kinematics', strains_name(deck%kinematics), strains_name(old%kinematics))
+    if (deck%mesh%kinematics /= old%mesh%kinematics) then
+      objection = both('&case kinematics', strains_name(deck%mesh%kinematics), strains_name(old%mesh%kinematics))
     else if (.not. has_same_length(deck, old) .or. any(abs(deck%initial%cut_at) > 0)) then
       objection = cut_objection(deck, old)
     end if
@@ -91,8 +91,9 @@ contains
     else if (deck%plate%symmetry /= old%plate%symmetry .and. deck%plate%symmetry /= symmetry_none) then
       objection = both(key_symmetry, part_name(deck%plate%symmetry), part_name(old%plate%symmetry))// &
                   '; allowed: the same, or ''none'''
-    else if (differ(deck%temperature_change, old%temperature_change)) then
-      objection = both('&thermal delta_T', to_text(deck%temperature_change), to_text(old%temperature_change))
+    else if (differ(deck%thermal%temperature_change, old%thermal%temperature_change)) then
+      objection = both('&thermal delta_T', to_text(deck%thermal%temperature_change), &
+                       to_text(old%thermal%temperature_change))
     end if
     if (objection == '') objection = laminate_objection(deck, old)
     if (objection == '') objection = zones_objection(deck, old)
@@ -116,9 +117,9 @@ contains
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
 
-    same = deck%has_impactor .and. old%has_impactor
+    same = deck%impactor%is_present .and. old%impactor%is_present
     if (.not. same) return
-    associate (mine => deck%indentation, its => old%indentation)
+    associate (mine => deck%impactor%indentation, its => old%impactor%indentation)
       same = mine%law == its%law .and. mine%dent == its%dent .and. &
              .not. any(differ([mine%k, mine%q, mine%reload, mine%beta, mine%alpha_critical, deck%impactor%radius], &
                               [its%k, its%q, its%reload, its%beta, its%alpha_critical, old%impactor%radius])) .and. &
@@ -134,7 +135,7 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
-    if (deck%has_ply_damage .and. .not. deck%has_crack_bands()) &
+    if (deck%ply_damage%is_present .and. .not. deck%has_crack_bands()) &
       objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) fail '// &
                   'at once, so that their state cannot be averaged; give '// &
                   trim(merge('the same &mesh in both decks', 'these energies              ', &
@@ -216,11 +217,11 @@ contains
     integer :: i
 
     objection = ''
-    if (deck%has_ply_damage .neqv. old%has_ply_damage) then
-      objection = both('&ply_damage', given(deck%has_ply_damage), given(old%has_ply_damage))
+    if (deck%ply_damage%is_present .neqv. old%ply_damage%is_present) then
+      objection = both('&ply_damage', given(deck%ply_damage%is_present), given(old%ply_damage%is_present))
       return
     end if
-    if (.not. deck%has_ply_damage) return
+    if (.not. deck%ply_damage%is_present) return
     here = numbers_of(deck%ply_damage)
     there = numbers_of(old%ply_damage)
     i = findloc(differ(here, there), .true., dim=1)

@@ -70,7 +70,7 @@ contains
     if (any(deck%delaminations%law == law_front)) return
     if (deck%settings%is_given(mesh_group, key_mass) .and. &
         deck%settings%text_of(mesh_group, key_mass) == 'consistent') return
-    if (deck%has_ply_damage .and. allocated(deck%laminate%material)) then
+    if (deck%ply_damage%is_present .and. allocated(deck%laminate%material)) then
       associate (used => deck%used_materials())
         if (any([(any(deck%materials(used(ply))%toughness > 0), ply=1, size(used))])) softening = 'plies'
       end associate

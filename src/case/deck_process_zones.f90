@@ -77,7 +77,7 @@ contains
         if (d%shear_cracks) call remark_shear_cracks(deck, d, problems)
         if (.not. d%cracks_as_flaws) cycle
         d%flaw_strength = resolved_part(process_zone(deck, d))
-        if (deck%has_ply_damage .and. .not. d%flaw_strength < 1) then
+        if (deck%ply_damage%is_present .and. .not. d%flaw_strength < 1) then
           call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect below ply '// &
                            to_text(d%below_ply)//', where the cells resolve the strengths.', d%group)
         end if
@@ -95,7 +95,7 @@ contains
     real(wp) :: least
     integer :: ply
 
-    if (deck%has_ply_damage) then
+    if (deck%ply_damage%is_present) then
       plies = stacked_plies(deck%laminate, deck%materials)
       least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%materials, deck%ply_damage)), &
                        ply=delamination%below_ply, delamination%below_ply + 1)])
@@ -213,7 +213,7 @@ contains
     zone%toughness_shear = toughness(2)
     zone%strength_opening = delamination%strength_opening
     zone%strength_shear = delamination%strength_shear
-    zone%is_pulled = .not. deck%has_impactor
+    zone%is_pulled = .not. deck%impactor%is_present
     zone%by_energy = grows_by_energy(deck, delamination)
     zone%is_implicit_specimen = zone%is_pulled .and. .not. (deck%has_time .and. is_explicit(deck%stepping)) .and. &
                                 (delamination%starter > 0 .or. has_strip(delamination))

@@ -32,7 +32,7 @@ contains
     deck%stepping%central%step_factor = deck%stepping%central%step_factor/parts
     deck%stepping%central%longest = deck%stepping%central%longest/parts
     deck%stepping%adapt%tolerance = deck%stepping%adapt%tolerance/parts**3
-    deck%static%steps = parts*deck%static%steps
+    deck%loading%steps = parts*deck%loading%steps
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
     call append(deck%reasons, 'Refined '//counted(to_text(deck%refine), 'time')//': '// &
                 to_text(deck%mesh%elements(1))//' x '//to_text(deck%mesh%elements(2))//' elements'//steps_of(deck)//'.')
@@ -47,7 +47,7 @@ contains
     if (is_explicit(deck%stepping)) then
       clause = ', '//to_text(deck%stepping%central%step_factor)//' of the stable step'
     else if (deck%is_static()) then
-      clause = ', '//counted(to_text(deck%static%steps), 'load step')
+      clause = ', '//counted(to_text(deck%loading%steps), 'load step')
     else
       clause = ', steps of '//to_text(deck%stepping%time%step)
     end if

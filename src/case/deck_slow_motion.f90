@@ -41,9 +41,9 @@ contains
     character(len=:), allocatable :: clause
 
     clause = ''
-    if (is_pressed(deck) .and. (deck%has_ply_damage .or. size(deck%delaminations) > 0)) then
+    if (is_pressed(deck) .and. (deck%ply_damage%is_present .or. size(deck%delaminations) > 0)) then
       clause = ' With softening there may be no equilibrium'//slow_motion(deck)//'.'
-    else if (deck%is_static() .and. .not. deck%static%dissipation > 0 .and. &
+    else if (deck%is_static() .and. .not. deck%loading%dissipation > 0 .and. &
              any(deck%delaminations%law == law_cohesive)) then
       clause = ' With a softening interface there may be no equilibrium at this load: use &'//static_group//' '// &
                key_dissipation//' to trace its growth.'

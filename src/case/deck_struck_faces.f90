@@ -59,13 +59,14 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    if (.not. (deck%has_impactor .and. allocated(deck%laminate%material) .and. takes_laminate(deck%settings))) return
+    if (.not. (deck%impactor%is_present .and. allocated(deck%laminate%material) .and. takes_laminate(deck%settings))) &
+      return
     if (.not. are_clear(deck%settings, problems, indentation_group, key_face)) return
     associate (s => deck%settings, used => deck%laminate%material)
       if (.not. (is_complete(deck) .or. s%is_given(indentation_group, key_k))) then
         call report(s, problems, indentation_group, key_face, 'needs nu23 of every fibre-reinforced ply; give it '// &
                     'in &material, or E3 and face = ''ply''.')
-      else if (deck%indentation%law == law_thornton .and. .not. all(deck%materials(used)%yc > 0) .and. .not. &
+      else if (deck%impactor%indentation%law == law_thornton .and. .not. all(deck%materials(used)%yc > 0) .and. .not. &
                (s%is_given(indentation_group, key_yield) .or. s%is_given(indentation_group, key_alpha_critical))) then
         call report(s, problems, indentation_group, key_face, 'needs YC of every ply for the yield pressure; give '// &
                     'it in &material, or yield_pressure.')

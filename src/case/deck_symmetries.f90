@@ -157,7 +157,7 @@ contains
     type(deck_t), intent(inout) :: deck
 
     if (deck%plate%symmetry /= symmetry_none .or. deck%initial%is_inherited) return
-    if (deck%has_ply_damage .or. size(deck%delaminations) > 0) deck%plate%kept = smallest_part(deck)
+    if (deck%ply_damage%is_present .or. size(deck%delaminations) > 0) deck%plate%kept = smallest_part(deck)
   end subroutine note_symmetry
 
   !> True if a part of the plate suffices.
@@ -259,7 +259,7 @@ contains
     words = 'the laminate'
     if (couples(stacked_plies(deck%laminate, deck%materials))) return
     words = 'a layer between interfaces'
-    if (deck%has_ply_damage) words = 'a ply that may fail'
+    if (deck%ply_damage%is_present) words = 'a ply that may fail'
   end function coupled_part
 
   !> True: the laminate is valid and not symmetric about the axes of the plate, or a part of it is not: a layer between
@@ -280,7 +280,7 @@ contains
     is_coupled = couples(plies) .or. zones_are_coupled(deck)
     last = [pack(deck%delaminations%below_ply, deck%delaminations%below_ply > 0 .and. &
                  deck%delaminations%below_ply < size(plies)), size(plies)]
-    if (deck%has_ply_damage) last = [(i, i=1, size(plies))]
+    if (deck%ply_damage%is_present) last = [(i, i=1, size(plies))]
     do i = 1, size(last)
       if (i == 1) then
         is_coupled = is_coupled .or. couples(plies(:last(1)))
@@ -306,7 +306,7 @@ contains
       if (.not. shares(i) > 0) cycle
       stack = deck%zones%stack(deck%laminate, deck%materials, known(:, i))
       coupled = coupled .or. couples(stack%plies)
-      if (deck%has_ply_damage .or. size(deck%delaminations) > 0) &
+      if (deck%ply_damage%is_present .or. size(deck%delaminations) > 0) &
         coupled = coupled .or. any([(couples(stack%plies(k:k)), k=1, size(stack%plies))])
     end do
   end function zones_are_coupled

@@ -137,7 +137,7 @@ contains
     end do
     system = minloc(odd, 1)
     ! Without an impactor there are too few values to determine the system, and plates of unit density are common.
-    if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
+    if (2*odd(system) > present_kinds .or. .not. deck%impactor%is_present) system = 0
   end function probable_system
 
   !> Number of kinds of quantities with an unusual value; lengths of all kinds count as one.
@@ -173,7 +173,7 @@ contains
 
     if (deck%settings%is_known(time_group, key_end) .and. .not. deck%settings%is_given(time_group, key_end)) return
     longest = max(deck%expected%scales%first_period, contact_rises*deck%expected%scales%contact_time)
-    if (deck%has_impactor) longest = max(longest, pi*sqrt(deck%impactor%mass*deck%expected%scales%compliance))
+    if (deck%impactor%is_present) longest = max(longest, pi*sqrt(deck%impactor%mass*deck%expected%scales%compliance))
     if (.not. longest > 0) return
     ratio = deck%stepping%time%end/longest
     if (ratio > shortest_run .and. ratio < longest_run) return
@@ -252,7 +252,7 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: base(3), ball, ratio
 
-    associate (impactor => deck%impactor, law => deck%indentation)
+    associate (impactor => deck%impactor, law => deck%impactor%indentation)
       if (.not. impactor%radius > 0) return
       if (is_unusual(of_radius, impactor%radius, system)) return
       base = base_units(system)

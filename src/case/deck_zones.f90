@@ -80,7 +80,7 @@ contains
     type(problems_t), intent(inout) :: problems
     type(ply_zone_t) :: patch, inner
 
-    if (.not. (deck%has_impactor .and. deck%mesh%patch > 0)) return
+    if (.not. (deck%impactor%is_present .and. deck%mesh%patch > 0)) return
     patch%at = deck%mesh%struck
     patch%size = deck%mesh%patch
     inner%at = zone%at

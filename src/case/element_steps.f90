@@ -122,7 +122,6 @@ contains
     type(setup_t) :: setup
     integer :: i
 
-    setup%kinematics = deck%kinematics
     setup%materials = deck%materials
     setup%laminate = deck%laminate
     setup%zones = deck%zones%everywhere(here)
@@ -130,7 +129,8 @@ contains
     setup%plate%length = cells*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
     setup%plate%edges = edge_free
     setup%plate%symmetry = symmetry_none
-    setup%mesh = mesh_t(elements=cells, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
+    setup%mesh = mesh_t(elements=cells, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass, &
+                        kinematics=deck%mesh%kinematics)
     do i = 1, size(setup%delaminations)
       associate (d => setup%delaminations(i))
         d%zone = setup%plate%length

@@ -65,7 +65,7 @@ contains
     if (deck%expected%is_cut .and. (deck%stepping%central%settle > 0 .or. &
                                     deck%stepping%time%extends_to_contact_end)) &
       elastic = contact_end(start_elastic_impact(deck%setup_t, deck%expected%scales), 0.0_wp)
-    end = end_of_run(deck%stepping, deck%load_start + stiffened_duration(deck%setup_t, deck%expected%scales, &
+    end = end_of_run(deck%stepping, deck%loading%start + stiffened_duration(deck%setup_t, deck%expected%scales, &
                                                                          elastic%last_touch, elastic%deflection))
   end function expected_end
 
@@ -98,7 +98,7 @@ contains
     real(wp) :: slope, steep
 
     ratio = 1
-    if (deck%kinematics /= kinematics_von_karman) return
+    if (deck%mesh%kinematics /= kinematics_von_karman) return
     slope = pi*deck%stepping%expected%deflection/minval(free_span(deck%setup_t))
     steep = smallest_element_step(deck, slope)
     if (steep > 0) ratio = smallest_element_step(deck)/steep

@@ -35,9 +35,9 @@ contains
 
     allocate (lines(0))
     if (deck%is_static()) then
-      call append(lines, counted(to_text(deck%static%steps), 'load step')//min_time(deck, model_size, &
-        deck%static%steps*tangents_of_load_step*factor_over_solve, &
-        deck%static%steps*tangents_of_load_step))
+      call append(lines, counted(to_text(deck%loading%steps), 'load step')//min_time(deck, model_size, &
+        deck%loading%steps*tangents_of_load_step*factor_over_solve, &
+        deck%loading%steps*tangents_of_load_step))
     else if (.not. deck%stepping%time%step > 0) then
       return
     else if (is_explicit(deck%stepping)) then
@@ -60,7 +60,7 @@ contains
     real(wp) :: steps, solves
 
     steps = deck%stepping%time%end/deck%stepping%time%step
-    solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
+    solves = merge(1.0_wp, solves_if_curved, deck%mesh%kinematics == kinematics_linear)
     sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
                in_usual_unit(deck%stepping%time%step, time_kind, deck%units)
     if (is_error_controlled(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
@@ -83,7 +83,7 @@ contains
     clause = ': about '
     if (seconds > 1) clause = ': at least '
     clause = clause//duration_text(seconds)//' of one processor'
-    if (deck%has_ply_damage .or. size(deck%delaminations) > 0) clause = clause// &
+    if (deck%ply_damage%is_present .or. size(deck%delaminations) > 0) clause = clause// &
       ' without damage, many times that with damage'
     clause = clause//'.'
   end function min_time

@@ -73,7 +73,7 @@ contains
       call put('force at interlaminar shear failure beside the contact', scales%onset, force)
       if (.not. o%of_impact) return
       call put('impact energy', scales%energy, energy)
-      call put('stiffness k of the contact law', deck%indentation%k, contact)
+      call put('stiffness k of the contact law', deck%impactor%indentation%k, contact)
       call put('rise time of the contact force', scales%contact_time, time)
       call put('time steps in the rise time', scales%contact_time/deck%stepping%time%step, bare)
       call put('bending wavelength at first contact', scales%wave_length, length)
@@ -198,7 +198,7 @@ contains
     integer :: place, i
 
     allocate (lines(0))
-    if (.not. (deck%has_ply_damage .and. deck%ply_damage%weibull_modulus > 0)) return
+    if (.not. (deck%ply_damage%is_present .and. deck%ply_damage%weibull_modulus > 0)) return
     do place = 1, size(deck%materials)
       volumes = block_volumes(deck, place)
       factors = fibre_factors(deck, place)
@@ -222,7 +222,7 @@ contains
     integer :: place, ply
 
     allocate (lines(0))
-    if (system_named(deck%units) == 0 .or. .not. deck%has_ply_damage) return
+    if (system_named(deck%units) == 0 .or. .not. deck%ply_damage%is_present) return
     plies = stacked_plies(deck%laminate, deck%materials)
     do place = 1, size(deck%materials)
       if (.not. deck%materials(place)%toughness(1) > 0 .or. first_alike(deck%materials, place) /= place) cycle

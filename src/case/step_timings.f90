@@ -38,7 +38,7 @@ contains
     seconds = 0
     setup = small_setup(deck, ceiling(sqrt(real(elements, wp)/(1 + size(deck%delaminations)))), &
                         deck%zones%at(deck%mesh%struck))
-    setup%has_ply_damage = deck%has_ply_damage
+    setup%ply_damage%is_present = deck%ply_damage%is_present
     setup%ply_damage = deck%ply_damage
     call create_model(setup, alone, model, error)
     if (allocated(error)) return

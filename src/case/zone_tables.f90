@@ -32,10 +32,10 @@ contains
     if (.not. is_explicit(deck%stepping)) return
     if (.not. any(deck%delaminations%law == law_cohesive .and. &
                   deck%delaminations%growth_control == growth_by_energy)) return
-    if (.not. deck%has_impactor) cells(1) = minval(cells)
+    if (.not. deck%impactor%is_present) cells(1) = minval(cells)
     if (cells(1) >= resolving_cells) return
     call append(lines, error_line('error of the load at growth due to these cells (strips)', load_errors(cells(1))))
-    if (deck%has_impactor) call append(lines, error_line('error of the area due to these cells (impacts)', &
+    if (deck%impactor%is_present) call append(lines, error_line('error of the area due to these cells (impacts)', &
                                                          area_errors(cells(1))))
   end function zone_lines
 

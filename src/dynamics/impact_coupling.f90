@@ -96,7 +96,7 @@ contains
     associate (model => at%model, operator => at%operator, new => at%new)
       before = self%unknown
       new%patch_mean = new%contact_deflection(model) + new%contact%mean(model%communicator, at%correction)
-      call self%find_force(model%setup%indentation, at%old%indentation, new%patch_mean, &
+      call self%find_force(model%setup%impactor%indentation, at%old%indentation, new%patch_mean, &
                            merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
       if (is_factored) at%correction = at%correction + (self%share*(self%unknown - before))*operator%response
       new%force_iterations = new%force_iterations + iterations

@@ -74,7 +74,7 @@ contains
     allocate (everywhere(7, model%mesh%elements()), source=0.0_wp)
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call nodal_strains(model%elements, b, model%setup%kinematics, motion, strains)
+      call nodal_strains(model%elements, b, model%setup%mesh%kinematics, motion, strains)
       do lane = 1, model%elements%lanes_used(b)
         i = first_element(b) + lane - 1
         associate (element => model%distribution%elements(i))

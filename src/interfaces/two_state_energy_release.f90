@@ -191,7 +191,7 @@ contains
     batches = merge(batch_of(elements), 0, elements > 0)
     do e = 1, size(elements)
       if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
-      call nodal_strains(model%elements, batches(e), model%setup%kinematics, field, at_nodes)
+      call nodal_strains(model%elements, batches(e), model%setup%mesh%kinematics, field, at_nodes)
       do same = e, size(elements)
         if (batches(same) /= batches(e)) cycle
         s = 1 + (same - 1)/4

@@ -95,12 +95,13 @@ contains
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%setup%kinematics, self%motion_of(displacement), field, &
-                              energy, law, free)
+      call add_internal_force(self%elements, stiffness, self%setup%mesh%kinematics, self%motion_of(displacement), &
+                              field, energy, law, free)
     else if (self%membrane_idle) then
       call add_bending_force(self%elements, stiffness, displacement, field, energy)
     else
-      call add_internal_force(self%elements, stiffness, self%setup%kinematics, displacement, field, energy, law, free)
+      call add_internal_force(self%elements, stiffness, self%setup%mesh%kinematics, displacement, field, energy, law, &
+                              free)
     end if
   end subroutine add_elements
 

@@ -35,12 +35,12 @@ contains
     integer :: i
 
     allocate (strains(0))
-    if (.not. allocated(model%setup%gauges)) return
-    if (size(model%setup%gauges) == 0) return
-    allocate (sums(size(model%setup%gauges)))
+    if (.not. allocated(model%setup%plate%gauges)) return
+    if (size(model%setup%plate%gauges) == 0) return
+    allocate (sums(size(model%setup%plate%gauges)))
     motion = model%motion_of(displacement)
     do i = 1, size(sums)
-      call add_strain(model, model%setup%gauges(i), motion, sums(i))
+      call add_strain(model, model%setup%plate%gauges(i), motion, sums(i))
     end do
     strains = totals_of(model%communicator, sums)
   end function gauge_strains
@@ -118,7 +118,7 @@ contains
     real(wp) :: strain(3)
     real(wp) :: all(lanes, 9, 8), shape(4), mean(6), z
 
-    call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
+    call nodal_strains(model%elements, batch_of(element), model%setup%mesh%kinematics, motion, all)
     shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
     mean = matmul(shape, all(lane_of(element), corners, :6))
     associate (plies => model%stacks(model%stack(element))%plies)

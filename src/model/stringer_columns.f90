@@ -76,8 +76,8 @@ contains
         call gather(model%elements%points(:, :, b), motion, r)
         do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
           i = columns*(model%elements%beams(k)%stringer - 1)
-          call widen(ranges(:, i + 1:i + columns), resultants(model, k, strains_of_beam(model%elements, k, &
-                                                                                        model%setup%kinematics, r)))
+          call widen(ranges(:, i + 1:i + columns), &
+                     resultants(model, k, strains_of_beam(model%elements, k, model%setup%mesh%kinematics, r)))
         end do
       end do
     end if

@@ -67,7 +67,7 @@ contains
       if (.not. model%elements%has_beams(b)) cycle
       call gather(model%elements%points(:, :, b), motion, r)
       do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-        found = resultants(model, k, strains_of_beam(model%elements, k, model%setup%kinematics, r))
+        found = resultants(model, k, strains_of_beam(model%elements, k, model%setup%mesh%kinematics, r))
         associate (value => values(:, first_element(b) + model%elements%beams(k)%lane - 1))
           do i = 1, 3
             where (abs(found(:, i)) > abs(value)) value = found(:, i)

@@ -48,7 +48,7 @@ contains
     self%stacks = model%stacks
     self%stack = model%stack
     allocate (self%failed(model%elements%elements), source=.false.)
-    if (model%setup%has_ply_damage) allocate (self%constants(model%plies, model%elements%elements))
+    if (model%setup%ply_damage%is_present) allocate (self%constants(model%plies, model%elements%elements))
   end function new_bimodular_sections
 
   !> Takes over the reduced constants of the plies of an element.

@@ -24,7 +24,7 @@ contains
     allocate (strains(8, model%elements%elements))
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%setup%kinematics, motion, means)
+      call mean_strains(model%elements, b, model%setup%mesh%kinematics, motion, means)
       do lane = 1, model%elements%lanes_used(b)
         strains(:, first_element(b) + lane - 1) = means(lane, :)
       end do

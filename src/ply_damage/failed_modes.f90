@@ -33,7 +33,7 @@ contains
     class(composite_plate_t), intent(in) :: model
     type(failed_modes_t) :: self
 
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     allocate (self%occurred(failure_modes, model%plies, model%elements%elements), source=.false.)
   end function new_failed_modes
 

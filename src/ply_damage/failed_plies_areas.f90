@@ -24,7 +24,7 @@ contains
     integer :: k, mode, i
 
     areas = 0
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     do i = 1, model%elements%elements
       area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
       associate (plies => model%stacks(model%stack(i))%number)
@@ -48,7 +48,7 @@ contains
     integer :: element, k, mode
 
     counts = 0
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     do element = 1, model%elements%elements
       associate (plies => model%stacks(model%stack(element))%number)
         do k = 1, size(plies)

@@ -68,7 +68,7 @@ contains
     associate (mesh => model%mesh, elements => model%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
       do element = 1, mesh%elements()
-        call find_parts(mesh, element, model%setup%has_impactor, parts(:, element), joined(:, element))
+        call find_parts(mesh, element, model%setup%impactor%is_present, parts(:, element), joined(:, element))
       end do
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)

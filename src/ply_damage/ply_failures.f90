@@ -145,15 +145,15 @@ contains
       self%bands%keeps_damage = self%keeps_stiffness
       ! Before the forces: a restart computes the last forces again, with the strengths that they had.
       if (.not. self%keeps_stiffness) call self%bands%update_strengths(model)
-      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       if (.not. self%keeps_stiffness) call self%bands%commit_sections(self%stiffness, self%free)
       self%bands%keeps_damage = .false.
     else if (allocated(self%signs)) then
-      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
                               self%signs, self%free, energies)
     else
-      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
@@ -240,7 +240,6 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
-    !> The constants
     type(elasticity_t) :: elasticity
 
     if (allocated(self%bands)) then
@@ -319,7 +318,7 @@ contains
       call self%bands%update_strengths(model)
       return
     end if
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     call self%modes%find(model, self%stiffness, displacement, failing)
     self%softened = model%communicator%any(any(failing))
     if (.not. self%softened) return
@@ -353,7 +352,7 @@ contains
     logical, intent(in) :: is_split(:)
     integer :: element
 
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     do element = 1, size(is_split)
       if (.not. is_split(element)) cycle
       associate (stack => model%stacks(model%stack(element)), &
@@ -385,8 +384,8 @@ contains
       if (model%setup%ply_damage%permanent_shear) &
         call archive%item('ply_failure/dissipated_by_shear', self%permanent_shear)
     end if
-    if (model%setup%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
-    if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%has_ply_damage)) return
+    if (model%setup%ply_damage%is_present) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
+    if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%ply_damage%is_present)) return
     do element = 1, model%elements%elements
       associate (plies => model%stacks(model%stack(element))%number)
         self%free(lane_of(element), :, batch_of(element)) = &

@@ -64,7 +64,7 @@ contains
     if (any(requested)) strains = element_strains(model, plies, displacement)
     do ply = 1, model%plies
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
+        if (output%requests(field_ply_damage) .and. model%setup%ply_damage%is_present) then
           call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
           if (allocated(plies%bands)) &
             call fields%write_cell_field(name//'fibres_crushed', crushed_in(model, plies%bands, ply), error)

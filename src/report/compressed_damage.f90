@@ -125,7 +125,7 @@ contains
     integer :: i
 
     allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     associate (failed => now%plies%failed_in_elements(model, ply), mesh => model%mesh)
       do i = 1, model%elements%elements
         if (.not. failed(fibre_failure, i)) cycle

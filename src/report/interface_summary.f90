@@ -65,7 +65,7 @@ contains
     end if
     call json%open_object(name)
     call json%put('at', event(1))
-    if (deck%has_impactor) call json%put('force', event(2))
+    if (deck%impactor%is_present) call json%put('force', event(2))
     call json%put('deflection', event(3))
     call json%close()
   end subroutine put_event

@@ -58,7 +58,7 @@ contains
       names = [names, numbered(line_column_rows(2:), line)]
     end do
     if (has_ends(deck%plate, deck%lines)) names = [names, names_of(end_rows)]
-    do gauge = 1, size(deck%gauges)
+    do gauge = 1, size(deck%plate%gauges)
       names = [names, numbered(gauge_column_rows, gauge)]
     end do
     do stringer = 1, size(deck%stringers)
@@ -76,13 +76,13 @@ contains
     integer :: i
 
     apply = .true.
-    if (load%has_impactor) return
+    if (load%impactor%is_present) return
     do i = 1, size(plate_rows)
       select case (cell(plate_rows(i), column_name))
       case ('contact_area')
         apply(i) = .false.
       case ('stress')
-        apply(i) = load%has_pressure
+        apply(i) = load%pressure%is_present
       end select
     end do
   end function apply_to
@@ -139,7 +139,7 @@ contains
     if (size(deck%lines) > 0) &
       whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%lines))]
     if (has_ends(deck%plate, deck%lines)) whole = [whole, are_whole(end_rows)]
-    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%gauges)), &
+    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%plate%gauges)), &
              (are_whole(stringer_column_rows), i=1, size(deck%stringers))]
     if (deck%output%force_filter > 0) whole = [whole, are_whole(filter_rows)]
   end function column_whole

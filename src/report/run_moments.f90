@@ -21,6 +21,6 @@ contains
 
     words = deck%progress_name()//' '//rounded_text(time)
     if (deck%units /= '' .and. .not. deck%is_static()) words = in_usual_unit(time, time_kind, deck%units)
-    if (deck%is_static() .and. deck%static%dissipation > 0) words = rounded_text(time)//' of the run'
+    if (deck%is_static() .and. deck%loading%dissipation > 0) words = rounded_text(time)//' of the run'
   end function moment
 end module run_moments

@@ -159,10 +159,11 @@ contains
     if (.not. allocated(self%before%plies)) self%before = damage_of(model, now, pressed_axis(model))
     strains = gauge_strains(model, now%motion%displacement)
     bending = 0
-    if (all(back_to_back(model%setup%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%setup%gauges)))
+    if (all(back_to_back(model%setup%plate%gauges) > 0)) &
+      bending = percent_bending(strains(back_to_back(model%setup%plate%gauges)))
     call self%compression%observe(now%time, ends(1), ends(2), ends(3), bending)
-    if (all(back_to_back(model%setup%gauges) > 0)) &
-      call self%compression%observe_gauges(strains(back_to_back(model%setup%gauges)))
+    if (all(back_to_back(model%setup%plate%gauges) > 0)) &
+      call self%compression%observe_gauges(strains(back_to_back(model%setup%plate%gauges)))
   end subroutine observe_reactions
 
   !> Time, contact force and deflection of a state.

@@ -119,8 +119,8 @@ contains
     if (is_new(record, 'membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
       call add('membrane', has_fibre_failure(deck, model, now))
     ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
-    if (is_new(record, 'perforation') .and. deck%has_ply_damage .and. now%force > 0 .and. now%impactor%velocity >= 0) &
-      call add('perforation', is_perforated(model, now))
+    if (is_new(record, 'perforation') .and. deck%ply_damage%is_present .and. now%force > 0 .and. &
+        now%impactor%velocity >= 0) call add('perforation', is_perforated(model, now))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
                                   deck%is_static())
     call record%note_motion(deck, now)
@@ -256,7 +256,7 @@ contains
     integer :: counts(failure_modes)
 
     has_fibre_failure = .false.
-    if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
+    if (.not. (deck%ply_damage%is_present .and. any(deck%plate%edges == edge_clamped))) return
     counts = failed_counts(model, now%plies)
     has_fibre_failure = counts(fibre_failure) > 0
   end function has_fibre_failure

@@ -139,7 +139,7 @@ contains
       call json%put('made_of', deck%materials(list%material(ply))%name)
       call json%put('angle', list%angle(ply))
       call json%put('thickness', list%thickness(ply))
-      if (deck%has_ply_damage) then
+      if (deck%ply_damage%is_present) then
         call json%put('fibre_failure_area', figures%failed_area(1, ply))
         call json%put('matrix_crack_area', figures%failed_area(2, ply))
         call json%put('matrix_crushing_area', figures%failed_area(3, ply))

@@ -44,7 +44,7 @@ contains
     if (deck%units /= '') call append(lines, 'Summary:')
     if (struck) then
       call add_impact(lines, deck, results, record, errors)
-    else if (deck%has_impactor) then
+    else if (deck%impactor%is_present) then
       call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')//' at '// &
                       moment(deck, results%value('peak_force_at')))
     end if
@@ -63,7 +63,7 @@ contains
     call add_share('kinetic_share', 'the work')
     call add_share('scaled_kinetic_share', 'the total')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, results, record, figures, errors)
-    if (deck%has_ply_damage) call add_failed_plies(lines, results)
+    if (deck%ply_damage%is_present) call add_failed_plies(lines, results)
     if (len(unknown_because) > 0) call add_figure(lines, 'errors', unknown_because)
     call add_warnings(lines, deck, given)
 
@@ -297,7 +297,7 @@ contains
         call add_figure(lines, '', 'bond of '//names_of_doublers(deck%zones, deck%delaminations(zone)))
       call add_event(lines, deck, results, 'onset', record%onset(:, zone))
       call add_event(lines, deck, results, 'first growth', record%growth(:, zone))
-      if (deck%has_impactor) &
+      if (deck%impactor%is_present) &
         call add_figure(lines, '', 'threshold force (closed form) '// &
                         results%with_unit(figures%threshold(zone), force_kind)// &
                         ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
@@ -342,7 +342,7 @@ contains
       call add_figure(lines, '', name//' before this run')
     else if (.not. event(1) > 0) then
       call add_figure(lines, '', 'no '//name)
-    else if (deck%has_impactor) then
+    else if (deck%impactor%is_present) then
       call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
                       moment(deck, event(1)))
     else

@@ -43,7 +43,7 @@ contains
     if (record%scaled_energy > 0) call results%add('scaled_kinetic_share', record%scaled_share())
     call add_energies(results, now%ledger)
     if (size(figures%interfaces) > 0) call add_interfaces(results, deck, record, figures)
-    if (deck%has_ply_damage) then
+    if (deck%ply_damage%is_present) then
       call results%add('fibre_failures', figures%failures(1))
       call results%add('matrix_cracks', figures%failures(2))
       call results%add('matrix_crushings', figures%failures(3))
@@ -128,7 +128,7 @@ contains
       real(wp), intent(in) :: event(3)
 
       call results%add(name//'_at', event(1), event(1) > 0)
-      if (deck%has_impactor) call results%add(name//'_force', event(2), event(1) > 0)
+      if (deck%impactor%is_present) call results%add(name//'_force', event(2), event(1) > 0)
     end subroutine add_first
   end subroutine add_interfaces
 
@@ -145,7 +145,7 @@ contains
       call results%add('shortening_at_strength', of%shortening)
       call results%add('has_failed', of%failed)
       call results%add('effective_modulus', of%modulus(), of%modulus() > 0)
-      if (.not. all(back_to_back(deck%gauges) > 0)) return
+      if (.not. all(back_to_back(deck%plate%gauges) > 0)) return
       call results%add('percent_bending', of%bending)
       call results%add('buckling_strain', of%buckling, of%buckling > 0)
     end associate

@@ -145,7 +145,7 @@ contains
     case ('mapping')
       remedy = 'damage may grow by it; give settle of &time and motion=''rest'', with which damage is held until '// &
                'the plate is at rest, or the mesh of the other run.'
-      if (deck%load_start > 0 .and. deck%initial%motion == motion_rest) &
+      if (deck%loading%start > 0 .and. deck%initial%motion == motion_rest) &
         remedy = 'damage is held until the end of settle, which must bring the plate to rest.'
     case ('below_nose')
       remedy = 'the force on the patch presses its middle ahead of the nose; use &impactor '// &

@@ -32,7 +32,7 @@ contains
     logical :: beside(size(model%mesh%zones)), cracked(product(model%mesh%cells))
     integer :: zone, ply
 
-    if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
+    if (.not. (model%map%layered .and. model%setup%ply_damage%is_present)) return
     do ply = 1, model%mesh%plies
       associate (below => model%mesh%zones%below_ply, delaminations => model%setup%delaminations)
         beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &

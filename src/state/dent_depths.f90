@@ -34,7 +34,7 @@ contains
     integer :: i, point
 
     depth = 0
-    if (.not. (model%setup%has_impactor .and. model%setup%impactor%radius > 0)) return
+    if (.not. (model%setup%impactor%is_present .and. model%setup%impactor%radius > 0)) return
     call find_plane(model, displacement, plane, is_known)
     if (.not. is_known) return
     associate (mesh => model%mesh, owned => model%distribution%points(:model%distribution%owned))

@@ -25,7 +25,7 @@ contains
     if (size(model%struck_elements) > 0) motion = model%motion_of(displacement)
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
-        call mean_strains(model%elements, batch_of(element), model%setup%kinematics, motion, strains)
+        call mean_strains(model%elements, batch_of(element), model%setup%mesh%kinematics, motion, strains)
         do k = 1, 3
           call sums(k)%add(strains(lane_of(element), 3 + k))
         end do
