@@ -60,7 +60,7 @@ contains
     call find_figures(model, stepper%now, figures)
     results = results_of(deck, stepper%now, record, figures)
     if (.not. allocated(error)) errors = errors_by_elastic_impact(deck, record, stepper%now%has_failures())
-    ended = .not. (allocated(error) .or. deck%is_static() .or. deck%initial%is_inherited)
+    ended = .not. (allocated(error) .or. deck%setup%is_static() .or. deck%setup%initial%is_inherited)
     needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
     if (needed) call run_coarse_model(deck, model%communicator, coarse_run)
     if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impactor%velocity, &
