@@ -36,7 +36,7 @@ contains
 
     call stepper%advance_with_layers(model, deck%linear_solver, event, switched, error)
     if (allocated(error) .or. .not. switched) return
-    notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time), deck%units)
+    notes = zone_notes(model%setup%delaminations, moment(deck, stepper%now%time), deck%case%units)
     do i = 1, size(notes)
       call log%note(notes(i)%text)
     end do

@@ -91,9 +91,9 @@ contains
     if (code /= exit_done) return
     if (checkpoint == '') call fit_initial_state(deck, communicator, error)
     if (allocated(error) .or. .not. command%verify) return
-    if (deck%refine > 0) then
+    if (deck%case%refine > 0) then
       call fail(error, exit_usage, '--verify refines the setup itself; take refine out of &case.')
-    else if (deck%initial%is_inherited) then
+    else if (deck%setup%initial%is_inherited) then
       call fail(error, exit_usage, '--verify refines the mesh, which a deck with &initial_state has from another run.')
     end if
   end subroutine take_deck
@@ -186,15 +186,15 @@ contains
     type(checkpoint_archive_t) :: archive
     type(deck_t) :: left
 
-    base = deck%output%directory//'/'//deck%name
+    base = deck%output%directory//'/'//deck%case%name
     select case (stage_of(base, deck%text, commit, communicator))
     case (stage_done)
-      call print_lines(communicator, [line_t(deck%name//' has been run before; its results are kept.')])
+      call print_lines(communicator, [line_t(deck%case%name//' has been run before; its results are kept.')])
     case (stage_stopped)
       left = deck
       call archive%open_for_loading(communicator, base//checkpoint_ending, error)
       if (allocated(error)) return
-      call visit_zones(left%delaminations, archive)
+      call visit_zones(left%setup%delaminations, archive)
       call archive%close(error)
       if (.not. allocated(error)) call simulate(left, communicator, profile, base//checkpoint_ending, error)
     case default
@@ -267,12 +267,12 @@ contains
     if (allocated(error)) return
     call read_deck_text(archive%provenance%deck, path, deck, problems)
     ! The default name of a deck is that of its file, not that of the checkpoint.
-    deck%name = archive%provenance%case_name
-    call deck%settings%derive(case_group, key_name, deck%name, .true.)
+    deck%case%name = archive%provenance%case_name
+    call deck%settings%derive(case_group, key_name, deck%case%name, .true.)
     if (problems%errors() == 0 .and. adopted_values(deck%settings) /= archive%provenance%library) &
       call fail(error, exit_files, path//' was written by version '//archive%provenance%version// &
                 ', whose library of materials has other values; continue with that version, or start a new run.')
-    if (problems%errors() == 0) call visit_zones(deck%delaminations, archive)
+    if (problems%errors() == 0) call visit_zones(deck%setup%delaminations, archive)
     call archive%close(error)
     deck%output%directory = '.'
     slash = index(path, '/', back=.true.)

@@ -19,8 +19,8 @@ contains
     type(provenance_t) :: run
 
     run = this_run(this_build(), deck%text, ranks)
-    run%units = deck%units
-    run%case_name = deck%name
+    run%units = deck%case%units
+    run%case_name = deck%case%name
     run%library = adopted_values(deck%settings)
   end function provenance_of
 end module deck_provenance

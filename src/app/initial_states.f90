@@ -60,17 +60,17 @@ contains
     integer :: i
 
     if (present(lacks)) lacks = .false.
-    if (.not. deck%initial%is_inherited) return
+    if (.not. deck%setup%initial%is_inherited) return
     call refuse_own_end(deck, communicator, error)
     if (allocated(error)) return
     if (present(lacks)) then
-      if (communicator%is_root()) lacks = .not. file_exists(deck%initial%from)
+      if (communicator%is_root()) lacks = .not. file_exists(deck%setup%initial%from)
       call communicator%broadcast(lacks)
       if (lacks) return
     end if
-    call open_checkpoint(deck%initial%from, communicator, archive, old, error)
+    call open_checkpoint(deck%setup%initial%from, communicator, archive, old, error)
     if (allocated(error)) return
-    call archive%item(time_item, deck%initial%reached)
+    call archive%item(time_item, deck%setup%initial%reached)
     call archive%item('record/contact_end', contact_end)
     call archive%item('record/force', force)
     call archive%item('compression/failed', failed)
@@ -86,17 +86,17 @@ contains
                   'cannot be mapped to another mesh; run the impact to its end, or give the mesh of that run', error)
       return
     end if
-    do i = 1, size(deck%delaminations)
-      if (.not. deck%delaminations(i)%is_adaptive) cycle
-      if (.not. deck%has_impactor .and. deck%plate%symmetry == symmetry_none .and. &
-          .not. any(deck%delaminations%starter > 0)) &
-        deck%delaminations(i)%zone_at = deck%delaminations(i)%zone_at + centre_distance(deck, old, i)
+    do i = 1, size(deck%setup%delaminations)
+      if (.not. deck%setup%delaminations(i)%is_adaptive) cycle
+      if (.not. deck%setup%impactor%is_present .and. deck%setup%plate%symmetry == symmetry_none .and. &
+          .not. any(deck%setup%delaminations%starter > 0)) &
+        deck%setup%delaminations(i)%zone_at = deck%setup%delaminations(i)%zone_at + centre_distance(deck, old, i)
       if (is_mapped(deck, old) .or. any(abs(centre_distance(deck, old, i)) > 0)) &
-        old%delaminations(i)%zone = covering_extents(deck, old, i)
-      deck%delaminations(i)%zone = max(deck%delaminations(i)%zone, old%delaminations(i)%zone)
+        old%setup%delaminations(i)%zone = covering_extents(deck, old, i)
+      deck%setup%delaminations(i)%zone = max(deck%setup%delaminations(i)%zone, old%setup%delaminations(i)%zone)
     end do
-    deck%initial%end = merge(1.0_wp, end_of_run(old%stepping, contact_end), old%is_static())
-    if (old%stepping%time%ends_at_failure .and. failed) deck%initial%end = deck%initial%reached
+    deck%setup%initial%end = merge(1.0_wp, end_of_run(old%stepping, contact_end), old%setup%is_static())
+    if (old%stepping%time%ends_at_failure .and. failed) deck%setup%initial%end = deck%setup%initial%reached
     call remark_stopped(deck, remark)
     if (allocated(remark%text)) call print_lines(communicator, [remark])
   end subroutine fit_initial_state
@@ -107,8 +107,8 @@ contains
     !> The sentence
     character(len=:), allocatable :: sentence
 
-    sentence = 'The initial state '//deck%initial%from//' does not exist yet, so the deck is not compared with it; '// &
-               'the run needs it.'
+    sentence = 'The initial state '//deck%setup%initial%from// &
+               ' does not exist yet, so the deck is not compared with it; the run needs it.'
   end function missing_start
 
   !> Refuses the checkpoint that the run itself will write.
@@ -121,9 +121,9 @@ contains
     character(len=:), allocatable :: own
     logical :: is_own
 
-    own = deck%output%directory//'/'//deck%name//checkpoint_ending
+    own = deck%output%directory//'/'//deck%case%name//checkpoint_ending
     is_own = .false.
-    if (communicator%is_root()) is_own = is_same_file(deck%initial%from, own)
+    if (communicator%is_root()) is_own = is_same_file(deck%setup%initial%from, own)
     call communicator%broadcast(is_own)
     if (is_own) call refuse(deck, 'is the checkpoint that this run writes at its own end, from which the next run '// &
                             'would start; allowed: another &case name or &output directory', error)
@@ -138,10 +138,11 @@ contains
     type(line_t), intent(out) :: remark
     character(len=:), allocatable :: line, sentence
 
-    if (.not. deck%initial%reached < deck%initial%end) return
+    if (.not. deck%setup%initial%reached < deck%setup%initial%end) return
     line = to_text(deck%settings%line_of_group(initial_state_group))
-    sentence = '&'//initial_state_group//' from = '''//deck%initial%from//''': is of a run that was stopped at '// &
-               rounded_text(deck%initial%reached)//' of '//rounded_text(deck%initial%end)// &
+    sentence = '&'//initial_state_group//' from = '''//deck%setup%initial%from// &
+               ''': is of a run that was stopped at '// &
+               rounded_text(deck%setup%initial%reached)//' of '//rounded_text(deck%setup%initial%end)// &
                ': later damage is missing; complete it first.'
     remark = line_t(deck%source//':'//line//': warning: '//sentence)
     call append(deck%remarks, 'line '//line//': '//sentence)
@@ -154,9 +155,9 @@ contains
     class(archive_t), intent(inout) :: archive
     type(line_t) :: remark
 
-    if (.not. deck%initial%is_inherited) return
-    call archive%item('initial_state/reached', deck%initial%reached)
-    call archive%item('initial_state/end', deck%initial%end)
+    if (.not. deck%setup%initial%is_inherited) return
+    call archive%item('initial_state/reached', deck%setup%initial%reached)
+    call archive%item('initial_state/end', deck%setup%initial%end)
     if (archive%loading) call remark_stopped(deck, remark)
   end subroutine visit_incomplete_start
 
@@ -168,7 +169,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     call fail(error, exit_deck, deck%source//':'//to_text(deck%settings%line_of_group(initial_state_group))//': &'// &
-              initial_state_group//' from='''//deck%initial%from//''': '//reason//'.')
+              initial_state_group//' from='''//deck%setup%initial%from//''': '//reason//'.')
   end subroutine refuse
 
   !> Extents of a zone that cover the cells of the other run's zone and one more, as nodes on the border of a zone have
@@ -186,11 +187,11 @@ contains
 
     distance = abs(centre_distance(deck, old, zone))
     do direction = 1, 2
-      line = cells_from_struck(old%plate, old%mesh, direction)
-      line = line%from(old%delaminations(zone)%zone_at(direction))
-      extents(direction) = line%extent_of(old%delaminations(zone)%zone(direction)) + 2*distance(direction)
-      line = cells_from_struck(deck%plate, deck%mesh, direction)
-      line = line%from(deck%delaminations(zone)%zone_at(direction))
+      line = cells_from_struck(old%setup%plate, old%setup%mesh, direction)
+      line = line%from(old%setup%delaminations(zone)%zone_at(direction))
+      extents(direction) = line%extent_of(old%setup%delaminations(zone)%zone(direction)) + 2*distance(direction)
+      line = cells_from_struck(deck%setup%plate, deck%setup%mesh, direction)
+      line = line%from(deck%setup%delaminations(zone)%zone_at(direction))
       extents(direction) = line%widened(extents(direction), 1)
     end do
   end function covering_extents
@@ -228,7 +229,7 @@ contains
       call fail(error, exit_files, 'The deck in the checkpoint '//path//' has faults by this version of Implam; '// &
                 'run it again.')
     else
-      call visit_zones(old%delaminations, archive)
+      call visit_zones(old%setup%delaminations, archive)
     end if
   end subroutine open_checkpoint
 
@@ -250,26 +251,26 @@ contains
 
     call load_transfer(deck, model, stepper, transfer, record%mapping, old, error)
     if (allocated(error)) return
-    call log%note('The plate starts from the end of the run of '//deck%initial%from//'.')
-    notes = zone_notes(model%setup%delaminations, 'the start', deck%units)
+    call log%note('The plate starts from the end of the run of '//deck%setup%initial%from//'.')
+    notes = zone_notes(model%setup%delaminations, 'the start', deck%case%units)
     do i = 1, size(notes)
       call log%note(notes(i)%text)
     end do
     ! At rest, damage would only grow by errors of the mapping.
-    call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%load_start > 0 .and. &
-                                 deck%initial%motion == motion_rest)
+    call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%setup%loading%start > 0 .and. &
+                                 deck%setup%initial%motion == motion_rest)
     call begin_contact(deck, old, stepper%now%indentation, log)
-    call stepper%begin_inherited(model, transfer, deck%initial%motion, error)
+    call stepper%begin_inherited(model, transfer, deck%setup%initial%motion, error)
     if (allocated(error)) return
     call record%inherit(model, stepper%now)
     if (is_mapped(deck, old)) then
       call record%mapping%note(model, stepper%now, after_mapping)
-      if (record%mapping%is_cut()) call log%note(record%mapping%cut_line(deck%delaminations%below_ply))
-      call log%note(record%mapping%line(deck%delaminations%below_ply))
+      if (record%mapping%is_cut()) call log%note(record%mapping%cut_line(deck%setup%delaminations%below_ply))
+      call log%note(record%mapping%line(deck%setup%delaminations%below_ply))
       call log%note(record%mapping%energy_line(stepper%now%holds_damage))
       if (record%mapping%first_loss() > 0) then
         call refuse(deck, 'the interface below ply '// &
-                    to_text(deck%delaminations(record%mapping%first_loss())%below_ply)// &
+                    to_text(deck%setup%delaminations(record%mapping%first_loss())%below_ply)// &
                     ' has delaminated beyond its '//key_zone//' in this deck', error)
         return
       end if
@@ -318,10 +319,10 @@ contains
     type(state_t), allocatable :: state
     type(mesh_transfer_t) :: mapped
 
-    call open_checkpoint(deck%initial%from, model%communicator, archive, old, error)
+    call open_checkpoint(deck%setup%initial%from, model%communicator, archive, old, error)
     if (allocated(error)) return
     allocate (old_model)
-    call create_model(old%setup_t, model%communicator, old_model, error)
+    call create_model(old%setup, model%communicator, old_model, error)
     if (allocated(error)) return
     allocate (state, source=new_state(old_model))
     call visit_inheritance(state, archive, old_model)
@@ -329,7 +330,7 @@ contains
     call archive%close(error)
     if (allocated(error)) return
     if (is_mapped(deck, old)) then
-      mapped%origin = deck%initial%cut_at
+      mapped%origin = deck%setup%initial%cut_at
       allocate (transfer, source=mapped)
       call note_before(cut_of(deck), old_model, state, mapping)
       call put_fractions(state%interfaces%cohesive, old_model)

@@ -102,9 +102,9 @@ contains
     call read_valid_deck(job%target, deck, error)
     if (allocated(error)) return
     found = size_of_deck(deck)
-    job%name = deck%name
+    job%name = deck%case%name
     if (allocated(job%output)) deck%output%directory = job%output
-    job%checkpoint = deck%output%directory//'/'//deck%name//'_restart.h5'
+    job%checkpoint = deck%output%directory//'/'//deck%case%name//'_restart.h5'
     if (job%ranks == 0) job%ranks = found%ranks
     job%megabytes = ceiling(spare_memory*found%megabytes_a_rank(job%ranks))
   end subroutine size_deck

@@ -34,7 +34,8 @@ contains
 
     call load_deck_table(vocabulary)
     call echo(vocabulary, deck%settings, lines)
-    if (deck%has_impactor .and. .not. deck%has_indentation) call echo_without_group(deck%indentation, lines)
+    if (deck%setup%impactor%is_present .and. .not. deck%setup%impactor%indentation%is_given) &
+      call echo_without_group(deck%setup%impactor%indentation, lines)
     lines = [lines, extent_lines(deck), scale_lines(deck), ply_zone_lines(deck), zone_lines(deck), &
              strength_lines(deck), volume_lines(deck), toughness_lines(deck)]
     if (allocated(deck%reasons)) lines = [lines, deck%reasons]

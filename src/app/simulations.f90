@@ -98,7 +98,7 @@ contains
     character(len=:), allocatable :: retired
 
     call prepare(self, deck, communicator, profile, append=.false., error=error)
-    if (.not. allocated(error) .and. deck%initial%is_inherited) &
+    if (.not. allocated(error) .and. deck%setup%initial%is_inherited) &
       call take_initial_state(deck, self%model, self%stepper, self%record, self%log, error)
     if (.not. allocated(error)) call retire_checkpoint(communicator, self%base//checkpoint_ending, retired, error)
     if (allocated(error)) return
@@ -138,7 +138,7 @@ contains
     call self%timers%start('set-up')
     self%deck = deck
     self%communicator = communicator
-    self%base = deck%output%directory//'/'//deck%name
+    self%base = deck%output%directory//'/'//deck%case%name
     self%wall_limit = wall_limit_t(deck%stepping%time%wall_limit, profile%begun)
     self%history_clock%interval = deck%output%history_every
     self%fields_clock%interval = deck%output%fields_every
@@ -155,12 +155,13 @@ contains
     call self%provenance%report(self%log)
     call log_echo(deck, self%log)
     call self%timers%start('model')
-    call create_model(deck%setup_t, communicator, self%model, error)
+    call create_model(deck%setup, communicator, self%model, error)
     call self%timers%stop('model')
     self%model%profile = profile
     if (allocated(error)) return
     call choose_stepper(deck%stepping, self%stepper)
-    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, append .or. deck%initial%is_inherited, error)
+    call self%stepper%start(self%model, deck%stepping, deck%linear_solver, &
+                            append .or. deck%setup%initial%is_inherited, error)
     if (allocated(error)) return
     self%record = new_run_record(self%model)
     self%record%filter%frequency = deck%output%force_filter
@@ -238,7 +239,7 @@ contains
     class(simulation_t), intent(in) :: self
 
     end_of = 1
-    if (.not. self%deck%is_static()) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
+    if (.not. self%deck%setup%is_static()) end_of = end_of_run(self%deck%stepping, self%record%contact_end)
     if (has_ended_by_failure(self)) end_of = self%stepper%now%time
   end function end_of
 

@@ -102,7 +102,7 @@ contains
     if (communicator%is_root()) then
       call compare_summaries(deck, finer, lines, content)
       call print_lines(communicator, lines)
-      call write_whole_file(deck%output%directory//'/'//deck%name//verification_ending, content, error)
+      call write_whole_file(deck%output%directory//'/'//deck%case%name//verification_ending, content, error)
     end if
     call communicator%agree(error)
   end subroutine print_changes
@@ -122,11 +122,11 @@ contains
     character(len=22) :: label
     integer :: i
 
-    call read_summary(deck%output%directory//'/'//deck%name, summary)
-    call read_summary(finer%output%directory//'/'//finer%name, finer_summary)
+    call read_summary(deck%output%directory//'/'//deck%case%name, summary)
+    call read_summary(finer%output%directory//'/'//finer%case%name, finer_summary)
     call json%begin()
-    call json%put('as_it_is', deck%name)
-    call json%put('finer', finer%name)
+    call json%put('as_it_is', deck%case%name)
+    call json%put('finer', finer%case%name)
     call json%open_object('figures')
     allocate (lines(0))
     call append(lines, 'Verification with elements and time steps half as long:')
@@ -153,7 +153,7 @@ contains
       !> Such as 2.468 kN
       character(len=:), allocatable :: words
 
-      words = in_usual_unit(value, unit_of_result(trim(figures(i))), deck%units)
+      words = in_usual_unit(value, unit_of_result(trim(figures(i))), deck%case%units)
     end function shown
   end subroutine compare_summaries
 

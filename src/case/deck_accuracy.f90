@@ -92,13 +92,13 @@ contains
 
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    scales = scales_of(deck%setup_t)
-    if (deck%is_impact() .and. scales%area_mass > 0) then
+    scales = scales_of(deck%setup)
+    if (deck%setup%is_impact() .and. scales%area_mass > 0) then
       call choose_for_impact(deck, scales, problems)
     else
       call choose_for_pressure(deck, scales, problems)
     end if
-    call fill_mesh(deck%settings, deck%mesh)
+    call fill_mesh(deck%settings, deck%setup%mesh)
   end subroutine choose_by_accuracy
 
   !> Patch, end, step and mesh of an impact, by preliminary elastic impacts.
@@ -112,17 +112,18 @@ contains
     real(wp) :: end, step, bounds(2), error(2)
     logical :: follows
 
-    bounds = share*deck%accuracy/100*[1.0_wp, history_over_peak]
+    bounds = share*deck%case%accuracy/100*[1.0_wp, history_over_peak]
     end = deck%settings%real_of(time_group, key_end)
-    elastic = start_elastic_impact(deck%setup_t, scales)
+    elastic = start_elastic_impact(deck%setup, scales)
     first = contact_end(elastic, end)
-    if (.not. deck%mesh%patch > 0) then
-      call choose_one(deck, mesh_group, key_patch, min(contact_side(deck%setup_t, first%indentation), &
-                                                       minval(deck%plate%length)/4))
-      deck%mesh%patch = deck%settings%real_of(mesh_group, key_patch)
-      call append(deck%reasons, 'Patch '//short_text(deck%mesh%patch)//': the circle of contact at an indentation '// &
+    if (.not. deck%setup%mesh%patch > 0) then
+      call choose_one(deck, mesh_group, key_patch, &
+                      min(contact_side(deck%setup, first%indentation), minval(deck%setup%plate%length)/4))
+      deck%setup%mesh%patch = deck%settings%real_of(mesh_group, key_patch)
+      call append(deck%reasons, &
+                  'Patch '//short_text(deck%setup%mesh%patch)//': the circle of contact at an indentation '// &
                   'of '//short_text(first%indentation)//', spread over the thickness.')
-      elastic = start_elastic_impact(deck%setup_t, scales)
+      elastic = start_elastic_impact(deck%setup, scales)
       first = contact_end(elastic, end)
     end if
     deck%stepping%time%extends_to_contact_end = is_explicit(deck%stepping) .and. .not. end > 0
@@ -167,13 +168,14 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%settings%is_given(mesh_group, key_elements)) &
-      call choose_elements(deck, part_of_side*minval(deck%plate%length)*deck%accuracy**0.25_wp, scales, problems)
-    if (deck%is_static()) return
+      call choose_elements(deck, part_of_side*minval(deck%setup%plate%length)*deck%case%accuracy**0.25_wp, scales, &
+                           problems)
+    if (deck%setup%is_static()) return
     if (.not. deck%settings%is_given(time_group, key_end)) then
       call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
                           key_end//' is missing; &case accuracy chooses it where an impactor comes with a velocity.', 1)
     else if (.not. (deck%settings%is_given(time_group, key_step) .or. is_explicit(deck%stepping))) then
-      call choose_one(deck, time_group, key_step, part_of_period*scales%first_period*sqrt(deck%accuracy))
+      call choose_one(deck, time_group, key_step, part_of_period*scales%first_period*sqrt(deck%case%accuracy))
     end if
   end subroutine choose_for_pressure
 
@@ -189,21 +191,21 @@ contains
     integer :: number(2), parts(2), max_along
     type(line_t), allocatable :: words(:)
 
-    parts = merge(1, 2, is_halved(deck%plate%symmetry))
+    parts = merge(1, 2, is_halved(deck%setup%plate%symmetry))
     max_along = merge(max_explicit, max_factored, deck%has_time .and. is_explicit(deck%stepping))
-    half = deck%plate%length/2
+    half = deck%setup%plate%length/2
     cell = side
-    if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%mesh%cell)
+    if (deck%settings%is_known(mesh_group, key_cell)) cell = max(cell, deck%setup%mesh%cell)
     length = shortest_shear_zone(deck)
-    cells = cells_for_area(history_over_peak*deck%accuracy)
+    cells = cells_for_area(history_over_peak*deck%case%accuracy)
     if (length > 0) then
       cell = min(cell, length/cells)
-    else if (size(deck%delaminations) > 0) then
+    else if (size(deck%setup%delaminations) > 0) then
       cell = min(cell, smallest_zone(deck)/zone_elements)
     end if
     number = max(2, ceiling(min(half/cell, 1.0e6_wp) - 0.01_wp))
-    if (deck%mesh%patch > 0) number = max(number, 1 + max(1, ceiling(min((half - deck%mesh%patch/2)/cell, 1.0e6_wp) &
-                                                                     - 0.01_wp)))
+    if (deck%setup%mesh%patch > 0) &
+      number = max(number, 1 + max(1, ceiling(min((half - deck%setup%mesh%patch/2)/cell, 1.0e6_wp) - 0.01_wp)))
     if (any(number > max_along)) then
       call remark(deck%settings, problems, case_group, key_accuracy, 'requires more than '//to_text(max_along)// &
                   ' elements from the struck point to an edge, which are not chosen; expect larger errors.')
@@ -237,10 +239,10 @@ contains
     integer :: direction
 
     if (deck%settings%is_known(mesh_group, key_core) .or. deck%settings%is_known(mesh_group, key_cell)) return
-    if (size(deck%delaminations) > 0 .or. .not. wave_length > 0) return
-    extents = min(deck%mesh%patch + 2*core_waves*wave_length, &
-                  deck%plate%length - 2*abs(deck%mesh%struck) - 4*cell)
-    if (any(extents <= deck%mesh%patch)) return
+    if (size(deck%setup%delaminations) > 0 .or. .not. wave_length > 0) return
+    extents = min(deck%setup%mesh%patch + 2*core_waves*wave_length, &
+                  deck%setup%plate%length - 2*abs(deck%setup%mesh%struck) - 4*cell)
+    if (any(extents <= deck%setup%mesh%patch)) return
     allocate (words(0))
     do direction = 1, 2
       call append(words, short_text(extents(direction)))
@@ -254,10 +256,10 @@ contains
     type(deck_t), intent(in) :: deck
     integer :: i
 
-    side = minval(deck%plate%length)
-    do i = 1, size(deck%delaminations)
-      if (deck%delaminations(i)%bonds_doublers()) cycle
-      if (.not. deck%delaminations(i)%is_adaptive) side = min(side, minval(deck%delaminations(i)%zone))
+    side = minval(deck%setup%plate%length)
+    do i = 1, size(deck%setup%delaminations)
+      if (deck%setup%delaminations(i)%bonds_doublers()) cycle
+      if (.not. deck%setup%delaminations(i)%is_adaptive) side = min(side, minval(deck%setup%delaminations(i)%zone))
     end do
   end function smallest_zone
 
@@ -268,7 +270,7 @@ contains
 
     if (deck%settings%is_given(impactor_group, key_integrator)) return
     call deck%settings%choose(impactor_group, key_integrator, [line_t('trapezoidal')], quoted=.true.)
-    deck%impactor%integrator = integrator_trapezoidal
+    deck%setup%impactor%integrator = integrator_trapezoidal
   end subroutine choose_integrator
 
   !> Chooses output times of fields, at the ends of steps; a draft has only the last.
@@ -277,7 +279,7 @@ contains
     !> Step and end of the run
     real(wp), intent(in) :: step, end
 
-    if (deck%settings%is_given(output_group, key_fields_every) .or. deck%accuracy > max_with_fields) return
+    if (deck%settings%is_given(output_group, key_fields_every) .or. deck%case%accuracy > max_with_fields) return
     call deck%settings%choose(output_group, key_fields_every, &
                               [line_t(to_text(step*max(1, nint(end/step/fields_written))))])
   end subroutine choose_clocks

@@ -25,16 +25,16 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i, k
 
-    if (.not. allocated(deck%zones%doublers)) return
-    do i = 1, size(deck%delaminations)
-      if (deck%delaminations(i)%bonds_doublers()) call check_starter(deck, deck%delaminations(i), problems)
+    if (.not. allocated(deck%setup%zones%doublers)) return
+    do i = 1, size(deck%setup%delaminations)
+      if (deck%setup%delaminations(i)%bonds_doublers()) call check_starter(deck, deck%setup%delaminations(i), problems)
     end do
-    do i = 1, size(deck%zones%doublers)
-      associate (doubler => deck%zones%doublers(i))
+    do i = 1, size(deck%setup%zones%doublers)
+      associate (doubler => deck%setup%zones%doublers(i))
         if (.not. doubler%is_cohesive) cycle
         call check_drops(deck, doubler, problems)
-        do k = 1, size(deck%stringers)
-          if (ends_on(deck%stringers(k), doubler, rounding*maxval(deck%plate%length))) &
+        do k = 1, size(deck%setup%stringers)
+          if (ends_on(deck%setup%stringers(k), doubler, rounding*maxval(deck%setup%plate%length))) &
             call report(deck%settings, problems, stringer_group, '', 'it crosses or follows an edge of doubler '''// &
                         doubler%name//''', whose bond may delaminate; allowed: on this doubler from end to end and '// &
                         'off its edges, or beside it.', k)
@@ -56,13 +56,13 @@ contains
 
     has_strip = bond%starter_strip(1) < bond%starter_strip(2)
     if (any(bond%doublers == 0) .or. .not. (bond%starter > 0 .or. has_strip)) return
-    starter%at = deck%mesh%struck + bond%starter_at
+    starter%at = deck%setup%mesh%struck + bond%starter_at
     starter%size = bond%starter
     if (has_strip) then
-      starter%at(1) = deck%mesh%struck(1) + sum(bond%starter_strip)/2
-      starter%size = [bond%starter_strip(2) - bond%starter_strip(1), 2*deck%plate%length(2)]
+      starter%at(1) = deck%setup%mesh%struck(1) + sum(bond%starter_strip)/2
+      starter%size = [bond%starter_strip(2) - bond%starter_strip(1), 2*deck%setup%plate%length(2)]
     end if
-    if (any([(starter%overlaps(deck%zones%doublers(bond%doublers(i)), 0.0_wp), i=1, size(bond%doublers))])) return
+    if (any([(starter%overlaps(deck%setup%zones%doublers(bond%doublers(i)), 0.0_wp), i=1, size(bond%doublers))])) return
     key = key_starter
     if (has_strip) key = key_strip
     call report(deck%settings, problems, delamination_group, key, 'the starter lies beside the doublers; allowed: '// &
@@ -76,11 +76,11 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    if (.not. allocated(deck%zones%drops)) return
-    do i = 1, size(deck%zones%drops)
-      associate (drop => deck%zones%drops(i))
+    if (.not. allocated(deck%setup%zones%drops)) return
+    do i = 1, size(deck%setup%zones%drops)
+      associate (drop => deck%setup%zones%drops(i))
         if (drop%flat_face == doubler%face) cycle
-        if (.not. drop%overlaps(doubler, rounding*maxval(deck%plate%length))) cycle
+        if (.not. drop%overlaps(doubler, rounding*maxval(deck%setup%plate%length))) cycle
         call report(deck%settings, problems, ply_drop_group, key_plies, 'the bond of doubler '''//doubler%name// &
                     ''', which may delaminate, changes its height there; allowed: flat_face = '''// &
                     trim(merge('front', 'back ', doubler%face == front_face))//''', or not below this doubler.', i)

@@ -29,14 +29,14 @@ contains
     real(wp) :: growth(2), longest(2)
     integer :: enough(2), direction
 
-    if (.not. deck%mesh%cell > 0) return
+    if (.not. deck%setup%mesh%cell > 0) return
     do direction = 1, 2
       call measure(deck, direction, growth(direction), longest(direction), enough(direction))
     end do
     if (.not. any(growth > fastest)) return
     call remark(deck%settings, problems, mesh_group, key_elements, 'outside of the core each element is up to '// &
                 short_text(maxval(growth))//' times as long as the one before, the longest '// &
-                short_text(maxval(longest))//', with cell = '//short_text(deck%mesh%cell)//'; elements = '// &
+                short_text(maxval(longest))//', with cell = '//short_text(deck%setup%mesh%cell)//'; elements = '// &
                 to_text(enough(1))//', '//to_text(enough(2))//' refine the rest as the core.')
   end subroutine check_cell_growth
 
@@ -56,10 +56,10 @@ contains
     logical :: halved(2)
     integer :: side, outside
 
-    associate (mesh => deck%mesh)
-      line = cells_from_struck(deck%plate, mesh, direction)
+    associate (mesh => deck%setup%mesh)
+      line = cells_from_struck(deck%setup%plate, mesh, direction)
       half_core = max(mesh%core(direction), mesh%patch)/2
-      halved = is_halved(deck%plate%symmetry)
+      halved = is_halved(deck%setup%plate%symmetry)
       growth = 1
       enough = 0
       longest = maxval(line%sides())

@@ -53,14 +53,14 @@ contains
 
     if (.not. deck%settings%is_given(mesh_group, key_mass)) &
       call deck%settings%derive(mesh_group, key_mass, 'lumped', .true.)
-    deck%mesh%mass = mass_lumped
+    deck%setup%mesh%mass = mass_lumped
     if (.not. deck%settings%is_given(impactor_group, key_integrator)) then
       call deck%settings%derive(impactor_group, key_integrator, 'central', .true.)
-      deck%impactor%integrator = integrator_central
+      deck%setup%impactor%integrator = integrator_central
     end if
     if (problems%errors() > 0) return
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    scales = scales_of(deck%setup_t)
+    scales = scales_of(deck%setup)
     if (.not. deck%settings%is_given(time_group, key_end)) call choose_end(deck, scales, problems)
     if (.not. deck%settings%is_given(time_group, key_mass_scaling)) call choose_scaling(deck, scales)
   end subroutine choose_for_central_differences
@@ -77,17 +77,17 @@ contains
 
     deck%stepping%time%extends_to_contact_end = .true.
     if (deck%settings%is_known(time_group, key_end)) return
-    if (.not. (deck%is_impact() .and. scales%area_mass > 0)) then
+    if (.not. (deck%setup%is_impact() .and. scales%area_mass > 0)) then
       if (.not. problems%concern(time_group, key_end)) &
         call problems%error(deck%settings%line_of_group(time_group), time_group, key_end, '&'//time_group//' '// &
                             key_end//' is missing; it follows from the contact only where an impactor comes with a '// &
                             'velocity.', 1)
       return
     end if
-    elastic = contact_end(start_elastic_impact(deck%setup_t, scales), 0.0_wp)
+    elastic = contact_end(start_elastic_impact(deck%setup, scales), 0.0_wp)
     end = past_contact*elastic%last_contact
     ! A plate from another run comes to rest before it is struck.
-    if (deck%initial%is_inherited) end = end + deck%settings%real_of(time_group, key_settle)
+    if (deck%setup%initial%is_inherited) end = end + deck%settings%real_of(time_group, key_settle)
     call deck%settings%derive(time_group, key_end, short_text(end), .false.)
     call append(deck%reasons, 'End '//short_text(end)//': the contact of an '// &
                 'undamaged plate ends at '//short_text(elastic%last_contact)//' in a preliminary elastic impact; '// &
@@ -102,7 +102,7 @@ contains
     type(scaled_impact_t) :: chosen
 
     if (scales%wave_length > 0) then
-      chosen = largest_scaling(deck%setup_t, scales, max_scaling, permitted_change)
+      chosen = largest_scaling(deck%setup, scales, max_scaling, permitted_change)
       call append(deck%reasons, 'Mass scaling '//short_text(chosen%scaling)//': it slows the bending waves of '// &
                   'first contact, '//short_text(scales%wave_length)//' long, by '//short_text(100*chosen%slowed)// &
                   ' %, and changes the force history of a preliminary elastic impact by '// &
@@ -158,7 +158,7 @@ contains
     type(central_difference_parameters_t) :: usual
     real(wp) :: longest
 
-    scales = scales_of(deck%setup_t)
+    scales = scales_of(deck%setup)
     longest = part_of_rise*scales%contact_time*(deck%stepping%central%step_factor/usual%step_factor)
     if (.not. (longest > 0 .and. longest < step)) return
     step = longest

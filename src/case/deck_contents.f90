@@ -12,13 +12,8 @@ module deck_contents
   private
   public :: deck_t
 
-  !> A deck: the setup to model, and output and stepping parameters; it has many components because every group of the
-  !> deck has one.
-  type, extends(setup_t) :: deck_t
-    !> Path or name it was read from
-    character(len=:), allocatable :: source
-    !> Text of the deck, for the results and a restart
-    character(len=:), allocatable :: text
+  !> The case as a whole: names, and what holds for all of the deck.
+  type :: case_t
     !> Name of the case, which names its files
     character(len=:), allocatable :: name
     !> Title of the case
@@ -31,6 +26,18 @@ module deck_contents
     logical :: strict = .false.
     !> Times that elements and steps are halved
     integer :: refine = 0
+  end type case_t
+
+  !> A deck: the setup to model, and output and stepping parameters.
+  type :: deck_t
+    !> Path or name it was read from
+    character(len=:), allocatable :: source
+    !> Text of the deck, for the results and a restart
+    character(len=:), allocatable :: text
+    !> The case
+    type(case_t) :: case
+    !> The setup to model
+    type(setup_t) :: setup
     !> Values chosen for the accuracy, with reasons
     type(line_t), allocatable :: reasons(:)
     !> Scales of the setup, and expected results

@@ -42,32 +42,32 @@ contains
     logical :: softens
     integer :: i
 
-    softens = any([(any(deck%materials(i)%toughness > 0), i=1, size(deck%materials))])
+    softens = any([(any(deck%setup%materials(i)%toughness > 0), i=1, size(deck%setup%materials))])
     call check_fibre_strengths(deck, softens, problems)
     call check_strain_rates(deck, softens, problems)
     if (.not. softens) then
-      if (deck%ply_damage%in_situ) call refuse_in_situ(deck, problems)
-      if (deck%ply_damage%permanent_shear) call report(deck%settings, problems, ply_damage_group, key_permanent, &
+      if (deck%setup%ply_damage%in_situ) call refuse_in_situ(deck, problems)
+      if (deck%setup%ply_damage%permanent_shear) call report(deck%settings, problems, ply_damage_group, key_permanent, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
-      if (deck%ply_damage%crack_closure) call report(deck%settings, problems, ply_damage_group, key_closure, &
+      if (deck%setup%ply_damage%crack_closure) call report(deck%settings, problems, ply_damage_group, key_closure, &
         'belongs to plies with fracture energies; give G_ft, G_fc, G_mt and G_mc of every material, or leave it out.')
       return
     end if
-    do i = 1, size(deck%materials)
+    do i = 1, size(deck%setup%materials)
       call check_energies(deck, i, problems)
       call check_shear(deck, i, problems)
     end do
-    if (deck%ply_damage%permanent_shear) call check_permanent_shear(deck, problems)
-    if (deck%ply_damage%crack_closure .and. .not. (deck%has_time .and. is_explicit(deck%stepping))) &
+    if (deck%setup%ply_damage%permanent_shear) call check_permanent_shear(deck, problems)
+    if (deck%setup%ply_damage%crack_closure .and. .not. (deck%has_time .and. is_explicit(deck%stepping))) &
       call report(deck%settings, problems, ply_damage_group, key_closure, 'implicit steps and load steps do not '// &
                 'model crack closure; use integrator = ''central_difference'' of &time, or leave it out.')
     if (problems%errors() > 0) return
-    if (deck%ply_damage%in_situ .and. all(block_of(stacked_plies(deck%laminate, deck%materials), 1) == &
-                                          [1, size(deck%laminate%angle)])) &
+    if (deck%setup%ply_damage%in_situ .and. all(block_of(stacked_plies(deck%setup%laminate, deck%setup%materials), &
+                                                         1) == [1, size(deck%setup%laminate%angle)])) &
       call remark(deck%settings, problems, ply_damage_group, key_in_situ, 'has no effect: all plies are of one '// &
                   'material and angle, so that no ply has a neighbour that constrains its cracks.')
-    if (deck%ply_damage%in_situ .and. deck%ply_damage%kinking) call check_kinking_in_place(deck, problems)
-    do i = 1, size(deck%materials)
+    if (deck%setup%ply_damage%in_situ .and. deck%setup%ply_damage%kinking) call check_kinking_in_place(deck, problems)
+    do i = 1, size(deck%setup%materials)
       call check_lengths(deck, i, problems)
     end do
   end subroutine check_crack_bands
@@ -80,9 +80,9 @@ contains
     character(len=:), allocatable :: objection
     integer :: ply
 
-    plies = stacked_plies(deck%laminate, deck%materials)
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     do ply = 1, size(plies)
-      objection = larc_objection(material_in_place(plies, ply, deck%materials, deck%ply_damage))
+      objection = larc_objection(material_in_place(plies, ply, deck%setup%materials, deck%setup%ply_damage))
       if (objection == '') cycle
       call report(deck%settings, problems, ply_damage_group, key_in_situ, 'raises S12 of ply '//to_text(ply)// &
                   ' so far that '//objection//'.')
@@ -99,7 +99,8 @@ contains
     if (.not. (deck%has_time .and. is_explicit(deck%stepping))) &
       call report(deck%settings, problems, ply_damage_group, key_permanent, 'implicit steps and load steps have no '// &
                 'permanent strains; use integrator = ''central_difference'' of &time, or leave it out.')
-    if (any([(deck%settings%is_given(material_group, key_shear_strain, place), place=1, size(deck%materials))])) return
+    if (any([(deck%settings%is_given(material_group, key_shear_strain, place), place=1, size(deck%setup%materials))])) &
+      return
     call report(deck%settings, problems, ply_damage_group, key_permanent, 'there is no permanent strain without '// &
               key_shear_strain//' of a &'//material_group//'; give it, or leave this out.')
   end subroutine check_permanent_shear
@@ -111,7 +112,7 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: place, mode
 
-    do place = 1, size(deck%materials)
+    do place = 1, size(deck%setup%materials)
       do mode = 1, size(toughness_keys)
         if (.not. are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) return
       end do
@@ -132,7 +133,7 @@ contains
 
     allocate (missing(0))
     do mode = 1, size(toughness_keys)
-      if (deck%materials(place)%toughness(mode) > 0) cycle
+      if (deck%setup%materials(place)%toughness(mode) > 0) cycle
       if (are_clear(deck%settings, problems, material_group, toughness_keys(mode), place)) &
         call append(missing, toughness_keys(mode))
     end do
@@ -150,8 +151,8 @@ contains
     real(wp) :: strain, linear
 
     strain = deck%settings%real_of(material_group, key_shear_strain, place)
-    if (.not. (strain > 0 .and. deck%materials(place)%g12 > 0)) return
-    linear = deck%materials(place)%s12/deck%materials(place)%g12
+    if (.not. (strain > 0 .and. deck%setup%materials(place)%g12 > 0)) return
+    linear = deck%setup%materials(place)%s12/deck%setup%materials(place)%g12
     if (strain < linear) call report(deck%settings, problems, material_group, key_shear_strain, 'must be at least '// &
                                    'S12/G12 = '//short_text(linear)//', that of linear shear.', place)
   end subroutine check_shear
@@ -167,11 +168,11 @@ contains
     real(wp) :: longest(size(toughness_keys)), present(2), usual
     integer :: mode
 
-    if (.not. any(deck%used_materials() == place)) return
+    if (.not. any(deck%setup%used_materials() == place)) return
     present = element_lengths(deck)
     longest = longest_elements(deck, place)
     usual = present(2)
-    if (deck%mesh%cell > 0) usual = deck%mesh%cell
+    if (deck%setup%mesh%cell > 0) usual = deck%setup%mesh%cell
     allocate (limits(0), excesses(0))
     do mode = 1, size(toughness_keys)
       if (longest(mode) < present(2)) &
@@ -201,13 +202,13 @@ contains
     type(ply_t), allocatable :: plies(:)
     integer :: ply, alike
 
-    plies = stacked_plies(deck%laminate, deck%materials)
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     ! Plies have the first of equal materials.
-    alike = first_alike(deck%materials, place)
-    longest = longest_element(create_crack_band(deck%materials(place), deck%ply_damage))
+    alike = first_alike(deck%setup%materials, place)
+    longest = longest_element(create_crack_band(deck%setup%materials(place), deck%setup%ply_damage))
     do ply = 1, size(plies)
       if (plies(ply)%material == alike) longest = min(longest, longest_element(create_crack_band( &
-        material_in_place(plies, ply, deck%materials, deck%ply_damage), deck%ply_damage)))
+        material_in_place(plies, ply, deck%setup%materials, deck%setup%ply_damage), deck%setup%ply_damage)))
     end do
     ! The energy at the onset grows with the square of the strength.
     longest(fibre_tension) = longest(fibre_tension)/maxval(fibre_factors(deck, alike))**2
@@ -223,11 +224,11 @@ contains
     integer :: direction
 
     lengths = [huge(1.0_wp), 0.0_wp]
-    joined = is_halved(deck%plate%symmetry) .or. deck%has_impactor
+    joined = is_halved(deck%setup%plate%symmetry) .or. deck%setup%impactor%is_present
     do direction = 1, 2
-      line = cells_along(deck%plate, deck%mesh, direction)
+      line = cells_along(deck%setup%plate, deck%setup%mesh, direction)
       lengths = [min(lengths(1), minval(line%sides())), max(lengths(2), maxval(line%sides()))]
-      line = line%from(deck%mesh%struck(direction))
+      line = line%from(deck%setup%mesh%struck(direction))
       if (joined(direction)) lengths(2) = max(lengths(2), longest_pair(line))
     end do
   end function element_lengths

@@ -47,7 +47,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     call check_loads(deck, problems)
-    if (deck%is_static()) then
+    if (deck%setup%is_static()) then
       call check_static(deck, problems)
     else
       call check_transient(deck, problems)
@@ -60,8 +60,9 @@ contains
     call check_bonds_across_groups(deck, problems)
     call check_impact(deck, problems)
     call check_interfaces(deck, problems)
-    if (deck%has_ply_damage) call check_strengths(deck, problems)
-    call remark_idle_fields(deck%settings, deck%output, size(deck%delaminations) > 0, deck%has_ply_damage, problems)
+    if (deck%setup%ply_damage%is_present) call check_strengths(deck, problems)
+    call remark_idle_fields(deck%settings, deck%output, size(deck%setup%delaminations) > 0, &
+                            deck%setup%ply_damage%is_present, problems)
   end subroutine check_across_groups
 
   !> Checks that there is a load, and no conflicting ones.
@@ -69,17 +70,20 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    if (deck%presses_impactor()) then
+    if (deck%setup%presses_impactor()) then
       call check_travel(deck, problems)
-    else if (deck%has_impactor .and. deck%settings%is_given(impactor_group, key_travel)) then
+    else if (deck%setup%impactor%is_present .and. deck%settings%is_given(impactor_group, key_travel)) then
       call check_travel_in_time(deck, problems)
-    else if (deck%is_static() .and. .not. (deck%has_pressure .or. deck%has_thermal .or. loads(deck%lines) .or. &
-             problems%concern(pressure_group) .or. problems%concern(line_group))) then
+    else if (deck%setup%is_static() .and. &
+             .not. (deck%setup%pressure%is_present .or. deck%setup%thermal%is_present .or. &
+                    loads(deck%setup%lines) .or. &
+                    problems%concern(pressure_group) .or. problems%concern(line_group))) then
       call report(deck%settings, problems, static_group, '', 'there is no load; give &pressure, or a &line with one.')
-    else if (.not. (deck%is_static() .or. deck%has_impactor .or. deck%has_pressure .or. deck%has_thermal .or. &
-                    deck%initial%is_inherited .or. loads(deck%lines) .or. problems%concern(line_group) .or. &
-                    problems%concern(static_group) .or. problems%concern(impactor_group) .or. &
-                    problems%concern(pressure_group))) then
+    else if (.not. (deck%setup%is_static() .or. deck%setup%impactor%is_present .or. &
+                    deck%setup%pressure%is_present .or. deck%setup%thermal%is_present .or. &
+                    deck%setup%initial%is_inherited .or. loads(deck%setup%lines) .or. &
+                    problems%concern(line_group) .or. problems%concern(static_group) .or. &
+                    problems%concern(impactor_group) .or. problems%concern(pressure_group))) then
       call problems%error(0, pressure_group, '', 'the plate has no load; give &impactor, &pressure or &line.')
     end if
   end subroutine check_loads
@@ -94,7 +98,7 @@ contains
       if (.not. problems%concern(impactor_group, key_travel)) &
         call report(deck%settings, problems, static_group, '', &
                     'an impactor needs &time, or a travel; give &impactor travel, or leave out &static or &impactor.')
-    else if (deck%has_pressure .or. loads(deck%lines)) then
+    else if (deck%setup%pressure%is_present .or. loads(deck%setup%lines)) then
       call report(deck%settings, problems, impactor_group, key_travel, &
                   'no other load is possible with a travel in a static analysis; leave out &pressure and lines '// &
                   'that move or load the plate.')
@@ -110,7 +114,7 @@ contains
     if (.not. is_explicit(deck%stepping)) then
       call report(deck%settings, problems, impactor_group, key_travel, 'in time it requires &time integrator = '// &
                 '''central_difference''; give that, &static for load steps, or the velocity instead.')
-    else if (deck%impactor%rise > deck%stepping%time%end .and. .not. problems%concern(time_group)) then
+    else if (deck%setup%impactor%rise > deck%stepping%time%end .and. .not. problems%concern(time_group)) then
       call report(deck%settings, problems, impactor_group, impactor_key_rise, 'the rise lasts longer than the run.')
     end if
   end subroutine check_travel_in_time
@@ -127,21 +131,22 @@ contains
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
-    if (size(deck%supports) > 0) then
-      call check_static_rigs(deck%settings, deck%plate%symmetry, &
-                             any(deck%lines%prescribed .and. deck%lines%component >= 3), deck%supports, problems)
-    else if (size(deck%lines) == 0) then
-      call check_edges(deck%settings, deck%plate, problems)
+    if (size(deck%setup%supports) > 0) then
+      call check_static_rigs(deck%settings, deck%setup%plate%symmetry, &
+                             any(deck%setup%lines%prescribed .and. deck%setup%lines%component >= 3), &
+                             deck%setup%supports, problems)
+    else if (size(deck%setup%lines) == 0) then
+      call check_edges(deck%settings, deck%setup%plate, problems)
     else if (.not. problems%concern(line_group)) then
       call check_line_supports(deck, problems)
     end if
-    if (size(deck%lines) > 0 .and. .not. problems%concern(line_group)) call check_in_plane_balance(deck, problems)
+    if (size(deck%setup%lines) > 0 .and. .not. problems%concern(line_group)) call check_in_plane_balance(deck, problems)
     if (deck%has_time) call remark(deck%settings, problems, time_group, '', 'has no effect on a static analysis.')
     if (deck%settings%has_group(adapt_group)) &
       call remark(deck%settings, problems, adapt_group, '', 'has no effect on a static analysis.')
     if (.not. problems%concern(static_group)) &
-      call check_intervals(deck%settings, 1.0_wp/deck%static%steps, 1.0_wp, problems)
-    if (any(deck%delaminations%law == law_front)) &
+      call check_intervals(deck%settings, 1.0_wp/deck%setup%loading%steps, 1.0_wp, problems)
+    if (any(deck%setup%delaminations%law == law_front)) &
       call remark(deck%settings, problems, delamination_group, '', &
                   'in a static analysis the starter of a front does not grow.')
   end subroutine check_static
@@ -175,7 +180,7 @@ contains
     clause = 'give end and step'
     if (softening_part(deck) == '') return
     clause = 'give end'
-    if (deck%is_impact()) clause = 'give &'//time_group//' /, whose end and step follow from the impact'
+    if (deck%setup%is_impact()) clause = 'give &'//time_group//' /, whose end and step follow from the impact'
   end function needed_of_time
 
   !> Impactor, its patch and its contact stiffness.
@@ -186,15 +191,16 @@ contains
     integer :: i
 
     associate (s => deck%settings)
-      if (.not. deck%has_impactor) then
-        if (deck%has_indentation .and. .not. problems%concern(impactor_group)) &
+      if (.not. deck%setup%impactor%is_present) then
+        if (deck%setup%impactor%indentation%is_given .and. .not. problems%concern(impactor_group)) &
           call remark(s, problems, indentation_group, '', 'has no effect without an impactor.')
         return
       end if
-      if (deck%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. are_clear(s, problems, mesh_group, key_patch)) &
+      if (deck%setup%mesh%patch <= 0 .and. s%has_group(mesh_group) .and. &
+          are_clear(s, problems, mesh_group, key_patch)) &
         call report(s, problems, mesh_group, key_patch, 'an impactor needs a loaded patch; give its side > 0.')
       call check_dent(deck, problems)
-      if (any([(deck%supports(i)%carries(deck%impactor%at), i=1, size(deck%supports))]) .and. &
+      if (any([(deck%setup%supports(i)%carries(deck%setup%impactor%at), i=1, size(deck%setup%supports))]) .and. &
           are_clear(s, problems, impactor_group, key_at) .and. .not. problems%concern(support_group)) &
         call remark(s, problems, impactor_group, key_at, 'the struck point lies on the frame of &support, where '// &
                     'the plate does not deflect: the force is that of the contact alone.')
@@ -202,13 +208,14 @@ contains
           are_clear(s, problems, indentation_group, key_k) .and. are_clear(s, problems, impactor_group, key_radius)) &
         call report(s, problems, impactor_group, key_radius, &
                   'is missing; give it, or the contact stiffness &indentation k.')
-      if (deck%impactor%radius > 0 .and. .not. deck%contact_radius() > 0 .and. &
+      if (deck%setup%impactor%radius > 0 .and. .not. deck%setup%contact_radius() > 0 .and. &
           are_clear(s, problems, plate_group, key_curvature_radius)) &
         call report(s, problems, plate_group, key_curvature_radius, 'the nose of the impactor, radius '// &
-                    short_text(deck%impactor%radius)//', does not fit into the concave side; allowed: a larger radius.')
-      if (deck%is_static() .or. s%is_given(impactor_group, key_travel)) return
-      if (deck%impactor%velocity <= 0 .and. deck%impactor%gravity <= 0 .and. .not. deck%has_pressure .and. &
-          .not. problems%concern(pressure_group) .and. &
+                    short_text(deck%setup%impactor%radius)// &
+                    ', does not fit into the concave side; allowed: a larger radius.')
+      if (deck%setup%is_static() .or. s%is_given(impactor_group, key_travel)) return
+      if (deck%setup%impactor%velocity <= 0 .and. deck%setup%impactor%gravity <= 0 .and. &
+          .not. deck%setup%pressure%is_present .and. .not. problems%concern(pressure_group) .and. &
           are_clear(s, problems, impactor_group, keys_of_motion(s)//' '//key_gravity)) &
         call report(s, problems, impactor_group, key_velocity, &
                   'nothing moves the impactor towards the plate; give a velocity or gravity > 0.')
@@ -221,9 +228,9 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    if (deck%indentation%law == law_hertz .or. .not. allocated(deck%laminate%thickness)) return
-    associate (thickness => sum(deck%laminate%thickness))
-      if (thickness > 0 .and. deck%indentation%alpha_critical > thickness) &
+    if (deck%setup%impactor%indentation%law == law_hertz .or. .not. allocated(deck%setup%laminate%thickness)) return
+    associate (thickness => sum(deck%setup%laminate%thickness))
+      if (thickness > 0 .and. deck%setup%impactor%indentation%alpha_critical > thickness) &
         call remark(deck%settings, problems, indentation_group, key_alpha_critical, 'is larger than the thickness '// &
                     'of the laminate, '//short_text(thickness)//': the contact is elastic and leaves no dent.')
     end associate
@@ -235,15 +242,15 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    if (.not. allocated(deck%laminate%angle)) return
-    do i = 1, size(deck%delaminations)
-      associate (place => deck%delaminations(i)%group)
+    if (.not. allocated(deck%setup%laminate%angle)) return
+    do i = 1, size(deck%setup%delaminations)
+      associate (place => deck%setup%delaminations(i)%group)
         if (.not. are_clear(deck%settings, problems, delamination_group, key_below_ply, place)) cycle
         ! 'between_angles' and 'all' find no interface in a laminate with errors.
-        if (deck%delaminations(i)%below_ply < 1 .and. problems%concern(laminate_group)) cycle
-        if (interface_objection(deck%delaminations(i), size(deck%laminate%angle)) /= '') &
+        if (deck%setup%delaminations(i)%below_ply < 1 .and. problems%concern(laminate_group)) cycle
+        if (interface_objection(deck%setup%delaminations(i), size(deck%setup%laminate%angle)) /= '') &
           call report(deck%settings, problems, delamination_group, '', &
-                    interface_objection(deck%delaminations(i), size(deck%laminate%angle))//'.', place)
+                    interface_objection(deck%setup%delaminations(i), size(deck%setup%laminate%angle))//'.', place)
       end associate
     end do
   end subroutine check_interfaces
@@ -256,10 +263,11 @@ contains
     character(len=:), allocatable :: names, instead
     integer :: i, j
 
-    do i = 1, size(deck%materials)
-      names = needed_strengths(deck%ply_damage%criteria, any(deck%materials(i)%toughness > 0), deck%materials(i))
+    do i = 1, size(deck%setup%materials)
+      names = needed_strengths(deck%setup%ply_damage%criteria, any(deck%setup%materials(i)%toughness > 0), &
+                               deck%setup%materials(i))
       instead = ''
-      if (names /= needed_strengths(deck%ply_damage%criteria, .true., deck%materials(i))) &
+      if (names /= needed_strengths(deck%setup%ply_damage%criteria, .true., deck%setup%materials(i))) &
         instead = ', or fracture energies (G_ft, G_fc, G_mt, G_mc) in place of Sf and Sm23,'
       needed = words_of(names, ',')
       allocate (missing(0))
@@ -269,7 +277,7 @@ contains
       end do
       if (size(missing) > 0) call report(deck%settings, problems, material_group, '', 'ply damage needs the '// &
         'strengths '//joined(missing, ', ')//'; give them'//instead//' or leave &ply_damage out.', i)
-      if (deck%ply_damage%kinking .and. size(missing) == 0) call check_kinking(deck, i, problems)
+      if (deck%setup%ply_damage%kinking .and. size(missing) == 0) call check_kinking(deck, i, problems)
       deallocate (missing)
     end do
   end subroutine check_strengths
@@ -281,7 +289,7 @@ contains
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
 
-    associate (material => deck%materials(place))
+    associate (material => deck%setup%materials(place))
       if (.not. material%xc > 0) then
         if (are_clear(deck%settings, problems, material_group, key_compressive, place)) &
           call report(deck%settings, problems, material_group, key_compressive, 'is missing; fibre_compression = '// &

@@ -33,7 +33,7 @@ contains
                   'write &time integrator = ''generalized_alpha''.')
       if (s%has_group(adapt_group)) call remark(s, problems, adapt_group, '', no_effect)
       ! Equilibrium with residual stresses or fixed lines is found before the first step.
-      if (s%has_group(solver_group) .and. .not. (deck%has_thermal .or. any(deck%lines%precedes()))) &
+      if (s%has_group(solver_group) .and. .not. (deck%setup%thermal%is_present .or. any(deck%setup%lines%precedes()))) &
         call remark(s, problems, solver_group, '', no_effect)
     end associate
   end subroutine check_central_differences
@@ -45,9 +45,9 @@ contains
     integer :: i, before
 
     before = 0
-    do i = 1, size(deck%delaminations)
-      associate (place => deck%delaminations(i)%group)
-        if (place == before .or. deck%delaminations(i)%law /= law_front) cycle
+    do i = 1, size(deck%setup%delaminations)
+      associate (place => deck%setup%delaminations(i)%group)
+        if (place == before .or. deck%setup%delaminations(i)%law /= law_front) cycle
         before = place
         if (are_clear(deck%settings, problems, delamination_group, key_law, place)) &
           call report(deck%settings, problems, delamination_group, key_law, 'central differences cannot be used '// &

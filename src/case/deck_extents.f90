@@ -68,12 +68,12 @@ contains
     integer :: place, direction
     logical :: mirrored(2)
 
-    mirrored = is_mirrored(deck%plate%symmetry)
-    do place = 1, size(deck%lines)
+    mirrored = is_mirrored(deck%setup%plate%symmetry)
+    do place = 1, size(deck%setup%lines)
       if (.not. are_clear(deck%settings, problems, line_group, line_key_at, place)) cycle
-      associate (line => deck%lines(place))
+      associate (line => deck%setup%lines(place))
         direction = merge(2, 1, line%direction == along_x)
-        half = deck%plate%length(direction)/2
+        half = deck%setup%plate%length(direction)/2
         if (abs(line%at) > half*(1 + rounding)) then
           call report(deck%settings, problems, line_group, line_key_at, &
                       'the line is not on the plate; allowed: '// &
@@ -95,12 +95,12 @@ contains
     real(wp) :: taken
     integer :: place, direction
 
-    do place = 1, size(deck%lines)
-      direction = merge(2, 1, deck%lines(place)%direction == along_x)
-      cells = cells_along(deck%plate, deck%mesh, direction)
-      associate (at => deck%lines(place)%at)
+    do place = 1, size(deck%setup%lines)
+      direction = merge(2, 1, deck%setup%lines(place)%direction == along_x)
+      cells = cells_along(deck%setup%plate, deck%setup%mesh, direction)
+      associate (at => deck%setup%lines(place)%at)
         taken = cells%place_of_node(cells%nearest_node(at))
-        if (abs(taken - at) > moved_line*deck%plate%length(direction)) &
+        if (abs(taken - at) > moved_line*deck%setup%plate%length(direction)) &
           call remark(deck%settings, problems, line_group, line_key_at, 'lines lie on nodes; on this mesh the line '// &
                       'is at '//to_text(rounded(taken))//'.', place)
       end associate
@@ -114,10 +114,10 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: thickness, shorter, longer
 
-    if (.not. allocated(deck%laminate%thickness)) return
-    thickness = sum(deck%laminate%thickness)
-    shorter = minval(deck%plate%length)
-    longer = maxval(deck%plate%length)
+    if (.not. allocated(deck%setup%laminate%thickness)) return
+    thickness = sum(deck%setup%laminate%thickness)
+    shorter = minval(deck%setup%plate%length)
+    longer = maxval(deck%setup%plate%length)
     if (thickness > shorter) then
       call report(deck%settings, problems, laminate_group, key_thicknesses, 'the laminate is '// &
                   short_text(thickness)//' thick, more than the plate''s width; plate theory does not apply.')
@@ -138,17 +138,18 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    do i = 1, size(deck%delaminations)
+    do i = 1, size(deck%setup%delaminations)
       if (repeats(deck, i)) cycle
-      associate (s => deck%settings, d => deck%delaminations(i), place => deck%delaminations(i)%group)
-        if (any(d%zone > deck%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
+      associate (s => deck%settings, d => deck%setup%delaminations(i), place => deck%setup%delaminations(i)%group)
+        if (any(d%zone > deck%setup%plate%length) .and. are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_zone, place)) &
           call report(s, problems, delamination_group, key_zone, 'the zone must not be larger than the plate.', place)
-        if (d%is_adaptive .and. any(d%starter + 2*abs(d%starter_at) >= deck%plate%length) .and. &
+        if (d%is_adaptive .and. any(d%starter + 2*abs(d%starter_at) >= deck%setup%plate%length) .and. &
             are_clear(s, problems, plate_group, key_length) .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call report(s, problems, delamination_group, key_starter, 'must lie within the plate.', place)
-        if (deck%has_impactor .and. d%law == law_front .and. d%starter < min_starter*deck%mesh%patch .and. &
+        if (deck%setup%impactor%is_present .and. d%law == law_front .and. &
+            d%starter < min_starter*deck%setup%mesh%patch .and. &
             are_clear(s, problems, delamination_group, key_starter, place)) &
           call remark(s, problems, delamination_group, key_starter, 'the starter is hardly larger than the loaded '// &
                       'patch: most of the shear force then acts within the starter, and growth may never start.', place)
@@ -162,8 +163,8 @@ contains
     !> The interface
     integer, intent(in) :: i
 
-    repeats = any(deck%delaminations(:i - 1)%group == deck%delaminations(i)%group .and. &
-                  deck%delaminations(:i - 1)%law == deck%delaminations(i)%law)
+    repeats = any(deck%setup%delaminations(:i - 1)%group == deck%setup%delaminations(i)%group .and. &
+                  deck%setup%delaminations(:i - 1)%law == deck%setup%delaminations(i)%law)
   end function repeats
 
   !> Warns of lines, zones and starters whose size on the mesh differs from the deck's.
@@ -179,12 +180,12 @@ contains
     call check_window_lines(deck, problems)
     call check_line_nodes(deck, problems)
     call check_line_conflicts(deck, problems)
-    if (size(deck%delaminations) == 0) return
-    columns = cells_from_struck(deck%plate, deck%mesh, 1)
-    rows = cells_from_struck(deck%plate, deck%mesh, 2)
-    do i = 1, size(deck%delaminations)
+    if (size(deck%setup%delaminations) == 0) return
+    columns = cells_from_struck(deck%setup%plate, deck%setup%mesh, 1)
+    rows = cells_from_struck(deck%setup%plate, deck%setup%mesh, 2)
+    do i = 1, size(deck%setup%delaminations)
       if (repeats(deck, i)) cycle
-      associate (d => deck%delaminations(i), place => deck%delaminations(i)%group)
+      associate (d => deck%setup%delaminations(i), place => deck%setup%delaminations(i)%group)
         call extents_of(columns, rows, d, zone, starter)
         if (differs(zone, d%zone) .and. .not. (d%is_adaptive .or. d%bonds_doublers())) &
           call remark(deck%settings, problems, delamination_group, key_zone, 'zones consist of entire cells; '// &
@@ -213,14 +214,14 @@ contains
     associate (d => delamination)
       if (d%law /= law_front .or. d%energy_release /= release_vcct .or. .not. d%starter > 0) return
       ! A round front in isotropic plies has one rate all around.
-      if (d%starter_round .and. all(abs(deck%materials%e1 &
-                                        - deck%materials%e2) <= size_tolerance*deck%materials%e1)) return
+      if (d%starter_round .and. all(abs(deck%setup%materials%e1 &
+                                        - deck%setup%materials%e2) <= size_tolerance*deck%setup%materials%e1)) return
       distance = d%smoothing
       advice = 'give a shorter one'
       if (.not. distance > 0) then
-        distance = default_smoothing(sum(deck%laminate%thickness), cell)
+        distance = default_smoothing(sum(deck%setup%laminate%thickness), cell)
         advice = 'use cells of at most '//to_text(rounded(radius/min_smoothed_cells))
-        if (.not. min_smoothed_cells*cell > sum(deck%laminate%thickness)) return
+        if (.not. min_smoothed_cells*cell > sum(deck%setup%laminate%thickness)) return
       end if
       if (distance > radius*(1 + size_tolerance)) &
         call remark(deck%settings, problems, delamination_group, key_smoothing, 'rates are averaged over '// &
@@ -255,18 +256,18 @@ contains
     character(len=:), allocatable :: text
     integer :: place
 
-    allocate (lines(size(deck%delaminations)))
-    columns = cells_from_struck(deck%plate, deck%mesh, 1)
-    rows = cells_from_struck(deck%plate, deck%mesh, 2)
+    allocate (lines(size(deck%setup%delaminations)))
+    columns = cells_from_struck(deck%setup%plate, deck%setup%mesh, 1)
+    rows = cells_from_struck(deck%setup%plate, deck%setup%mesh, 2)
     do place = 1, size(lines)
-      call extents_of(columns, rows, deck%delaminations(place), zone, starter)
-      text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the mesh makes the zone '// &
-             shown(zone)
-      if (deck%delaminations(place)%bonds_doublers()) &
-        text = 'Interface below ply '//to_text(deck%delaminations(place)%below_ply)//': the bond of '// &
-               names_of_doublers(deck%zones, deck%delaminations(place))
-      if (deck%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
-      if (deck%delaminations(place)%is_adaptive) text = text//'. The zone grows with the damage'
+      call extents_of(columns, rows, deck%setup%delaminations(place), zone, starter)
+      text = 'Interface below ply '//to_text(deck%setup%delaminations(place)%below_ply)// &
+             ': the mesh makes the zone '// shown(zone)
+      if (deck%setup%delaminations(place)%bonds_doublers()) &
+        text = 'Interface below ply '//to_text(deck%setup%delaminations(place)%below_ply)//': the bond of '// &
+               names_of_doublers(deck%setup%zones, deck%setup%delaminations(place))
+      if (deck%setup%delaminations(place)%starter > 0) text = text//' and the starter '//shown(starter)
+      if (deck%setup%delaminations(place)%is_adaptive) text = text//'. The zone grows with the damage'
       lines(place)%text = text//'.'
     end do
   end function extent_lines

@@ -31,7 +31,7 @@ contains
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
-    associate (s => deck%settings, damage => deck%ply_damage)
+    associate (s => deck%settings, damage => deck%setup%ply_damage)
       if (.not. damage%weibull_modulus > 0) return
       if (.not. softens) then
         call report(s, problems, ply_damage_group, key_weibull, 'belongs to plies with fracture energies; give '// &
@@ -40,8 +40,9 @@ contains
         if (are_clear(s, problems, ply_damage_group, key_volume)) &
           call report(s, problems, ply_damage_group, key_weibull, 'needs '//key_volume//', the stressed volume of '// &
                       'the specimens that XT was measured on; give it, or units of &case for its default of 3750 mm3.')
-      else if (allocated(deck%laminate%thickness)) then
-        associate (ratio => damage%reference_volume/(product(deck%plate%length)*sum(deck%laminate%thickness)))
+      else if (allocated(deck%setup%laminate%thickness)) then
+        associate (ratio => damage%reference_volume &
+                            /(product(deck%setup%plate%length)*sum(deck%setup%laminate%thickness)))
           if (ratio < usual_ratios(1) .or. ratio > usual_ratios(2)) &
             call remark(s, problems, ply_damage_group, key_volume, 'is '//short_text(ratio)//' times the volume of '// &
                         'the plate; it is probably in another unit than the lengths of the plate.')
@@ -63,15 +64,15 @@ contains
     real(wp), allocatable :: thicknesses(:)
     integer :: ply
 
-    plies = stacked_plies(deck%laminate, deck%materials)
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     thicknesses = [(block_thickness(plies, ply), ply=1, size(plies))]
     thicknesses = pack(thicknesses, plies%material == place)
     volumes = 0
     if (size(thicknesses) == 0) return
-    columns = cells_along(deck%plate, deck%mesh, 1)
-    rows = cells_along(deck%plate, deck%mesh, 2)
-    volumes(1) = minval(thicknesses)*minval(columns%sides())*minval(rows%sides())*parts_of(deck%plate%symmetry)
-    volumes(2) = maxval(thicknesses)*product(deck%plate%length)
+    columns = cells_along(deck%setup%plate, deck%setup%mesh, 1)
+    rows = cells_along(deck%setup%plate, deck%setup%mesh, 2)
+    volumes(1) = minval(thicknesses)*minval(columns%sides())*minval(rows%sides())*parts_of(deck%setup%plate%symmetry)
+    volumes(2) = maxval(thicknesses)*product(deck%setup%plate%length)
   end function block_volumes
 
   !> Largest and smallest tensile strength of the fibres of a material over XT.
@@ -85,7 +86,7 @@ contains
 
     factors = 1
     volumes = block_volumes(deck, place)
-    if (.not. deck%ply_damage%weibull_modulus > 0 .or. .not. all(volumes > 0)) return
-    factors = [factor_of(deck%ply_damage, volumes(1)), factor_of(deck%ply_damage, volumes(2))]
+    if (.not. deck%setup%ply_damage%weibull_modulus > 0 .or. .not. all(volumes > 0)) return
+    factors = [factor_of(deck%setup%ply_damage, volumes(1)), factor_of(deck%setup%ply_damage, volumes(2))]
   end function fibre_factors
 end module deck_fibre_strengths

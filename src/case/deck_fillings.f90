@@ -19,7 +19,6 @@ module deck_fillings
   use kinds, only: wp
   use laminate_deck, only: fill_laminate
   use line_deck, only: fill_lines
-  use load_cases, only: analysis_by_load_steps
   use material_deck, only: fill_materials
   use material_parameters, only: first_alike
   use mesh_deck, only: fill_mesh
@@ -51,15 +50,15 @@ contains
   subroutine note_groups(deck)
     type(deck_t), intent(inout) :: deck
 
-    deck%has_impactor = deck%settings%has_group(impactor_group)
-    deck%has_indentation = deck%settings%has_group(indentation_group)
-    deck%has_pressure = deck%settings%has_group(pressure_group)
-    deck%has_thermal = deck%settings%has_group(thermal_group)
-    if (deck%settings%has_group(static_group)) deck%analysis = analysis_by_load_steps
-    deck%initial%is_inherited = deck%settings%has_group(initial_state_group)
-    deck%has_ply_damage = deck%settings%has_group(ply_damage_group)
+    deck%setup%impactor%is_present = deck%settings%has_group(impactor_group)
+    deck%setup%impactor%indentation%is_given = deck%settings%has_group(indentation_group)
+    deck%setup%pressure%is_present = deck%settings%has_group(pressure_group)
+    deck%setup%thermal%is_present = deck%settings%has_group(thermal_group)
+    deck%setup%loading%by_steps = deck%settings%has_group(static_group)
+    deck%setup%initial%is_inherited = deck%settings%has_group(initial_state_group)
+    deck%setup%ply_damage%is_present = deck%settings%has_group(ply_damage_group)
     deck%has_time = deck%settings%has_group(time_group) .or. &
-                    has_accuracy(deck%settings) .and. .not. deck%is_static()
+                    has_accuracy(deck%settings) .and. .not. deck%setup%is_static()
     if (.not. deck%has_time) call deck%settings%set_aside(time_group)
     deck%has_adapt = deck%settings%has_group(adapt_group)
   end subroutine note_groups
@@ -69,24 +68,24 @@ contains
     type(deck_t), intent(inout) :: deck
     type(problems_t), intent(inout) :: problems
 
-    call fill_case(deck%settings, deck%source, deck%name, deck%title)
-    call fill_accuracy(deck%settings, deck%accuracy, deck%units, deck%strict, deck%refine)
-    call fill_kinematics(deck%settings, deck%kinematics)
-    call fill_plate(deck%settings, deck%plate)
-    call fill_supports(deck%settings, deck%supports)
-    call fill_stringers(deck%settings, deck%plate%length, deck%stringers)
-    call fill_mesh(deck%settings, deck%mesh)
-    call fill_element(deck%settings, deck%mesh%shear, deck%mesh%mass)
-    call fill_materials(deck%settings, deck%materials, problems)
-    call fill_laminate(deck%settings, deck%materials, deck%laminate, problems)
-    call fill_zones(deck%settings, deck%materials, deck%zones, problems)
-    call check_zones(deck%settings, deck%zones, plies_of_laminate(deck), deck%plate%length, problems)
+    call fill_case(deck%settings, deck%source, deck%case%name, deck%case%title)
+    call fill_accuracy(deck%settings, deck%case%accuracy, deck%case%units, deck%case%strict, deck%case%refine)
+    call fill_kinematics(deck%settings, deck%setup%mesh%kinematics)
+    call fill_plate(deck%settings, deck%setup%plate)
+    call fill_supports(deck%settings, deck%setup%supports)
+    call fill_stringers(deck%settings, deck%setup%plate%length, deck%setup%stringers)
+    call fill_mesh(deck%settings, deck%setup%mesh)
+    call fill_element(deck%settings, deck%setup%mesh%shear, deck%setup%mesh%mass)
+    call fill_materials(deck%settings, deck%setup%materials, problems)
+    call fill_laminate(deck%settings, deck%setup%materials, deck%setup%laminate, problems)
+    call fill_zones(deck%settings, deck%setup%materials, deck%setup%zones, problems)
+    call check_zones(deck%settings, deck%setup%zones, plies_of_laminate(deck), deck%setup%plate%length, problems)
     ! Checks that follow are those of the plate without invalid zones.
-    if (problems%concern(doubler_group) .or. problems%concern(ply_drop_group)) deck%zones = ply_zones_t()
-    call fill_ply_damage(deck%settings, units_in_metre(deck%units), deck%ply_damage)
-    call fill_delaminations(deck%settings, deck%plate%length, ply_strengths(deck, skin_materials(deck)), &
-                            ply_strengths(deck, deck%zones%material()), changes_of_angle(deck), deck%zones, &
-                            deck%delaminations)
+    if (problems%concern(doubler_group) .or. problems%concern(ply_drop_group)) deck%setup%zones = ply_zones_t()
+    call fill_ply_damage(deck%settings, units_in_metre(deck%case%units), deck%setup%ply_damage)
+    call fill_delaminations(deck%settings, deck%setup%plate%length, ply_strengths(deck, skin_materials(deck)), &
+                            ply_strengths(deck, deck%setup%zones%material()), changes_of_angle(deck), &
+                              deck%setup%zones, deck%setup%delaminations)
   end subroutine fill_model
 
   !> Plies below which the angle or the material changes.
@@ -98,9 +97,10 @@ contains
     integer :: ply
 
     allocate (between(0))
-    if (allocated(deck%laminate%angle) .and. allocated(deck%laminate%material)) &
-      between = interfaces_between(deck%laminate%angle, [(first_alike(deck%materials, deck%laminate%material(ply)), &
-                                                          ply=1, size(deck%laminate%material))])
+    if (allocated(deck%setup%laminate%angle) .and. allocated(deck%setup%laminate%material)) &
+      between = interfaces_between(deck%setup%laminate%angle, &
+                                   [(first_alike(deck%setup%materials, deck%setup%laminate%material(ply)), &
+                                     ply=1, size(deck%setup%laminate%material))])
   end function changes_of_angle
 
   !> Number of plies of the laminate; 0: it is not valid.
@@ -108,7 +108,7 @@ contains
     type(deck_t), intent(in) :: deck
 
     plies = 0
-    if (allocated(deck%laminate%material)) plies = size(deck%laminate%material)
+    if (allocated(deck%setup%laminate%material)) plies = size(deck%setup%laminate%material)
   end function plies_of_laminate
 
   !> Materials of the plies of the laminate; none if it is not valid.
@@ -118,7 +118,7 @@ contains
     integer, allocatable :: material(:)
 
     allocate (material(0))
-    if (allocated(deck%laminate%material)) material = deck%laminate%material
+    if (allocated(deck%setup%laminate%material)) material = deck%setup%laminate%material
   end function skin_materials
 
   !> Strengths of the plies that are defaults of their interfaces.
@@ -130,7 +130,7 @@ contains
     real(wp), allocatable :: strengths(:, :)
     integer :: ply
 
-    strengths = reshape([([deck%materials(material(ply))%yt, deck%materials(material(ply))%s12], &
+    strengths = reshape([([deck%setup%materials(material(ply))%yt, deck%setup%materials(material(ply))%s12], &
                           ply=1, size(material))], [2, size(material)])
   end function ply_strengths
 
@@ -141,11 +141,12 @@ contains
     !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
 
-    call fill_impactor(deck%settings, deck%impactor, problems)
-    if (deck%has_impactor) deck%mesh%struck = deck%impactor%at
-    if (deck%has_impactor) &
-      call fill_indentation(deck%settings, deck%contact_radius(), struck_face_of(deck), deck%indentation)
-    if (deck%accuracy > 0) call choose_by_accuracy(deck, problems)
+    call fill_impactor(deck%settings, deck%setup%impactor, problems)
+    if (deck%setup%impactor%is_present) deck%setup%mesh%struck = deck%setup%impactor%at
+    if (deck%setup%impactor%is_present) &
+      call fill_indentation(deck%settings, deck%setup%contact_radius(), struck_face_of(deck), &
+                            deck%setup%impactor%indentation)
+    if (deck%case%accuracy > 0) call choose_by_accuracy(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call choose_for_central_differences(deck, problems)
     call fill_adapt(deck%settings, deck%stepping%adapt)
     if (deck%has_time) call fill_time(deck%settings, natural_rho_infinity(deck), &
@@ -153,18 +154,19 @@ contains
                                       deck%stepping%time, deck%stepping%central)
     ! Without &adapt every step has the same length.
     if (.not. deck%stepping%adapt%on) deck%stepping%time%step_max = deck%stepping%time%step
-    if (deck%impactor%travel > 0 .and. deck%has_time .and. &
+    if (deck%setup%impactor%travel > 0 .and. deck%has_time .and. &
         .not. deck%settings%is_given(impactor_group, impactor_key_rise)) &
-      deck%impactor%rise = usual_rise*deck%stepping%time%end
-    call fill_pressure(deck%settings, deck%stepping%time%end, deck%pressure)
-    if (deck%has_thermal) call fill_thermal(deck%settings, deck%temperature_change)
-    call fill_initial_state(deck%settings, deck%initial)
+      deck%setup%impactor%rise = usual_rise*deck%stepping%time%end
+    call fill_pressure(deck%settings, deck%stepping%time%end, deck%setup%pressure)
+    if (deck%setup%thermal%is_present) call fill_thermal(deck%settings, deck%setup%thermal%temperature_change)
+    call fill_initial_state(deck%settings, deck%setup%initial)
     ! An impactor with a given travel does not leave the plate, so that the run is not extended until the contact ends.
-    if (deck%impactor%travel > 0) deck%stepping%central%settle = 0
-    if (deck%initial%is_inherited .or. .not. deck%has_impactor) deck%load_start = deck%stepping%central%settle
-    if (deck%has_time) deck%ramp_time = deck%stepping%time%end - deck%load_start
-    call fill_lines(deck%settings, merge(deck%ramp_time, 0.0_wp, deck%has_time), deck%lines)
-    if (deck%is_static()) call fill_static(deck%settings, deck%static)
+    if (deck%setup%impactor%travel > 0) deck%stepping%central%settle = 0
+    if (deck%setup%initial%is_inherited .or. .not. deck%setup%impactor%is_present) &
+      deck%setup%loading%start = deck%stepping%central%settle
+    if (deck%has_time) deck%setup%loading%ramp_time = deck%stepping%time%end - deck%setup%loading%start
+    call fill_lines(deck%settings, merge(deck%setup%loading%ramp_time, 0.0_wp, deck%has_time), deck%setup%lines)
+    if (deck%setup%is_static()) call fill_static(deck%settings, deck%setup%loading)
   end subroutine fill_loads
 
   !> Default spectral radius at high frequency: released ties excite the highest frequencies of the mesh, softening laws
@@ -174,8 +176,8 @@ contains
     type(deck_t), intent(in) :: deck
 
     rho_infinity = 1
-    if (any(deck%delaminations%law == law_cohesive)) rho_infinity = 0.5_wp
-    if (any(deck%delaminations%law == law_front)) rho_infinity = 0
+    if (any(deck%setup%delaminations%law == law_cohesive)) rho_infinity = 0.5_wp
+    if (any(deck%setup%delaminations%law == law_front)) rho_infinity = 0
   end function natural_rho_infinity
 
   !> Parameters of steps and output.
@@ -186,6 +188,6 @@ contains
     call fill_controls(deck%settings, deck%stepping)
     call fill_linear_solver(deck%settings, deck%linear_solver)
     call fill_output(deck%settings, deck%output)
-    call fill_gauges(deck%settings, deck%gauges)
+    call fill_gauges(deck%settings, deck%setup%plate%gauges)
   end subroutine fill_steps
 end module deck_fillings

@@ -26,11 +26,11 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i, place
 
-    do i = 1, size(deck%delaminations)
-      place = deck%delaminations(i)%group
+    do i = 1, size(deck%setup%delaminations)
+      place = deck%setup%delaminations(i)%group
       if (deck%settings%is_given(delamination_group, key_zone, place)) cycle
-      if (deck%delaminations(i)%bonds_doublers()) cycle
-      if (deck%delaminations(i)%law == law_front) then
+      if (deck%setup%delaminations(i)%bonds_doublers()) cycle
+      if (deck%setup%delaminations(i)%law == law_front) then
         call require('a front requires a zone; zones are adaptive with law = ''cohesive'' only')
       else if (deck%settings%is_given(delamination_group, key_strip, place)) then
         call require(key_strip//' runs across the full width of the zone')
@@ -55,11 +55,11 @@ contains
   pure function beside_layers(deck)
     type(deck_t), intent(in) :: deck
     !> True for each such line
-    logical :: beside_layers(size(deck%lines))
+    logical :: beside_layers(size(deck%setup%lines))
     integer :: i
 
-    do i = 1, size(deck%lines)
-      beside_layers(i) = deck%initial%is_inherited .and. deck%lines(i)%is_end(deck%plate%length)
+    do i = 1, size(deck%setup%lines)
+      beside_layers(i) = deck%setup%initial%is_inherited .and. deck%setup%lines(i)%is_end(deck%setup%plate%length)
     end do
   end function beside_layers
 
@@ -74,19 +74,19 @@ contains
     integer :: i, direction
 
     if (problems%errors() > 0) return
-    if (deck%laminate%shear_correction == shear_energy) call set_permanent_zones(deck)
-    thickness = thicknesses_ahead*sum(deck%laminate%thickness)
+    if (deck%setup%laminate%shear_correction == shear_energy) call set_permanent_zones(deck)
+    thickness = thicknesses_ahead*sum(deck%setup%laminate%thickness)
     do direction = 1, 2
-      line = cells_from_struck(deck%plate, deck%mesh, direction)
-      least = deck%mesh%patch
-      do i = 1, size(deck%delaminations)
-        associate (d => deck%delaminations(i))
+      line = cells_from_struck(deck%setup%plate, deck%setup%mesh, direction)
+      least = deck%setup%mesh%patch
+      do i = 1, size(deck%setup%delaminations)
+        associate (d => deck%setup%delaminations(i))
           if (d%is_adaptive) least = max(least, d%starter + 2*abs(d%starter_at(direction)))
         end associate
       end do
-      do i = 1, size(deck%delaminations)
-        if (deck%delaminations(i)%is_adaptive) &
-          deck%delaminations(i)%zone(direction) = line%widened(least, cells_at_once, thickness)
+      do i = 1, size(deck%setup%delaminations)
+        if (deck%setup%delaminations(i)%is_adaptive) &
+          deck%setup%delaminations(i)%zone(direction) = line%widened(least, cells_at_once, thickness)
       end do
     end do
   end subroutine set_first_zones
@@ -99,16 +99,16 @@ contains
     type(deck_t), intent(inout) :: deck
     integer :: i
 
-    if (.not. any(deck%delaminations%is_adaptive)) return
-    do i = 1, size(deck%delaminations)
-      associate (d => deck%delaminations(i))
+    if (.not. any(deck%setup%delaminations%is_adaptive)) return
+    do i = 1, size(deck%setup%delaminations)
+      associate (d => deck%setup%delaminations(i))
         if (.not. d%is_adaptive) cycle
         d%is_adaptive = .false.
-        d%zone = largest_extents(d%zone, deck%mesh%core, deck%mesh%cell, deck%plate%length)
+        d%zone = largest_extents(d%zone, deck%setup%mesh%core, deck%setup%mesh%cell, deck%setup%plate%length)
       end associate
     end do
     call append(deck%reasons, 'The plate has layers from the start, '//trim(merge('in the core', 'everywhere ', &
-                deck%mesh%cell > 0))//', as with shear_correction = ''energy'' its shear stiffness is below that '// &
-                'of its layers.')
+                deck%setup%mesh%cell > 0))// &
+                  ', as with shear_correction = ''energy'' its shear stiffness is below that '// 'of its layers.')
   end subroutine set_permanent_zones
 end module deck_first_zones

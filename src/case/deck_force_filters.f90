@@ -21,7 +21,7 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: apart
 
-    if (problems%errors() > 0 .or. .not. (deck%has_time .and. deck%has_impactor)) return
+    if (problems%errors() > 0 .or. .not. (deck%has_time .and. deck%setup%impactor%is_present)) return
     apart = deck%output%history_every
     if (.not. apart > 0) apart = deck%stepping%time%step*deck%output%steps_between_rows
     if (deck%output%force_filter > 0 .and. deck%output%force_filter*deck%stepping%time%end < 1) then
@@ -29,7 +29,7 @@ contains
                   'that the filter removes the contact force itself; give at least '// &
                   short_text(1/deck%stepping%time%end)//trim(merge('.                       ', &
                                                                    '; it is probably in kHz.', &
-                                                                   deck%units == 'mm-kg-ms')))
+                                                                   deck%case%units == 'mm-kg-ms')))
     end if
     if (2*apart*deck%output%force_filter <= 1) return
     call remark(deck%settings, problems, output_group, key_force_filter, 'is above the Nyquist frequency of the '// &

@@ -29,19 +29,21 @@ contains
     !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
-    call check_plate(deck%settings, deck%plate, problems)
-    call check_rigs(deck%settings, deck%plate, deck%supports, problems)
-    call check_mesh(deck%settings, deck%mesh, problems)
-    call check_stringers(deck%settings, deck%plate%length, deck%has_thermal, deck%stringers, problems)
-    call check_delaminations(deck%settings, deck%zones, deck%delaminations, problems)
-    if (allocated(deck%laminate%angle)) &
-      call remark_left_out(deck%settings, size(deck%laminate%angle), changes_of_angle(deck), problems)
+    call check_plate(deck%settings, deck%setup%plate, problems)
+    call check_rigs(deck%settings, deck%setup%plate, deck%setup%supports, problems)
+    call check_mesh(deck%settings, deck%setup%mesh, problems)
+    call check_stringers(deck%settings, deck%setup%plate%length, deck%setup%thermal%is_present, deck%setup%stringers, &
+                         problems)
+    call check_delaminations(deck%settings, deck%setup%zones, deck%setup%delaminations, problems)
+    if (allocated(deck%setup%laminate%angle)) &
+      call remark_left_out(deck%settings, size(deck%setup%laminate%angle), changes_of_angle(deck), problems)
     call check_struck_face(deck, problems)
-    if (deck%has_impactor .and. deck%has_indentation) call check_indentation(deck%settings, deck%indentation, problems)
-    if (deck%has_pressure) call check_pressure(deck%settings, deck%pressure, problems)
-    if (deck%has_thermal) call check_thermal(deck%settings, deck%materials, problems)
-    call check_lines(deck%settings, deck%lines, problems)
-    call check_gauges(deck%settings, deck%plate%length, deck%gauges, problems)
+    if (deck%setup%impactor%is_present .and. deck%setup%impactor%indentation%is_given) &
+      call check_indentation(deck%settings, deck%setup%impactor%indentation, problems)
+    if (deck%setup%pressure%is_present) call check_pressure(deck%settings, deck%setup%pressure, problems)
+    if (deck%setup%thermal%is_present) call check_thermal(deck%settings, deck%setup%materials, problems)
+    call check_lines(deck%settings, deck%setup%lines, problems)
+    call check_gauges(deck%settings, deck%setup%plate%length, deck%setup%plate%gauges, problems)
     if (deck%has_time) call check_time(deck%settings, deck%stepping%time, problems)
     call check_petsc_options(deck%settings, deck%linear_solver, problems)
   end subroutine check_groups

@@ -26,7 +26,7 @@ contains
     integer :: place
 
     call remark_unused(deck%settings, vocabulary, problems)
-    do place = 1, size(deck%materials)
+    do place = 1, size(deck%setup%materials)
       call check_material(deck, place, problems)
     end do
     associate (s => deck%settings)
@@ -44,15 +44,15 @@ contains
     !> Index of the material
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
-    if (allocated(deck%laminate%material)) then
-      if (.not. any(deck%used_materials() == place) .and. problems%errors() == 0) then
-        call remark(deck%settings, problems, material_group, '', ''''//deck%materials(place)%name// &
+    if (allocated(deck%setup%laminate%material)) then
+      if (.not. any(deck%setup%used_materials() == place) .and. problems%errors() == 0) then
+        call remark(deck%settings, problems, material_group, '', ''''//deck%setup%materials(place)%name// &
                     ''' has no effect: no ply of the laminate has it.', place)
         return
       end if
     end if
     if (problems%concern(ply_damage_group)) return
-    if (deck%has_ply_damage) then
+    if (deck%setup%ply_damage%is_present) then
       call remark_strengths(deck, place, problems)
       return
     end if
@@ -69,30 +69,30 @@ contains
     integer, intent(in) :: place
     type(problems_t), intent(inout) :: problems
 
-    if (deck%ply_damage%criteria /= criteria_hou .or. any(deck%materials(place)%toughness > 0)) &
+    if (deck%setup%ply_damage%criteria /= criteria_hou .or. any(deck%setup%materials(place)%toughness > 0)) &
       call remark_idle(deck%settings, problems, material_group, key_fibre_shear, &
                        'has no effect: only criteria = ''hou'' without fracture energies contain it.', place)
-    if (any(deck%ply_damage%criteria == [criteria_puck, criteria_larc])) &
+    if (any(deck%setup%ply_damage%criteria == [criteria_puck, criteria_larc])) &
       call remark_idle(deck%settings, problems, material_group, key_shear_23, &
                        'has no effect with criteria = '''//trim(merge('puck', 'larc', &
-                         deck%ply_damage%criteria == criteria_puck))//'''.', place)
+                         deck%setup%ply_damage%criteria == criteria_puck))//'''.', place)
   end subroutine remark_strengths
 
   !> True: strengths of the plies determine the yield pressure of the struck face.
   logical function has_yield_pressure(deck)
     type(deck_t), intent(in) :: deck
 
-    has_yield_pressure = deck%has_impactor .and. deck%indentation%law == law_thornton .and. &
-                         takes_laminate(deck%settings)
+    has_yield_pressure = deck%setup%impactor%is_present .and. &
+                         deck%setup%impactor%indentation%law == law_thornton .and. takes_laminate(deck%settings)
   end function has_yield_pressure
 
   !> True: plies differ from each other or may separate, so that there are interfaces with strengths between them.
   pure logical function has_interfaces(deck)
     type(deck_t), intent(in) :: deck
 
-    has_interfaces = size(deck%delaminations) > 0
-    if (.not. (allocated(deck%laminate%angle) .and. allocated(deck%laminate%material))) return
-    associate (laminate => deck%laminate)
+    has_interfaces = size(deck%setup%delaminations) > 0
+    if (.not. (allocated(deck%setup%laminate%angle) .and. allocated(deck%setup%laminate%material))) return
+    associate (laminate => deck%setup%laminate)
       has_interfaces = has_interfaces .or. size(interfaces_between(laminate%angle, laminate%material)) > 0
     end associate
   end function has_interfaces

@@ -2,7 +2,7 @@
 module deck_initial_states
   use cell_grids, only: cells_along
   use cell_lines, only: cell_line_t
-  use deck_comparisons, only: both, differ, integer_list, short_list
+  use deck_comparisons, only: both, differ, integer_list, list_objection, material_objection, short_list
   use deck_contents, only: deck_t
   use deck_plate_cuts, only: cut_objection, has_same_length, moved_centre
   use deck_problems, only: problems_t
@@ -15,7 +15,6 @@ module deck_initial_states
   use kinds, only: wp
   use laminate_parameters, only: laminate_t, shear_energy
   use line_deck, only: line_group, key_rise
-  use material_parameters, only: constant_names, constants_of, constants
   use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
   use plate_deck, only: key_symmetry
   use plate_options, only: kinematics_linear
@@ -42,25 +41,25 @@ contains
     integer :: place
 
     associate (s => deck%settings)
-      if (deck%load_start > 0 .and. .not. deck%load_start < deck%stepping%time%end .and. &
+      if (deck%setup%loading%start > 0 .and. .not. deck%setup%loading%start < deck%stepping%time%end .and. &
           are_clear(s, problems, time_group, key_settle//' end')) &
         call report(s, problems, time_group, key_settle, 'leaves no time for the load; allowed: less than end = '// &
                   to_text(deck%stepping%time%end)//'.')
-      if (.not. deck%initial%is_inherited) return
-      if (deck%is_static()) then
+      if (.not. deck%setup%initial%is_inherited) return
+      if (deck%setup%is_static()) then
         call report(s, problems, static_group, '', &
                     'load steps cannot start from a state of another run; give &time '// &
                   'with integrator = ''central_difference'', or leave &initial_state out.')
       else if (deck%has_time .and. .not. is_explicit(deck%stepping)) then
         call report(s, problems, initial_state_group, '', 'requires &time integrator = ''central_difference''.')
       end if
-      do place = 1, size(deck%lines)
-        if (deck%lines(place)%precedes()) call report(s, problems, line_group, key_rise, &
+      do place = 1, size(deck%setup%lines)
+        if (deck%setup%lines(place)%precedes()) call report(s, problems, line_group, key_rise, &
                                                       'a line that has moved the '// &
           'plate before the run cannot be combined with &initial_state; give it a rise > 0.', place)
       end do
-      do place = 1, size(deck%supports)
-        if (deck%supports(place)%unilateral .and. .not. deck%has_impactor) &
+      do place = 1, size(deck%setup%supports)
+        if (deck%setup%supports(place)%unilateral .and. .not. deck%setup%impactor%is_present) &
           call report(s, problems, support_group, key_unilateral, 'a frame closes on both faces of a plate from '// &
                     '&initial_state; allowed: .false., or an &impactor.', place)
       end do
@@ -75,25 +74,29 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
-    if (deck%kinematics /= old%kinematics) then
-      objection = both('&case kinematics', strains_name(deck%kinematics), strains_name(old%kinematics))
-    else if (.not. has_same_length(deck, old) .or. any(abs(deck%initial%cut_at) > 0)) then
+    if (deck%setup%mesh%kinematics /= old%setup%mesh%kinematics) then
+      objection = both('&case kinematics', strains_name(deck%setup%mesh%kinematics), &
+                       strains_name(old%setup%mesh%kinematics))
+    else if (.not. has_same_length(deck, old) .or. any(abs(deck%setup%initial%cut_at) > 0)) then
       objection = cut_objection(deck, old)
     end if
     if (objection /= '') return
-    if (differ(deck%plate%imperfection, old%plate%imperfection)) then
-      objection = both('&plate imperfection', to_text(deck%plate%imperfection), to_text(old%plate%imperfection))
-    else if (abs(deck%plate%imperfection) > 0 .and. any(deck%plate%half_waves /= old%plate%half_waves)) then
-      objection = both('&plate half_waves', integer_list(deck%plate%half_waves), integer_list(old%plate%half_waves))
-    else if (any(differ(deck%plate%curvature_radius, old%plate%curvature_radius))) then
-      objection = both('&plate curvature_radius', short_list(deck%plate%curvature_radius), &
-                       short_list(old%plate%curvature_radius))
-    else if (deck%plate%symmetry /= old%plate%symmetry .and. deck%plate%symmetry /= symmetry_none) then
-      objection = both(key_symmetry, part_name(deck%plate%symmetry), part_name(old%plate%symmetry))// &
-                  '; allowed: the same, or ''none'''
-    else if (differ(deck%temperature_change, old%temperature_change)) then
-      objection = both('&thermal delta_T', to_text(deck%temperature_change), to_text(old%temperature_change))
-    end if
+    associate (mine => deck%setup%plate, its => old%setup%plate)
+      if (differ(mine%imperfection, its%imperfection)) then
+        objection = both('&plate imperfection', to_text(mine%imperfection), to_text(its%imperfection))
+      else if (abs(mine%imperfection) > 0 .and. any(mine%half_waves /= its%half_waves)) then
+        objection = both('&plate half_waves', integer_list(mine%half_waves), integer_list(its%half_waves))
+      else if (any(differ(mine%curvature_radius, its%curvature_radius))) then
+        objection = both('&plate curvature_radius', short_list(mine%curvature_radius), short_list(its%curvature_radius))
+      else if (mine%symmetry /= its%symmetry .and. mine%symmetry /= symmetry_none) then
+        objection = both(key_symmetry, part_name(mine%symmetry), part_name(its%symmetry))// &
+                    '; allowed: the same, or ''none'''
+      end if
+    end associate
+    if (objection /= '') return
+    associate (mine => deck%setup%thermal%temperature_change, its => old%setup%thermal%temperature_change)
+      if (differ(mine, its)) objection = both('&thermal delta_T', to_text(mine), to_text(its))
+    end associate
     if (objection == '') objection = laminate_objection(deck, old)
     if (objection == '') objection = zones_objection(deck, old)
     if (objection == '') objection = stringer_objection(deck, old)
@@ -116,13 +119,14 @@ contains
     !> The deck, and that of the other run
     type(deck_t), intent(in) :: deck, old
 
-    same = deck%has_impactor .and. old%has_impactor
+    same = deck%setup%impactor%is_present .and. old%setup%impactor%is_present
     if (.not. same) return
-    associate (mine => deck%indentation, its => old%indentation)
+    associate (mine => deck%setup%impactor%indentation, its => old%setup%impactor%indentation)
       same = mine%law == its%law .and. mine%dent == its%dent .and. &
-             .not. any(differ([mine%k, mine%q, mine%reload, mine%beta, mine%alpha_critical, deck%impactor%radius], &
-                              [its%k, its%q, its%reload, its%beta, its%alpha_critical, old%impactor%radius])) .and. &
-             all(moved_centre(deck, old) <= rounding*deck%plate%length)
+             .not. any(differ([mine%k, mine%q, mine%reload, mine%beta, mine%alpha_critical], &
+                              [its%k, its%q, its%reload, its%beta, its%alpha_critical])) .and. &
+             .not. differ(deck%setup%impactor%radius, old%setup%impactor%radius) .and. &
+             all(moved_centre(deck, old) <= rounding*deck%setup%plate%length)
     end associate
   end function has_same_contact
 
@@ -134,7 +138,7 @@ contains
     character(len=:), allocatable :: objection
 
     objection = ''
-    if (deck%has_ply_damage .and. .not. deck%has_crack_bands()) &
+    if (deck%setup%ply_damage%is_present .and. .not. deck%setup%has_crack_bands()) &
       objection = 'its mesh differs, and plies without fracture energies (&material G_ft, G_fc, G_mt, G_mc) fail '// &
                   'at once, so that their state cannot be averaged; give '// &
                   trim(merge('the same &mesh in both decks', 'these energies              ', &
@@ -150,15 +154,16 @@ contains
     integer :: first
 
     objection = ''
-    if (size(deck%stringers) + size(old%stringers) == 0) return
+    if (size(deck%setup%stringers) + size(old%setup%stringers) == 0) return
     if (.not. has_same_length(deck, old)) then
       objection = 'the plates differ in size, and a plate with stringers is not cut; allowed: the same &plate length'
       return
     end if
-    first = differ_at(deck%stringers, old%stringers)
+    first = differ_at(deck%setup%stringers, old%setup%stringers)
     if (first == 0) return
-    if (size(deck%stringers) /= size(old%stringers)) then
-      objection = both('the number of &stringer', to_text(size(deck%stringers)), to_text(size(old%stringers)))
+    if (size(deck%setup%stringers) /= size(old%setup%stringers)) then
+      objection = both('the number of &stringer', to_text(size(deck%setup%stringers)), &
+                       to_text(size(old%setup%stringers)))
     else
       objection = 'stringer '//to_text(first)//' differs in place or section'
     end if
@@ -170,29 +175,12 @@ contains
     type(deck_t), intent(in) :: deck, old
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
-    real(wp) :: here(constants), there(constants)
-    integer :: ply, i
 
-    objection = ''
-    associate (mine => deck%laminate, its => old%laminate)
-      if (size(mine%angle) /= size(its%angle)) then
-        objection = both('&laminate angles', short_list(mine%angle), short_list(its%angle))
-      else if (any(differ(mine%angle, its%angle))) then
-        objection = both('&laminate angles', short_list(mine%angle), short_list(its%angle))
-      else if (any(differ(mine%thickness, its%thickness))) then
-        objection = both('&laminate thicknesses', short_list(mine%thickness), short_list(its%thickness))
-      end if
-      if (objection /= '') return
-      do ply = 1, size(mine%angle)
-        here = constants_of(deck%materials(mine%material(ply)))
-        there = constants_of(old%materials(its%material(ply)))
-        i = findloc(differ(here, there), .true., dim=1)
-        if (i == 0) cycle
-        objection = both('&material '//trim(constant_names(i))//' of ply '//to_text(ply), to_text(here(i)), &
-                         to_text(there(i)))
-        return
-      end do
-      if (mine%shear_correction /= its%shear_correction) &
+    associate (mine => deck%setup%laminate, its => old%setup%laminate)
+      objection = list_objection('&laminate angles', mine%angle, its%angle)
+      if (objection == '') objection = list_objection('&laminate thicknesses', mine%thickness, its%thickness)
+      if (objection == '') objection = material_objection(deck, old, mine%material, its%material, '')
+      if (objection == '' .and. mine%shear_correction /= its%shear_correction) &
         objection = both('&laminate shear_correction', correction_name(mine), correction_name(its))
     end associate
   end function laminate_objection
@@ -216,13 +204,13 @@ contains
     integer :: i
 
     objection = ''
-    if (deck%has_ply_damage .neqv. old%has_ply_damage) then
-      objection = both('&ply_damage', given(deck%has_ply_damage), given(old%has_ply_damage))
+    if (deck%setup%ply_damage%is_present .neqv. old%setup%ply_damage%is_present) then
+      objection = both('&ply_damage', given(deck%setup%ply_damage%is_present), given(old%setup%ply_damage%is_present))
       return
     end if
-    if (.not. deck%has_ply_damage) return
-    here = numbers_of(deck%ply_damage)
-    there = numbers_of(old%ply_damage)
+    if (.not. deck%setup%ply_damage%is_present) return
+    here = numbers_of(deck%setup%ply_damage)
+    there = numbers_of(old%setup%ply_damage)
     i = findloc(differ(here, there), .true., dim=1)
     if (i > 0) objection = both('&ply_damage '//trim(damage_names(i)), &
                                 value_in(deck, ply_damage_group, trim(damage_names(i)), here(i)), &
@@ -250,13 +238,8 @@ contains
     real(wp) :: here(size(law_names)), there(size(law_names))
     integer :: i, k
 
-    objection = ''
-    associate (mine => deck%delaminations, its => old%delaminations)
-      if (size(mine) /= size(its)) then
-        objection = both('interfaces below plies', integer_list(mine%below_ply), integer_list(its%below_ply))
-      else if (any(mine%below_ply /= its%below_ply)) then
-        objection = both('interfaces below plies', integer_list(mine%below_ply), integer_list(its%below_ply))
-      end if
+    associate (mine => deck%setup%delaminations, its => old%setup%delaminations)
+      objection = list_objection('interfaces below plies', real(mine%below_ply, wp), real(its%below_ply, wp))
       if (objection /= '') return
       do i = 1, size(mine)
         here = law_of(mine(i))
@@ -289,14 +272,14 @@ contains
     real(wp) :: needed(2)
 
     objection = ''
-    needed = min(its%zone + 2*moved_centre(deck, old), max(its%zone, old%plate%length))
-    if (.not. has_same_length(deck, old)) needed = min(needed, deck%plate%length)
+    needed = min(its%zone + 2*moved_centre(deck, old), max(its%zone, old%setup%plate%length))
+    if (.not. has_same_length(deck, old)) needed = min(needed, deck%setup%plate%length)
     if (.not. any(mine%zone < needed*(1 - rounding))) return
     objection = both('&delamination '//key_zone//' below ply '//to_text(mine%below_ply), short_list(mine%zone), &
                      short_list(its%zone))
-    if (any(differ(deck%initial%cut_at + deck%mesh%struck, old%mesh%struck))) &
-      objection = objection//', centred on '//short_list(deck%initial%cut_at + deck%mesh%struck)//' and '// &
-                  short_list(old%mesh%struck)
+    if (any(differ(deck%setup%initial%cut_at + deck%setup%mesh%struck, old%setup%mesh%struck))) &
+      objection = objection//', centred on '//short_list(deck%setup%initial%cut_at + deck%setup%mesh%struck)// &
+                  ' and '// short_list(old%setup%mesh%struck)
     objection = objection//'; allowed: '//short_list(needed)//' or larger'
   end function zone_objection
 
@@ -356,12 +339,12 @@ contains
     type(cell_line_t) :: here, there
     logical :: halved(2), halved_before(2)
 
-    here = cells_along(deck%plate, deck%mesh, direction)
-    there = cells_along(old%plate, old%mesh, direction)
-    halved = is_halved(deck%plate%symmetry)
-    halved_before = is_halved(old%plate%symmetry)
+    here = cells_along(deck%setup%plate, deck%setup%mesh, direction)
+    there = cells_along(old%setup%plate, old%setup%mesh, direction)
+    halved = is_halved(deck%setup%plate%symmetry)
+    halved_before = is_halved(old%setup%plate%symmetry)
     if (halved_before(direction) .and. .not. halved(direction)) there = there%with_image()
-    same = here%is_equal(there, rounding*deck%plate%length(direction))
+    same = here%is_equal(there, rounding*deck%setup%plate%length(direction))
   end function has_same_lines
 
   !> Name of a part of the plate.

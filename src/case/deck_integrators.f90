@@ -66,15 +66,15 @@ contains
     integer :: ply
 
     softening = ''
-    if (deck%is_static()) return
-    if (any(deck%delaminations%law == law_front)) return
+    if (deck%setup%is_static()) return
+    if (any(deck%setup%delaminations%law == law_front)) return
     if (deck%settings%is_given(mesh_group, key_mass) .and. &
         deck%settings%text_of(mesh_group, key_mass) == 'consistent') return
-    if (deck%has_ply_damage .and. allocated(deck%laminate%material)) then
-      associate (used => deck%used_materials())
-        if (any([(any(deck%materials(used(ply))%toughness > 0), ply=1, size(used))])) softening = 'plies'
+    if (deck%setup%ply_damage%is_present .and. allocated(deck%setup%laminate%material)) then
+      associate (used => deck%setup%used_materials())
+        if (any([(any(deck%setup%materials(used(ply))%toughness > 0), ply=1, size(used))])) softening = 'plies'
       end associate
     end if
-    if (any(deck%delaminations%law == law_cohesive)) softening = 'interfaces'
+    if (any(deck%setup%delaminations%law == law_cohesive)) softening = 'interfaces'
   end function softening_part
 end module deck_integrators

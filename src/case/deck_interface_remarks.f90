@@ -27,12 +27,12 @@ contains
     !> The deck, filled and checked
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
-    logical :: beyond(size(deck%delaminations))
+    logical :: beyond(size(deck%setup%delaminations))
     integer :: i
 
     if (problems%errors() > 0) return
-    do i = 1, size(deck%delaminations)
-      associate (d => deck%delaminations(i), groups => deck%delaminations%group)
+    do i = 1, size(deck%setup%delaminations)
+      associate (d => deck%setup%delaminations(i), groups => deck%setup%delaminations%group)
         ! Messages that differ only in the ply are merged.
         if (.not. d%bonds_doublers() .and. lies_within_a_block(deck, d%below_ply)) &
           call remark(deck%settings, problems, delamination_group, key_below_ply, 'the plies on both sides of the '// &
@@ -55,11 +55,11 @@ contains
     !> Ply above the interface
     integer, intent(in) :: ply
 
-    associate (laminate => deck%laminate)
-      within = first_alike(deck%materials, laminate%material(ply)) == &
-               first_alike(deck%materials, laminate%material(ply + 1))
+    associate (laminate => deck%setup%laminate)
+      within = first_alike(deck%setup%materials, laminate%material(ply)) == &
+               first_alike(deck%setup%materials, laminate%material(ply + 1))
       if (within) within = is_parallel(laminate%angle(ply) - laminate%angle(ply + 1)) .and. &
-                           .not. is_isotropic(deck%materials(laminate%material(ply))) .and. &
+                           .not. is_isotropic(deck%setup%materials(laminate%material(ply))) .and. &
                            .not. all(is_parallel(laminate%angle - laminate%angle(ply)))
     end associate
   end function lies_within_a_block
@@ -87,7 +87,7 @@ contains
     !> Along x and y
     logical :: beyond(2)
 
-    beyond = deck%mesh%cell > 0 .and. zone/2 >= deck%mesh%core/2 + deck%mesh%cell
+    beyond = deck%setup%mesh%cell > 0 .and. zone/2 >= deck%setup%mesh%core/2 + deck%setup%mesh%cell
   end function beyond_core
 
   !> Longest side of the cells of a zone.
@@ -100,7 +100,7 @@ contains
 
     longest = 0
     do direction = 1, 2
-      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      line = cells_from_struck(deck%setup%plate, deck%setup%mesh, direction)
       longest = max(longest, line%longest_within(zone(direction)))
     end do
   end function longest_cell

@@ -25,19 +25,19 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: line, earlier
 
-    do line = 1, size(deck%lines)
-      if (deck%lines(line)%layer > size(deck%delaminations) + 1) &
+    do line = 1, size(deck%setup%lines)
+      if (deck%setup%lines(line)%layer > size(deck%setup%delaminations) + 1) &
         call report(deck%settings, problems, line_group, key_layer, 'there are fewer layers; allowed: 1 to '// &
-                    to_text(size(deck%delaminations) + 1)//'.', line)
-      if (acts_on_held_edge(deck, deck%lines(line))) &
+                    to_text(size(deck%setup%delaminations) + 1)//'.', line)
+      if (acts_on_held_edge(deck, deck%setup%lines(line))) &
         call report(deck%settings, problems, line_group, key_at, 'the edge of the plate holds this component, so '// &
                     'that the line has no effect; free the edge, for u and v by in_plane = ''free'', or move the '// &
                     'line.', line)
       do earlier = 1, line - 1
-        if (.not. meet(deck%lines(line), deck%lines(earlier))) cycle
-        if (deck%lines(line)%direction /= deck%lines(earlier)%direction) then
-          if (move_alike(deck%lines(line), deck%lines(earlier))) cycle
-        else if (node_of(deck, deck%lines(line)) /= node_of(deck, deck%lines(earlier))) then
+        if (.not. meet(deck%setup%lines(line), deck%setup%lines(earlier))) cycle
+        if (deck%setup%lines(line)%direction /= deck%setup%lines(earlier)%direction) then
+          if (move_alike(deck%setup%lines(line), deck%setup%lines(earlier))) cycle
+        else if (node_of(deck, deck%setup%lines(line)) /= node_of(deck, deck%setup%lines(earlier))) then
           cycle
         end if
         call report(deck%settings, problems, line_group, '', '&line number '//to_text(earlier)//' of the deck '// &
@@ -56,14 +56,14 @@ contains
     integer :: normal, node
 
     normal = merge(2, 1, line%direction == along_x)
-    cells = cells_along(deck%plate, deck%mesh, normal)
+    cells = cells_along(deck%setup%plate, deck%setup%mesh, normal)
     node = node_of(deck, line)
-    halved = is_halved(deck%plate%symmetry)
+    halved = is_halved(deck%setup%plate%symmetry)
     held = .false.
     if (node == 0 .and. .not. halved(normal)) then
-      held = fixed_by_edge(deck%plate%edges(2*normal - 1), normal, deck%plate)
+      held = fixed_by_edge(deck%setup%plate%edges(2*normal - 1), normal, deck%setup%plate)
     else if (node == 2*cells%cells()) then
-      held = fixed_by_edge(deck%plate%edges(2*normal), normal, deck%plate)
+      held = fixed_by_edge(deck%setup%plate%edges(2*normal), normal, deck%setup%plate)
     end if
     acts = held(line%component) .and. abs(line%value) > 0
   end function acts_on_held_edge
@@ -74,7 +74,7 @@ contains
     type(line_load_t), intent(in) :: line
     type(cell_line_t) :: cells
 
-    cells = cells_along(deck%plate, deck%mesh, merge(2, 1, line%direction == along_x))
+    cells = cells_along(deck%setup%plate, deck%setup%mesh, merge(2, 1, line%direction == along_x))
     node = cells%nearest_node(line%at)
   end function node_of
 

@@ -30,9 +30,9 @@ contains
     logical :: tilts(2), edges(4)
     integer :: along, n
 
-    if (any(deck%plate%edges == edge_clamped)) return
-    supporting = pack(deck%lines, deck%lines%prescribed)
-    edges = deck%plate%edges /= edge_free
+    if (any(deck%setup%plate%edges == edge_clamped)) return
+    supporting = pack(deck%setup%lines, deck%setup%lines%prescribed)
+    edges = deck%setup%plate%edges /= edge_free
     do along = 1, 2
       ! The rotation is constrained by two lines or edges across this direction, or one along it.
       across = supporting%component == 3 .and. supporting%direction == merge(along_y, along_x, along == 1)
@@ -42,7 +42,7 @@ contains
                      any(supporting%component == 3 .and. .not. across)
     end do
     ! A rotation about an in-plane axis changes its sign if the plate is turned by 180 degrees about z.
-    tilts = tilts .or. is_mirrored(deck%plate%symmetry) .or. deck%plate%symmetry == symmetry_point
+    tilts = tilts .or. is_mirrored(deck%setup%plate%symmetry) .or. deck%setup%plate%symmetry == symmetry_point
     if (all(tilts) .and. (any(supporting%component == 3) .or. any(edges))) return
     call report(deck%settings, problems, line_group, '', 'lines and edges leave the plate free to move or to tilt '// &
               'in a static analysis; support another line.', 1)
@@ -57,17 +57,18 @@ contains
     real(wp) :: net(3), total
     integer :: line
 
-    mirrored = is_mirrored(deck%plate%symmetry)
-    free = unrestrained(deck%setup_t) .and. .not. [mirrored, any(mirrored)]
-    if (deck%plate%symmetry == symmetry_point) free(1:2) = .false.
+    mirrored = is_mirrored(deck%setup%plate%symmetry)
+    free = unrestrained(deck%setup) .and. .not. [mirrored, any(mirrored)]
+    if (deck%setup%plate%symmetry == symmetry_point) free(1:2) = .false.
     net = 0
     total = 0
-    do line = 1, size(deck%lines)
-      associate (l => deck%lines(line), normal => merge(1, 2, deck%lines(line)%direction == along_y))
+    do line = 1, size(deck%setup%lines)
+      associate (l => deck%setup%lines(line), normal => merge(1, 2, deck%setup%lines(line)%direction == along_y))
         if (l%prescribed .or. l%component > 2) cycle
         ! A line off the cut represents its mirror image, too.
         net(l%component) = net(l%component) + merge(2, 1, mirrored(normal) .and. abs(l%at) > 0)*l%value
-        if (l%component /= normal) net(3) = net(3) + merge(1, -1, normal == 1)*l%at*l%value/maxval(deck%plate%length)
+        if (l%component /= normal) &
+          net(3) = net(3) + merge(1, -1, normal == 1)*l%at*l%value/maxval(deck%setup%plate%length)
         total = total + abs(l%value)
       end associate
     end do
@@ -84,8 +85,8 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: line, along, i
 
-    do line = 1, size(deck%lines)
-      associate (l => deck%lines(line), plate => deck%plate)
+    do line = 1, size(deck%setup%lines)
+      associate (l => deck%setup%lines(line), plate => deck%setup%plate)
         if (l%prescribed .and. l%component <= 2) then
           if (abs(l%value) > largest_strain*plate%length(l%component)) &
             call remark(deck%settings, problems, line_group, key_displacement, 'is '// &
@@ -94,12 +95,13 @@ contains
         end if
         if (.not. (l%prescribed .and. l%component == 3 .and. abs(l%value) > 0)) cycle
         along = merge(1, 2, l%direction == along_x)
-        if (any([(resists(deck%supports(i), l, along, plate%length), i=1, size(deck%supports))])) then
+        if (any([(resists(deck%setup%supports(i), l, along, plate%length), i=1, size(deck%setup%supports))])) then
           call report(deck%settings, problems, line_group, key_displacement, 'the line runs from edge to edge of '// &
                     'the plate, over the frame of &support, which holds the deflection there; load by '// &
                     '&impactor travel or by a force.', line)
         else if (any(holds(plate%edges(2*along - 1:2*along), plate%edge_stiffness(1))) .or. &
-                 any([(holds_ends(deck%supports(i), l, along, plate%length), i=1, size(deck%supports))])) then
+                 any([(holds_ends(deck%setup%supports(i), l, along, plate%length), &
+                       i=1, size(deck%setup%supports))])) then
           call remark(deck%settings, problems, line_group, key_displacement, 'the line runs to edges that hold the '// &
                     'deflection; its force depends on the size of the cells there.', line)
         end if
@@ -116,12 +118,12 @@ contains
     integer :: line
 
     if (problems%errors() > 0) return
-    section = section_of(stacked_plies(deck%laminate, deck%materials), deck%laminate%shear_correction)
+    section = section_of(stacked_plies(deck%setup%laminate, deck%setup%materials), deck%setup%laminate%shear_correction)
     compliance = inverse(unpacked(section%stiffness(1:6)))
-    do line = 1, size(deck%lines)
-      associate (l => deck%lines(line), normal => merge(1, 2, deck%lines(line)%direction == along_y))
+    do line = 1, size(deck%setup%lines)
+      associate (l => deck%setup%lines(line), normal => merge(1, 2, deck%setup%lines(line)%direction == along_y))
         if (l%prescribed .or. l%component > 2) cycle
-        strain = abs(l%value)/deck%plate%length(3 - normal)*merge(compliance(normal, normal), compliance(3, 3), &
+        strain = abs(l%value)/deck%setup%plate%length(3 - normal)*merge(compliance(normal, normal), compliance(3, 3), &
                                                                   l%component == normal)
         if (strain > largest_strain) call remark(deck%settings, problems, line_group, key_force, 'strains the '// &
           'laminate by '//rounded_text(100*strain)//' %, and the model assumes small strains.', line)

@@ -73,7 +73,7 @@ contains
       else if (key%group == laminate_group .or. key%name == key_strength_shear) then
         shows = s%is_given(key%group, key%name, place)
       else if (key%group == impactor_group .and. key%name /= key_radius) then
-        shows = deck%moves_impactor()
+        shows = deck%setup%moves_impactor()
       end if
     end associate
   end function shows_unit
@@ -87,7 +87,7 @@ contains
 
     value = 0
     if (key%group == laminate_group) then
-      if (allocated(deck%laminate%thickness)) value = sum(deck%laminate%thickness)
+      if (allocated(deck%setup%laminate%thickness)) value = sum(deck%setup%laminate%thickness)
     else if (deck%settings%is_known(key%group, key%name, place)) then
       value = minval(deck%settings%reals_of(key%group, key%name, place))
     end if

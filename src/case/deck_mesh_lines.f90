@@ -38,8 +38,8 @@ contains
     call shorten_core(deck, problems)
     do direction = 1, 2
       call merge_along(deck, direction, lines, problems)
-      if (direction == 1) call move_alloc(lines, deck%mesh%x_lines)
-      if (direction == 2) call move_alloc(lines, deck%mesh%y_lines)
+      if (direction == 1) call move_alloc(lines, deck%setup%mesh%x_lines)
+      if (direction == 2) call move_alloc(lines, deck%setup%mesh%y_lines)
       call remark_core(deck, direction, problems)
     end do
   end subroutine place_mesh_lines
@@ -54,13 +54,14 @@ contains
     real(wp), allocatable :: distances(:)
     integer :: side, nearest
 
-    if (.not. deck%mesh%cell > 0) return
-    associate (mesh => deck%mesh, lines => lines_along(deck, direction))
+    if (.not. deck%setup%mesh%cell > 0) return
+    associate (mesh => deck%setup%mesh, lines => lines_along(deck, direction))
       if (size(lines) == 0) return
       do side = 1, -1, -2
         distances = abs(lines - mesh%struck(direction) - side*mesh%core(direction)/2)
         nearest = minloc(distances, dim=1)
-        if (distances(nearest) >= mesh%cell/2 .or. distances(nearest) <= rounding*deck%plate%length(direction)) cycle
+        if (distances(nearest) >= mesh%cell/2 .or. distances(nearest) <= rounding*deck%setup%plate%length(direction)) &
+          cycle
         call remark(deck%settings, problems, mesh_group, key_core, 'its border is less than half a cell from a '// &
                     'line of the mesh at '//merge('x', 'y', direction == 1)//' = '//to_text(lines(nearest))// &
                     ' and is moved there, to avoid cells of '//short_text(distances(nearest))//' between them.')
@@ -76,10 +77,10 @@ contains
     real(wp) :: most
     integer :: direction
 
-    associate (mesh => deck%mesh)
+    associate (mesh => deck%setup%mesh)
       if (.not. mesh%cell > 0) return
       do direction = 1, 2
-        most = deck%plate%length(direction) - 2*abs(mesh%struck(direction))
+        most = deck%setup%plate%length(direction) - 2*abs(mesh%struck(direction))
         if (mesh%core(direction) >= most*(1 - rounding) .or. mesh%core(direction) <= most - mesh%cell) cycle
         if (.not. most > 2*mesh%cell) cycle
         mesh%core(direction) = most - 2*mesh%cell
@@ -105,17 +106,17 @@ contains
     allocate (given(0), lines(0))
     if (deck%settings%is_known(mesh_group, key_lines(direction))) &
       given = abs(deck%settings%reals_of(mesh_group, key_lines(direction)))
-    windows = size(deck%supports)
-    stiffened = lines_of_stringers(deck%stringers, deck%plate%length(direction), direction)
-    associate (mesh => deck%mesh, half => deck%plate%length(direction)/2)
-      places = [merge(deck%supports%window(direction)/2, 0.0_wp, deck%supports%shape == window_rectangle), given, &
-                abs(stiffened)]
+    windows = size(deck%setup%supports)
+    stiffened = lines_of_stringers(deck%setup%stringers, deck%setup%plate%length(direction), direction)
+    associate (mesh => deck%setup%mesh, half => deck%setup%plate%length(direction)/2)
+      places = [merge(deck%setup%supports%window(direction)/2, 0.0_wp, deck%setup%supports%shape == window_rectangle), &
+                given, abs(stiffened)]
       places = merged_lines(places, [abs(mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2), half], &
                             merging_distance*2*half)
       do i = 1, windows
-        if (deck%supports(i)%shape /= window_rectangle) cycle
-        call remark_moved(deck%supports(i)%window(direction)/2, places(i), support_group, key_window, i)
-        deck%supports(i)%window(direction) = 2*places(i)
+        if (deck%setup%supports(i)%shape /= window_rectangle) cycle
+        call remark_moved(deck%setup%supports(i)%window(direction)/2, places(i), support_group, key_window, i)
+        deck%setup%supports(i)%window(direction) = 2*places(i)
       end do
       do i = 1, size(given)
         call remark_moved(given(i), places(windows + i), mesh_group, key_lines(direction))
@@ -123,7 +124,7 @@ contains
       do i = 1, size(stiffened)
         associate (place => sign(places(windows + size(given) + i), stiffened(i)))
           call remark_moved(abs(stiffened(i)), abs(place), stringer_group, '')
-          call move_line(deck%stringers, direction, stiffened(i), place)
+          call move_line(deck%setup%stringers, direction, stiffened(i), place)
           stiffened(i) = place
         end associate
       end do
@@ -131,7 +132,7 @@ contains
     given = places(windows + 1:windows + size(given))
     call add_lines(lines, stiffened)
     call add_lines(lines, [-given, given])
-    call add_lines(lines, window_lines(deck%supports, direction))
+    call add_lines(lines, window_lines(deck%setup%supports, direction))
     call take_zone_lines(deck, direction, lines, problems)
 
   contains
@@ -164,14 +165,14 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    if (allocated(deck%zones%doublers)) then
-      do i = 1, size(deck%zones%doublers)
-        call take(deck%zones%doublers(i), doubler_group)
+    if (allocated(deck%setup%zones%doublers)) then
+      do i = 1, size(deck%setup%zones%doublers)
+        call take(deck%setup%zones%doublers(i), doubler_group)
       end do
     end if
-    if (allocated(deck%zones%drops)) then
-      do i = 1, size(deck%zones%drops)
-        call take(deck%zones%drops(i), ply_drop_group)
+    if (allocated(deck%setup%zones%drops)) then
+      do i = 1, size(deck%setup%zones%drops)
+        call take(deck%setup%zones%drops(i), ply_drop_group)
       end do
     end if
 
@@ -185,7 +186,7 @@ contains
       real(wp) :: edges(2), moved(2)
       integer :: k
 
-      associate (mesh => deck%mesh, half => deck%plate%length(direction)/2)
+      associate (mesh => deck%setup%mesh, half => deck%setup%plate%length(direction)/2)
         edges = zone%edges(direction)
         do k = 1, 2
           moved(k) = nearest_line([mesh%struck(direction) + [-mesh%patch, 0.0_wp, mesh%patch]/2, -half, half, lines], &
@@ -245,14 +246,14 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    if (allocated(deck%zones%doublers)) then
-      do i = 1, size(deck%zones%doublers)
-        call check(deck%zones%doublers(i), doubler_group)
+    if (allocated(deck%setup%zones%doublers)) then
+      do i = 1, size(deck%setup%zones%doublers)
+        call check(deck%setup%zones%doublers(i), doubler_group)
       end do
     end if
-    if (allocated(deck%zones%drops)) then
-      do i = 1, size(deck%zones%drops)
-        call check(deck%zones%drops(i), ply_drop_group)
+    if (allocated(deck%setup%zones%drops)) then
+      do i = 1, size(deck%setup%zones%drops)
+        call check(deck%setup%zones%drops(i), ply_drop_group)
       end do
     end if
 
@@ -279,8 +280,8 @@ contains
     integer :: i
 
     if (problems%concern(stringer_group)) return
-    do i = 1, size(deck%stringers)
-      associate (stringer => deck%stringers(i), across => 3 - deck%stringers(i)%along)
+    do i = 1, size(deck%setup%stringers)
+      associate (stringer => deck%setup%stringers(i), across => 3 - deck%setup%stringers(i)%along)
         if (misses(deck, [stringer%at], across)) then
           call report(deck%settings, problems, stringer_group, key_stringer_at, 'no line of the mesh can be moved '// &
                       'to the stringer; give more elements, or keep it off the patch.', i)
@@ -302,15 +303,16 @@ contains
     real(wp), allocatable :: lines(:)
 
     allocate (lines(0))
-    if (direction == 1 .and. allocated(deck%mesh%x_lines)) lines = deck%mesh%x_lines
-    if (direction == 2 .and. allocated(deck%mesh%y_lines)) lines = deck%mesh%y_lines
+    if (direction == 1 .and. allocated(deck%setup%mesh%x_lines)) lines = deck%setup%mesh%x_lines
+    if (direction == 2 .and. allocated(deck%setup%mesh%y_lines)) lines = deck%setup%mesh%y_lines
   end function lines_along
 
   !> True if the edge of a rectangular window is no line of the mesh, which then has no nodes on it.
   pure logical function lacks_window_lines(deck) result(lacks)
     type(deck_t), intent(in) :: deck
 
-    lacks = misses(deck, window_lines(deck%supports, 1), 1) .or. misses(deck, window_lines(deck%supports, 2), 2)
+    lacks = misses(deck, window_lines(deck%setup%supports, 1), 1) .or. &
+            misses(deck, window_lines(deck%setup%supports, 2), 2)
   end function lacks_window_lines
 
   !> True if the mesh has no line at a coordinate.
@@ -324,9 +326,9 @@ contains
     integer :: line
 
     misses = .false.
-    cells = cells_along(deck%plate, deck%mesh, direction)
+    cells = cells_along(deck%setup%plate, deck%setup%mesh, direction)
     do line = 1, size(lines)
-      misses = misses .or. cells%distance_of(lines(line)) > rounding*deck%plate%length(direction)
+      misses = misses .or. cells%distance_of(lines(line)) > rounding*deck%setup%plate%length(direction)
     end do
   end function misses
 end module deck_mesh_lines

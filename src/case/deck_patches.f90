@@ -27,10 +27,10 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: shorter
 
-    shorter = minval(deck%plate%length)
-    associate (s => deck%settings, patch => deck%mesh%patch)
+    shorter = minval(deck%setup%plate%length)
+    associate (s => deck%settings, patch => deck%setup%mesh%patch)
       if (patch <= 0) return
-      if (any(abs(deck%mesh%struck) > 0 .and. meets_border(deck, [patch, patch])) .and. patch <= shorter) then
+      if (any(abs(deck%setup%mesh%struck) > 0 .and. meets_border(deck, [patch, patch])) .and. patch <= shorter) then
         if (are_clear(s, problems, impactor_group, key_at)) call report(s, problems, impactor_group, key_at, 'the '// &
           'loaded patch reaches the border of the plate; strike further inside.')
       else if (patch > shorter) then
@@ -39,7 +39,7 @@ contains
       else if (patch < min_patch*shorter) then
         call report(s, problems, mesh_group, key_patch, 'is too small for the plate; allowed: from '// &
                   text_at_least(min_patch*shorter)//'.')
-      else if (.not. deck%mesh%cell > 0) then
+      else if (.not. deck%setup%mesh%cell > 0) then
         call check_elements(deck, problems)
       end if
     end associate
@@ -50,7 +50,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    associate (s => deck%settings, mesh => deck%mesh)
+    associate (s => deck%settings, mesh => deck%setup%mesh)
       if (minval(mesh%core) <= 0 .or. mesh%cell <= 0) return
       if (any(meets_border(deck, mesh%core))) then
         call report(s, problems, mesh_group, key_core, &
@@ -71,7 +71,7 @@ contains
     character(len=:), allocatable :: message
     integer :: direction
 
-    associate (s => deck%settings, plate => deck%plate, mesh => deck%mesh)
+    associate (s => deck%settings, plate => deck%setup%plate, mesh => deck%setup%mesh)
       if (.not. are_clear(s, problems, mesh_group, key_elements//' '//key_patch)) return
       if (.not. are_clear(s, problems, plate_group, key_symmetry)) return
       do direction = 1, 2
@@ -94,6 +94,6 @@ contains
     !> Along x and y
     logical :: meets(2)
 
-    meets = extents/2 + abs(deck%mesh%struck) >= deck%plate%length/2*(1 - rounding)
+    meets = extents/2 + abs(deck%setup%mesh%struck) >= deck%setup%plate%length/2*(1 - rounding)
   end function meets_border
 end module deck_patches

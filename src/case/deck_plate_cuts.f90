@@ -20,7 +20,7 @@ contains
     type(plate_cut_t) :: cut
 
     cut = cut_of(deck)
-    same = cut%is_whole(old%plate%length)
+    same = cut%is_whole(old%setup%plate%length)
   end function has_same_length
 
   !> Objection to a plate of another length: it has to be cut from that of the other run.
@@ -33,15 +33,16 @@ contains
 
     objection = ''
     cut = cut_of(deck)
-    if (.not. cut%lies_within(old%plate%length)) then
-      objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))
+    if (.not. cut%lies_within(old%setup%plate%length)) then
+      objection = both('the plate''s length', short_list(deck%setup%plate%length), short_list(old%setup%plate%length))
       if (any(abs(cut%centre) > 0)) objection = objection//', cut at '//short_list(cut%centre)
       objection = objection//'; allowed: the same, or a plate within that one'
-    else if (abs(deck%plate%imperfection) > 0 .or. abs(old%plate%imperfection) > 0) then
-      objection = both('the plate''s length', short_list(deck%plate%length), short_list(old%plate%length))// &
+    else if (abs(deck%setup%plate%imperfection) > 0 .or. abs(old%setup%plate%imperfection) > 0) then
+      objection = both('the plate''s length', short_list(deck%setup%plate%length), &
+                       short_list(old%setup%plate%length))// &
                   '; allowed: the same, as an imperfection is that of the full plate'
-    else if (any(abs(cut%centre) > 0 .and. is_halved(deck%plate%symmetry)) .or. &
-             (any(abs(cut%centre) > 0) .and. deck%plate%symmetry == symmetry_point)) then
+    else if (any(abs(cut%centre) > 0 .and. is_halved(deck%setup%plate%symmetry)) .or. &
+             (any(abs(cut%centre) > 0) .and. deck%setup%plate%symmetry == symmetry_point)) then
       objection = key_cut_at//' = '//short_list(cut%centre)//' is not on the lines of symmetry; allowed with '// &
                   key_symmetry//' = ''none'''
     end if
@@ -52,7 +53,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(plate_cut_t) :: cut
 
-    cut = plate_cut_t(deck%initial%cut_at, deck%plate%length)
+    cut = plate_cut_t(deck%setup%initial%cut_at, deck%setup%plate%length)
   end function cut_of
 
   !> Distance along x and y of the centres of zones in both runs: zones are centred on the struck points.
@@ -62,6 +63,6 @@ contains
     !> Along x and y
     real(wp) :: distance(2)
 
-    distance = abs(deck%initial%cut_at + deck%mesh%struck - old%mesh%struck)
+    distance = abs(deck%setup%initial%cut_at + deck%setup%mesh%struck - old%setup%mesh%struck)
   end function moved_centre
 end module deck_plate_cuts

@@ -39,12 +39,13 @@ contains
 
     if (problems%errors() > 0) return
     fewest = fewest_cells(deck)
-    do i = 1, size(deck%delaminations)
-      if (deck%delaminations(i)%law /= law_cohesive) cycle
-      warning = process_zone_warning(process_zone(deck, deck%delaminations(i)), deck%delaminations(i)%below_ply, &
+    do i = 1, size(deck%setup%delaminations)
+      if (deck%setup%delaminations(i)%law /= law_cohesive) cycle
+      warning = process_zone_warning(process_zone(deck, deck%setup%delaminations(i)), &
+                                     deck%setup%delaminations(i)%below_ply, &
                                      fewest, length_unit(deck), length_unit_size(deck))
       if (warning /= '') call remark(deck%settings, problems, delamination_group, '', warning, &
-                                     deck%delaminations(i)%group)
+                                     deck%setup%delaminations(i)%group)
     end do
   end subroutine check_process_zones
 
@@ -57,9 +58,9 @@ contains
     integer :: i
 
     fewest = huge(fewest)
-    do i = 1, size(deck%delaminations)
-      if (deck%delaminations(i)%law /= law_cohesive) cycle
-      fewest = min(fewest, cells_in_zones(process_zone(deck, deck%delaminations(i))))
+    do i = 1, size(deck%setup%delaminations)
+      if (deck%setup%delaminations(i)%law /= law_cohesive) cycle
+      fewest = min(fewest, cells_in_zones(process_zone(deck, deck%setup%delaminations(i))))
     end do
   end function fewest_cells
 
@@ -71,13 +72,13 @@ contains
     integer :: i
 
     if (problems%errors() > 0) return
-    do i = 1, size(deck%delaminations)
-      associate (d => deck%delaminations(i))
+    do i = 1, size(deck%setup%delaminations)
+      associate (d => deck%setup%delaminations(i))
         if (d%law /= law_cohesive) cycle
         if (d%shear_cracks) call remark_shear_cracks(deck, d, problems)
         if (.not. d%cracks_as_flaws) cycle
         d%flaw_strength = resolved_part(process_zone(deck, d))
-        if (deck%has_ply_damage .and. .not. d%flaw_strength < 1) then
+        if (deck%setup%ply_damage%is_present .and. .not. d%flaw_strength < 1) then
           call remark_idle(deck%settings, problems, delamination_group, key_flaws, 'has no effect below ply '// &
                            to_text(d%below_ply)//', where the cells resolve the strengths.', d%group)
         end if
@@ -95,9 +96,10 @@ contains
     real(wp) :: least
     integer :: ply
 
-    if (deck%has_ply_damage) then
-      plies = stacked_plies(deck%laminate, deck%materials)
-      least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%materials, deck%ply_damage)), &
+    if (deck%setup%ply_damage%is_present) then
+      plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+      least = minval([(shear_across_strength(crack_strengths(plies, ply, deck%setup%materials, &
+                                                             deck%setup%ply_damage)), &
                        ply=delamination%below_ply, delamination%below_ply + 1)])
       if (least < delamination%strength_shear) return
       call remark_idle(deck%settings, problems, delamination_group, key_shear_cracks, &
@@ -113,12 +115,12 @@ contains
     integer :: i
 
     shortest = huge(shortest)
-    do i = 1, size(deck%delaminations)
-      associate (d => deck%delaminations(i))
+    do i = 1, size(deck%setup%delaminations)
+      associate (d => deck%setup%delaminations(i))
         if (d%law /= law_cohesive .or. .not. d%strength_shear > 0 .or. d%below_ply < 1) cycle
         if (d%bonds_doublers()) then
           if (any(d%doublers == 0)) cycle
-        else if (d%below_ply >= size(deck%laminate%angle)) then
+        else if (d%below_ply >= size(deck%setup%laminate%angle)) then
           cycle
         end if
         if (grows_by_energy(deck, d)) shortest = min(shortest, shear_zone_length(zone_of_any_cells(deck, d)))
@@ -150,13 +152,14 @@ contains
 
     zone = zone_of_any_cells(deck, delamination)
     extents = delamination%zone
-    if (delamination%is_adaptive) extents = largest_extents(extents, deck%mesh%core, deck%mesh%cell, deck%plate%length)
+    if (delamination%is_adaptive) &
+      extents = largest_extents(extents, deck%setup%mesh%core, deck%setup%mesh%cell, deck%setup%plate%length)
     do direction = 1, 2
       if (delamination%bonds_doublers()) then
         cells(direction) = longest_in_doublers(deck, delamination%doublers, direction)
         cycle
       end if
-      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      line = cells_from_struck(deck%setup%plate, deck%setup%mesh, direction)
       cells(direction) = line%longest_within(extents(direction))
     end do
     zone%cell = maxval(cells)
@@ -174,9 +177,9 @@ contains
     integer :: i
 
     longest = 0
-    line = cells_along(deck%plate, deck%mesh, direction)
+    line = cells_along(deck%setup%plate, deck%setup%mesh, direction)
     do i = 1, size(doublers)
-      associate (ends => deck%zones%doublers(doublers(i))%edges(direction), middles => line%middles())
+      associate (ends => deck%setup%zones%doublers(doublers(i))%edges(direction), middles => line%middles())
         longest = max(longest, maxval(line%sides(), mask=middles > ends(1) .and. middles < ends(2)))
       end associate
     end do
@@ -213,7 +216,7 @@ contains
     zone%toughness_shear = toughness(2)
     zone%strength_opening = delamination%strength_opening
     zone%strength_shear = delamination%strength_shear
-    zone%is_pulled = .not. deck%has_impactor
+    zone%is_pulled = .not. deck%setup%impactor%is_present
     zone%by_energy = grows_by_energy(deck, delamination)
     zone%is_implicit_specimen = zone%is_pulled .and. .not. (deck%has_time .and. is_explicit(deck%stepping)) .and. &
                                 (delamination%starter > 0 .or. has_strip(delamination))
@@ -230,14 +233,14 @@ contains
     logical, allocatable :: here(:)
     integer :: i
 
-    plies = stacked_plies(deck%laminate, deck%materials)
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     if (.not. delamination%bonds_doublers()) return
-    here = deck%zones%at([huge(1.0_wp), huge(1.0_wp)])
+    here = deck%setup%zones%at([huge(1.0_wp), huge(1.0_wp)])
     associate (doublers => delamination%doublers)
-      here(doublers(minloc([(sum(deck%zones%doublers(doublers(i))%laminate%thickness), i=1, size(doublers))], 1))) = &
-        .true.
+      here(doublers(minloc([(sum(deck%setup%zones%doublers(doublers(i))%laminate%thickness), i=1, size(doublers))], &
+                           1))) = .true.
     end associate
-    stack = deck%zones%stack(deck%laminate, deck%materials, here)
+    stack = deck%setup%zones%stack(deck%setup%laminate, deck%setup%materials, here)
     plies = stack%plies
   end function plies_around
 

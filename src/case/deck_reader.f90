@@ -103,7 +103,7 @@ contains
     call check_correction(deck, problems)
     if (deck%has_time .and. is_explicit(deck%stepping)) call find_stable_step(deck, problems)
     call check_force_filter(deck, problems)
-    if (deck%has_ply_damage) call check_crack_bands(deck, problems)
+    if (deck%setup%ply_damage%is_present) call check_crack_bands(deck, problems)
     call check_process_zones(deck, problems)
     call set_flaws(deck, problems)
     call check_scales(deck, problems)

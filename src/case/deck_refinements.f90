@@ -19,11 +19,11 @@ contains
     type(deck_t), intent(inout) :: deck
     integer :: parts
 
-    if (deck%refine == 0) return
-    parts = 2**deck%refine
-    deck%name = deck%name//finer_ending//to_text(deck%refine)
-    deck%mesh%elements = parts*deck%mesh%elements
-    deck%mesh%cell = deck%mesh%cell/parts
+    if (deck%case%refine == 0) return
+    parts = 2**deck%case%refine
+    deck%case%name = deck%case%name//finer_ending//to_text(deck%case%refine)
+    deck%setup%mesh%elements = parts*deck%setup%mesh%elements
+    deck%setup%mesh%cell = deck%setup%mesh%cell/parts
     associate (time => deck%stepping%time)
       time%step = time%step/parts
       time%step_min = min(time%step_min, time%step)
@@ -32,10 +32,11 @@ contains
     deck%stepping%central%step_factor = deck%stepping%central%step_factor/parts
     deck%stepping%central%longest = deck%stepping%central%longest/parts
     deck%stepping%adapt%tolerance = deck%stepping%adapt%tolerance/parts**3
-    deck%static%steps = parts*deck%static%steps
+    deck%setup%loading%steps = parts*deck%setup%loading%steps
     if (.not. allocated(deck%reasons)) allocate (deck%reasons(0))
-    call append(deck%reasons, 'Refined '//counted(to_text(deck%refine), 'time')//': '// &
-                to_text(deck%mesh%elements(1))//' x '//to_text(deck%mesh%elements(2))//' elements'//steps_of(deck)//'.')
+    call append(deck%reasons, 'Refined '//counted(to_text(deck%case%refine), 'time')//': '// &
+                to_text(deck%setup%mesh%elements(1))//' x '//to_text(deck%setup%mesh%elements(2))//' elements'// &
+                steps_of(deck)//'.')
   end subroutine refine
 
   !> Clause on the steps.
@@ -46,8 +47,8 @@ contains
 
     if (is_explicit(deck%stepping)) then
       clause = ', '//to_text(deck%stepping%central%step_factor)//' of the stable step'
-    else if (deck%is_static()) then
-      clause = ', '//counted(to_text(deck%static%steps), 'load step')
+    else if (deck%setup%is_static()) then
+      clause = ', '//counted(to_text(deck%setup%loading%steps), 'load step')
     else
       clause = ', steps of '//to_text(deck%stepping%time%step)
     end if

@@ -41,12 +41,12 @@ contains
     real(wp) :: step
 
     if (problems%errors() > 0) return
-    scales = scales_of(deck%setup_t)
-    if (deck%is_impact()) then
+    scales = scales_of(deck%setup)
+    if (deck%setup%is_impact()) then
       step = deck%stepping%time%step
       if (is_explicit(deck%stepping)) step = max(step, scales%contact_time/fine_steps)
-      deck%expected = expected_scales_of(deck%setup_t, scales, step, deck%stepping%time%end, &
-                                edge_near(deck, merge(scales%wave_length, maxval(deck%plate%length), &
+      deck%expected = expected_scales_of(deck%setup, scales, step, deck%stepping%time%end, &
+                                edge_near(deck, merge(scales%wave_length, maxval(deck%setup%plate%length), &
                                                       deck%settings%is_given(mesh_group, key_core) .or. &
                                                       .not. deck%settings%is_known(mesh_group, key_core))), &
                                          deck%stepping%central%mass_scaling)
@@ -91,7 +91,7 @@ contains
         'impact the error of the largest force would be '//short_text(100*o%mesh_error(1))//' %, of the history '// &
         short_text(100*o%mesh_error(2))//' %; give more, or leave them out with &case accuracy.')
       ! A nose presses where it touches, on a part of the patch too.
-      if (any(o%patch_error > patch_error_limits) .and. .not. deck%impactor%spreads) &
+      if (any(o%patch_error > patch_error_limits) .and. .not. deck%setup%impactor%spreads) &
         call remark(deck%settings, problems, mesh_group, key_patch, &
         'is larger than the contact, with a force distributed over '//short_text(o%contact_side)// &
         ' in the middle of the thickness: the largest force changes by '//short_text(100*o%patch_error(1))// &
@@ -105,12 +105,12 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    if (.not. deck%accuracy > 0) return
+    if (.not. deck%case%accuracy > 0) return
     associate (o => deck%expected)
       if (o%step_error(1) < 0 .or. o%mesh_error(1) < 0) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'cannot be verified by preliminary elastic '// &
                     'impacts for this step: the number of steps is too large.')
-      else if (100*(o%step_error(1) + o%mesh_error(1)) > max_error_ratio*deck%accuracy) then
+      else if (100*(o%step_error(1) + o%mesh_error(1)) > max_error_ratio*deck%case%accuracy) then
         call remark(deck%settings, problems, case_group, key_accuracy, 'is not reached: by a preliminary elastic '// &
                     'impact the error of the largest force will be '// &
                     short_text(100*(o%step_error(1) + o%mesh_error(1)))//' %.')
@@ -129,7 +129,7 @@ contains
 
     edge = 0
     do direction = 1, 2
-      line = cells_from_struck(deck%plate, deck%mesh, direction)
+      line = cells_from_struck(deck%setup%plate, deck%setup%mesh, direction)
       edge = max(edge, line%mean_side(distance))
     end do
   end function edge_near

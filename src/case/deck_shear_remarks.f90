@@ -31,21 +31,21 @@ contains
     integer :: i
 
     if (problems%errors() > 0) return
-    plies = stacked_plies(deck%laminate, deck%materials)
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     if (natural_correction(plies) == shear_five_sixths) return
-    if (deck%laminate%shear_correction == shear_five_sixths) then
+    if (deck%setup%laminate%shear_correction == shear_five_sixths) then
       call remark(deck%settings, problems, laminate_group, key_correction, 'the transverse shear stiffness is '// &
                   short_text(shear_excess(plies))//' times that of equilibrium through the thickness, as shear '// &
                   'moduli of the plies differ by a factor of '//short_text(shear_contrast(plies))// &
                   '; write ''energy'', or leave the key out.')
     end if
-    do i = 1, size(deck%delaminations)
-      if (deck%delaminations(i)%bonds_doublers()) cycle
-      if (all(deck%delaminations(i)%zone >= (1 - rounding)*deck%plate%length)) cycle
+    do i = 1, size(deck%setup%delaminations)
+      if (deck%setup%delaminations(i)%bonds_doublers()) cycle
+      if (all(deck%setup%delaminations(i)%zone >= (1 - rounding)*deck%setup%plate%length)) cycle
       call remark(deck%settings, problems, delamination_group, key_zone, &
                   'at the border of the zone all layers have '// &
                   'one rotation, though the shear strains of the plies differ: the plate is up to a few per cent '// &
-                  'too stiff; give a zone as large as the plate.', deck%delaminations(i)%group)
+                  'too stiff; give a zone as large as the plate.', deck%setup%delaminations(i)%group)
       exit
     end do
   end subroutine check_correction

@@ -13,6 +13,6 @@ contains
   pure type(model_size_t) function size_of_deck(deck)
     type(deck_t), intent(in) :: deck
 
-    size_of_deck = size_of_model(deck%setup_t, is_explicit(deck%stepping))
+    size_of_deck = size_of_model(deck%setup, is_explicit(deck%stepping))
   end function size_of_deck
 end module deck_sizes

@@ -29,7 +29,7 @@ contains
     type(problems_t), intent(inout) :: problems
 
     if (problems%errors() > 0 .or. .not. is_pressed(deck)) return
-    if (.not. (deck%has_crack_bands() .or. count(deck%delaminations%law == law_cohesive) > 1)) return
+    if (.not. (deck%setup%has_crack_bands() .or. count(deck%setup%delaminations%law == law_cohesive) > 1)) return
     call remark(deck%settings, problems, static_group, '', 'load steps may find no equilibrium where plies or '// &
                 'several interfaces soften'//slow_motion(deck)//'.')
   end subroutine check_softening_steps
@@ -41,13 +41,13 @@ contains
     character(len=:), allocatable :: clause
 
     clause = ''
-    if (is_pressed(deck) .and. (deck%has_ply_damage .or. size(deck%delaminations) > 0)) then
+    if (is_pressed(deck) .and. (deck%setup%ply_damage%is_present .or. size(deck%setup%delaminations) > 0)) then
       clause = ' With softening there may be no equilibrium'//slow_motion(deck)//'.'
-    else if (deck%is_static() .and. .not. deck%static%dissipation > 0 .and. &
-             any(deck%delaminations%law == law_cohesive)) then
+    else if (deck%setup%is_static() .and. .not. deck%setup%loading%dissipation > 0 .and. &
+             any(deck%setup%delaminations%law == law_cohesive)) then
       clause = ' With a softening interface there may be no equilibrium at this load: use &'//static_group//' '// &
                key_dissipation//' to trace its growth.'
-    else if (deck%is_static() .and. any(deck%supports%unilateral)) then
+    else if (deck%setup%is_static() .and. any(deck%setup%supports%unilateral)) then
       clause = ' Contact with a frame may take more iterations: give a larger &'//solver_group//' max_iterations.'
     end if
   end function slow_motion_advice
@@ -56,7 +56,7 @@ contains
   pure logical function is_pressed(deck)
     type(deck_t), intent(in) :: deck
 
-    is_pressed = deck%presses_impactor() .and. deck%impactor%travel > 0
+    is_pressed = deck%setup%presses_impactor() .and. deck%setup%impactor%travel > 0
   end function is_pressed
 
   !> The keys to write.

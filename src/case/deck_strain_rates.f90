@@ -19,8 +19,8 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: place
 
-    do place = 1, size(deck%materials)
-      associate (s => deck%settings, material => deck%materials(place))
+    do place = 1, size(deck%setup%materials)
+      associate (s => deck%settings, material => deck%setup%materials(place))
         if (.not. material%rate_gain > 0) cycle
         if (.not. softens) then
           call report(s, problems, material_group, key_gain, 'belongs to plies with fracture energies; give G_ft, '// &
@@ -29,7 +29,7 @@ contains
           if (are_clear(s, problems, material_group, key_rate, place)) &
             call report(s, problems, material_group, key_gain, 'needs '//key_rate//', the strain rate of the tests '// &
                         'that YT, YC and S12 are from; give it.', place)
-        else if (problems%errors() == 0 .and. .not. deck%counts_rates()) then
+        else if (problems%errors() == 0 .and. .not. deck%setup%counts_rates()) then
           call remark(s, problems, material_group, key_gain, 'has no effect in this run: the strain rates are '// &
                       'those of the test under an impactor with a mass or a pressure in time only.', place)
         end if

@@ -24,10 +24,10 @@ contains
     type(laminate_t) :: local
     integer :: ply
 
-    if (.not. allocated(deck%laminate%material)) return
-    if (size(deck%laminate%material) == 0) return
-    local = deck%struck_laminate()
-    associate (materials => deck%materials, used => local%material)
+    if (.not. allocated(deck%setup%laminate%material)) return
+    if (size(deck%setup%laminate%material) == 0) return
+    local = deck%setup%struck_laminate()
+    associate (materials => deck%setup%materials, used => local%material)
       face%compliance = normal_compliance(deck%settings, used(1), materials(used(1)))
       if (.not. takes_laminate(deck%settings)) return
       if (is_complete(deck)) face%modulus = held_modulus(local, materials)
@@ -44,8 +44,8 @@ contains
     type(laminate_t) :: local
     integer :: ply
 
-    local = deck%struck_laminate()
-    associate (materials => deck%materials, used => local%material)
+    local = deck%setup%struck_laminate()
+    associate (materials => deck%setup%materials, used => local%material)
       is_complete = all(materials(used)%e1 > 0 .and. materials(used)%e2 > 0 .and. materials(used)%nu23 > 0)
       do ply = 1, size(used)
         is_complete = is_complete .and. &
@@ -59,13 +59,15 @@ contains
     type(deck_t), intent(in) :: deck
     type(problems_t), intent(inout) :: problems
 
-    if (.not. (deck%has_impactor .and. allocated(deck%laminate%material) .and. takes_laminate(deck%settings))) return
+    if (.not. (deck%setup%impactor%is_present .and. allocated(deck%setup%laminate%material) .and. &
+               takes_laminate(deck%settings))) return
     if (.not. are_clear(deck%settings, problems, indentation_group, key_face)) return
-    associate (s => deck%settings, used => deck%laminate%material)
+    associate (s => deck%settings, used => deck%setup%laminate%material)
       if (.not. (is_complete(deck) .or. s%is_given(indentation_group, key_k))) then
         call report(s, problems, indentation_group, key_face, 'needs nu23 of every fibre-reinforced ply; give it '// &
                     'in &material, or E3 and face = ''ply''.')
-      else if (deck%indentation%law == law_thornton .and. .not. all(deck%materials(used)%yc > 0) .and. .not. &
+      else if (deck%setup%impactor%indentation%law == law_thornton .and. &
+               .not. all(deck%setup%materials(used)%yc > 0) .and. .not. &
                (s%is_given(indentation_group, key_yield) .or. s%is_given(indentation_group, key_alpha_critical))) then
         call report(s, problems, indentation_group, key_face, 'needs YC of every ply for the yield pressure; give '// &
                     'it in &material, or yield_pressure.')

@@ -43,14 +43,14 @@ contains
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: name, part
 
-    if (deck%plate%symmetry == symmetry_none) return
+    if (deck%setup%plate%symmetry == symmetry_none) return
     name = ''''//lower_case(deck%settings%text_of(plate_group, key_symmetry))//''''
-    part = trim(merge('quarter', 'half   ', deck%plate%symmetry == symmetry_quarter))
-    associate (s => deck%settings, symmetry => deck%plate%symmetry)
+    part = trim(merge('quarter', 'half   ', deck%setup%plate%symmetry == symmetry_quarter))
+    associate (s => deck%settings, symmetry => deck%setup%plate%symmetry)
       if (any(is_mirrored(symmetry)) .and. is_coupled(deck)) call report(s, problems, plate_group, key_symmetry, &
         coupled_part(deck)//' couples bending or extension with shear or twist (A16, A26, B16, B26, D16, D26 or '// &
         'A45 is not 0), so a '//part//' cannot represent the plate; use ''none'' or ''point''.')
-      if (is_eccentric(deck%mesh%struck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
+      if (is_eccentric(deck%setup%mesh%struck, symmetry) .and. are_clear(s, problems, impactor_group, key_at)) &
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
@@ -59,17 +59,18 @@ contains
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
                   '; list all clamps of the full plate, or use ''none''.')
       if (.not. has_zone_images(deck, symmetry)) &
-        call report(s, problems, trim(merge(doubler_group//' ', ply_drop_group, allocated(deck%zones%doublers))), &
+        call report(s, problems, trim(merge(doubler_group//' ', ply_drop_group, &
+                                            allocated(deck%setup%zones%doublers))), &
                     key_zone_at, 'a doubler or ply drop has no image with the same plies under symmetry = '//name// &
                     '; list all of the full plate, or use ''none''.')
-      if (.not. have_images(deck%stringers, deck%plate, symmetry, same_place) .and. &
+      if (.not. have_images(deck%setup%stringers, deck%setup%plate, symmetry, same_place) .and. &
           .not. problems%concern(stringer_group)) &
         call report(s, problems, stringer_group, key_stringer_at, 'a stringer has no image under symmetry = '// &
                     name//'; give all stringers of the full plate, or use ''none''.')
       if (symmetry == symmetry_point .and. any_front(deck)) call report(s, problems, plate_group, key_symmetry, &
         'fronts are not modelled across the cut of a plate with point symmetry; use ''none'', or law = ''cohesive''.')
       if (symmetry == symmetry_point .and. .not. problems%concern(line_group)) then
-        if (any(deck%lines%direction == along_x .or. .not. deck%lines%at > 0)) &
+        if (any(deck%setup%lines%direction == along_x .or. .not. deck%setup%lines%at > 0)) &
           call report(s, problems, plate_group, key_symmetry, 'a line along x or at x = 0 has no image '// &
                     'on the same line; use ''none'', or lines along y at x > 0, whose images are included.')
       end if
@@ -84,20 +85,20 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    do i = 1, size(deck%delaminations)
+    do i = 1, size(deck%setup%delaminations)
       if (i > 1) then
-        if (deck%delaminations(i)%group == deck%delaminations(i - 1)%group) cycle
+        if (deck%setup%delaminations(i)%group == deck%setup%delaminations(i - 1)%group) cycle
       end if
-      if (is_eccentric(deck%delaminations(i)%starter_at, deck%plate%symmetry) .and. &
-          are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%delaminations(i)%group)) &
+      if (is_eccentric(deck%setup%delaminations(i)%starter_at, deck%setup%plate%symmetry) .and. &
+          are_clear(deck%settings, problems, delamination_group, key_starter_at, deck%setup%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_starter_at, &
                     'the starter is not on the lines '// &
-                  'of symmetry = '//name//'; use ''none''.', deck%delaminations(i)%group)
-      if (strip_is_eccentric(deck%delaminations(i), deck%plate%symmetry) .and. &
-          are_clear(deck%settings, problems, delamination_group, key_strip, deck%delaminations(i)%group)) &
+                  'of symmetry = '//name//'; use ''none''.', deck%setup%delaminations(i)%group)
+      if (strip_is_eccentric(deck%setup%delaminations(i), deck%setup%plate%symmetry) .and. &
+          are_clear(deck%settings, problems, delamination_group, key_strip, deck%setup%delaminations(i)%group)) &
         call report(deck%settings, problems, delamination_group, key_strip, 'the strip is not its own image under '// &
                     'symmetry = '//name//'; give two x of equal size and opposite sign, or use ''none''.', &
-                    deck%delaminations(i)%group)
+                    deck%setup%delaminations(i)%group)
     end do
   end subroutine check_starters
 
@@ -134,7 +135,7 @@ contains
 
     sentence = ''
     part = smallest_part(deck)
-    if (part /= deck%plate%symmetry) sentence = 'Laminate, supports and struck point allow symmetry = '''// &
+    if (part /= deck%setup%plate%symmetry) sentence = 'Laminate, supports and struck point allow symmetry = '''// &
                                                 trim(names(part))//''', which reduces the model.'
   end function symmetry_sentence
 
@@ -144,7 +145,7 @@ contains
     integer, parameter :: parts(4) = [symmetry_quarter, symmetry_half_x, symmetry_half_y, symmetry_point]
     integer :: i
 
-    part = deck%plate%symmetry
+    part = deck%setup%plate%symmetry
     do i = 1, size(parts)
       if (part == symmetry_quarter .or. part /= symmetry_none .and. i > 1) return
       if (suits(deck, parts(i))) part = parts(i)
@@ -156,8 +157,9 @@ contains
   subroutine note_symmetry(deck)
     type(deck_t), intent(inout) :: deck
 
-    if (deck%plate%symmetry /= symmetry_none .or. deck%initial%is_inherited) return
-    if (deck%has_ply_damage .or. size(deck%delaminations) > 0) deck%plate%kept = smallest_part(deck)
+    if (deck%setup%plate%symmetry /= symmetry_none .or. deck%setup%initial%is_inherited) return
+    if (deck%setup%ply_damage%is_present .or. size(deck%setup%delaminations) > 0) &
+      deck%setup%plate%kept = smallest_part(deck)
   end subroutine note_symmetry
 
   !> True if a part of the plate suffices.
@@ -168,15 +170,15 @@ contains
     logical :: alike(2)
     integer :: i
 
-    alike = deck%plate%edges([1, 3]) == deck%plate%edges([2, 4])
+    alike = deck%setup%plate%edges([1, 3]) == deck%setup%plate%edges([2, 4])
     ! Lines and strips may have no images.
-    suits = size(deck%lines) == 0 .and. .not. any_strip(deck) .and. &
-            .not. any([(is_eccentric(deck%delaminations(i)%starter_at, symmetry), &
-                        i=1, size(deck%delaminations))]) .and. &
+    suits = size(deck%setup%lines) == 0 .and. .not. any_strip(deck) .and. &
+            .not. any([(is_eccentric(deck%setup%delaminations(i)%starter_at, symmetry), &
+                        i=1, size(deck%setup%delaminations))]) .and. &
             all(alike .or. .not. is_halved(symmetry)) .and. (symmetry /= symmetry_point .or. all(alike)) .and. &
-            .not. is_eccentric(deck%mesh%struck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
-            have_images(deck%stringers, deck%plate, symmetry, same_place) .and. &
-            has_symmetric_imperfection(deck%plate, symmetry) .and. has_zone_images(deck, symmetry)
+            .not. is_eccentric(deck%setup%mesh%struck, symmetry) .and. supports_are_symmetric(deck, symmetry) .and. &
+            have_images(deck%setup%stringers, deck%setup%plate, symmetry, same_place) .and. &
+            has_symmetric_imperfection(deck%setup%plate, symmetry) .and. has_zone_images(deck, symmetry)
     if (.not. suits) return
     if (symmetry == symmetry_point) then
       suits = .not. any_front(deck)
@@ -203,7 +205,7 @@ contains
   pure logical function any_front(deck)
     type(deck_t), intent(in) :: deck
 
-    any_front = any(deck%delaminations%law == law_front)
+    any_front = any(deck%setup%delaminations%law == law_front)
   end function any_front
 
   !> True if the starter of some interface is a strip.
@@ -211,8 +213,8 @@ contains
     type(deck_t), intent(in) :: deck
     integer :: i
 
-    any_strip = any([(deck%delaminations(i)%starter_strip(1) < deck%delaminations(i)%starter_strip(2), &
-                      i=1, size(deck%delaminations))])
+    any_strip = any([(deck%setup%delaminations(i)%starter_strip(1) < deck%setup%delaminations(i)%starter_strip(2), &
+                      i=1, size(deck%setup%delaminations))])
   end function any_strip
 
   !> True if each clamp has its images in the rig; windows lie at the centre.
@@ -225,9 +227,9 @@ contains
 
     mirrored = is_mirrored(symmetry)
     alike = .true.
-    do i = 1, size(deck%supports)
-      if (.not. allocated(deck%supports(i)%clamps)) cycle
-      associate (clamps => deck%supports(i)%clamps)
+    do i = 1, size(deck%setup%supports)
+      if (.not. allocated(deck%setup%supports(i)%clamps)) cycle
+      associate (clamps => deck%setup%supports(i)%clamps)
         if (mirrored(1)) alike = alike .and. have_images([-1, 1])
         if (mirrored(2)) alike = alike .and. have_images([1, -1])
         if (symmetry == symmetry_point) alike = alike .and. have_images([-1, -1])
@@ -242,9 +244,9 @@ contains
       integer, intent(in) :: signs(2)
       integer :: j, k
 
-      associate (clamps => deck%supports(i)%clamps)
+      associate (clamps => deck%setup%supports(i)%clamps)
         have_images = all([(any([(maxval(abs(signs*clamps(:, j) - clamps(:, k))) <= &
-                                  same_place*maxval(deck%plate%length), k=1, size(clamps, 2))]), &
+                                  same_place*maxval(deck%setup%plate%length), k=1, size(clamps, 2))]), &
                             j=1, size(clamps, 2))])
       end associate
     end function have_images
@@ -257,9 +259,9 @@ contains
     character(len=:), allocatable :: words
 
     words = 'the laminate'
-    if (couples(stacked_plies(deck%laminate, deck%materials))) return
+    if (couples(stacked_plies(deck%setup%laminate, deck%setup%materials))) return
     words = 'a layer between interfaces'
-    if (deck%has_ply_damage) words = 'a ply that may fail'
+    if (deck%setup%ply_damage%is_present) words = 'a ply that may fail'
   end function coupled_part
 
   !> True: the laminate is valid and not symmetric about the axes of the plate, or a part of it is not: a layer between
@@ -271,16 +273,17 @@ contains
     integer :: i
 
     is_coupled = .false.
-    associate (laminate => deck%laminate)
+    associate (laminate => deck%setup%laminate)
       if (.not. (allocated(laminate%angle) .and. allocated(laminate%thickness))) return
       if (.not. allocated(laminate%material)) return
-      if (any([(material_objection(deck%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) return
-      plies = stacked_plies(laminate, deck%materials)
+      if (any([(material_objection(deck%setup%materials(laminate%material(i))) /= '', i=1, size(laminate%material))])) &
+        return
+      plies = stacked_plies(laminate, deck%setup%materials)
     end associate
     is_coupled = couples(plies) .or. zones_are_coupled(deck)
-    last = [pack(deck%delaminations%below_ply, deck%delaminations%below_ply > 0 .and. &
-                 deck%delaminations%below_ply < size(plies)), size(plies)]
-    if (deck%has_ply_damage) last = [(i, i=1, size(plies))]
+    last = [pack(deck%setup%delaminations%below_ply, deck%setup%delaminations%below_ply > 0 .and. &
+                 deck%setup%delaminations%below_ply < size(plies)), size(plies)]
+    if (deck%setup%ply_damage%is_present) last = [(i, i=1, size(plies))]
     do i = 1, size(last)
       if (i == 1) then
         is_coupled = is_coupled .or. couples(plies(:last(1)))
@@ -300,13 +303,13 @@ contains
     integer :: i, k
 
     coupled = .false.
-    if (deck%zones%is_empty()) return
-    call deck%zones%find_shares(deck%plate%length, known, shares)
+    if (deck%setup%zones%is_empty()) return
+    call deck%setup%zones%find_shares(deck%setup%plate%length, known, shares)
     do i = 1, size(shares)
       if (.not. shares(i) > 0) cycle
-      stack = deck%zones%stack(deck%laminate, deck%materials, known(:, i))
+      stack = deck%setup%zones%stack(deck%setup%laminate, deck%setup%materials, known(:, i))
       coupled = coupled .or. couples(stack%plies)
-      if (deck%has_ply_damage .or. size(deck%delaminations) > 0) &
+      if (deck%setup%ply_damage%is_present .or. size(deck%setup%delaminations) > 0) &
         coupled = coupled .or. any([(couples(stack%plies(k:k)), k=1, size(stack%plies))])
     end do
   end function zones_are_coupled

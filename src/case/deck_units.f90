@@ -79,8 +79,8 @@ contains
     call check_lengths(deck, system, problems)
     ! The other values are those of the model, which a deck with errors does not have.
     if (problems%errors() > 0) return
-    if (deck%has_time .and. .not. deck%is_static()) call check_times(deck, system, problems)
-    if (deck%moves_impactor()) then
+    if (deck%has_time .and. .not. deck%setup%is_static()) call check_times(deck, system, problems)
+    if (deck%setup%moves_impactor()) then
       call check_mass(deck, system, problems)
       call check_ball(deck, system, problems)
     end if
@@ -129,7 +129,7 @@ contains
     type(magnitude_t), intent(in) :: list(:)
     integer :: odd(size(systems)), present_kinds, i
 
-    system = system_named(deck%units)
+    system = system_named(deck%case%units)
     if (system > 0) return
     present_kinds = count([(any(list%quantity == i), i=1, quantities)])
     do i = 1, size(systems)
@@ -137,7 +137,7 @@ contains
     end do
     system = minloc(odd, 1)
     ! Without an impactor there are too few values to determine the system, and plates of unit density are common.
-    if (2*odd(system) > present_kinds .or. .not. deck%has_impactor) system = 0
+    if (2*odd(system) > present_kinds .or. .not. deck%setup%impactor%is_present) system = 0
   end function probable_system
 
   !> Number of kinds of quantities with an unusual value; lengths of all kinds count as one.
@@ -173,7 +173,8 @@ contains
 
     if (deck%settings%is_known(time_group, key_end) .and. .not. deck%settings%is_given(time_group, key_end)) return
     longest = max(deck%expected%scales%first_period, contact_rises*deck%expected%scales%contact_time)
-    if (deck%has_impactor) longest = max(longest, pi*sqrt(deck%impactor%mass*deck%expected%scales%compliance))
+    if (deck%setup%impactor%is_present) &
+      longest = max(longest, pi*sqrt(deck%setup%impactor%mass*deck%expected%scales%compliance))
     if (.not. longest > 0) return
     ratio = deck%stepping%time%end/longest
     if (ratio > shortest_run .and. ratio < longest_run) return
@@ -199,7 +200,7 @@ contains
     real(wp) :: side
     integer :: i, place
 
-    side = maxval(deck%plate%length)
+    side = maxval(deck%setup%plate%length)
     if (unit_name(of_length, system) /= 'm' .or. is_unusual(of_length, side, system)) return
     do i = 1, size(keys_of_lengths)
       group = trim(groups_of_lengths(i))
@@ -223,10 +224,10 @@ contains
     real(wp) :: base(3), speed, energy
     character(len=:), allocatable :: finding
 
-    associate (impactor => deck%impactor)
+    associate (impactor => deck%setup%impactor)
       base = base_units(system)
       speed = impactor%velocity*base(1)/base(3)
-      energy = 0.5_wp*impactor%mass*base(2)*speed**2/(sum(deck%laminate%thickness)*base(1))
+      energy = 0.5_wp*impactor%mass*base(2)*speed**2/(sum(deck%setup%laminate%thickness)*base(1))
       if (is_unusual(of_mass, impactor%mass, system)) return
       if (deck%settings%is_given(impactor_group, key_energy)) then
         if (energy >= highest_energy .and. energy/1000 < highest_energy) &
@@ -252,7 +253,7 @@ contains
     type(problems_t), intent(inout) :: problems
     real(wp) :: base(3), ball, ratio
 
-    associate (impactor => deck%impactor, law => deck%indentation)
+    associate (impactor => deck%setup%impactor, law => deck%setup%impactor%indentation)
       if (.not. impactor%radius > 0) return
       if (is_unusual(of_radius, impactor%radius, system)) return
       base = base_units(system)
@@ -263,7 +264,7 @@ contains
                        trim(merge('kg', 'g ', unit_name(of_mass, system) == 't')))
       end if
       if (.not. deck%settings%is_given(indentation_group, key_k)) return
-      ratio = law%k/sun_stiffness(impactor%radius, 1/deck%materials(deck%laminate%material(1))%e2)
+      ratio = law%k/sun_stiffness(impactor%radius, 1/deck%setup%materials(deck%setup%laminate%material(1))%e2)
       if (ratio > odd_stiffness(1) .and. ratio < odd_stiffness(2)) return
       if (usual(ratio*per_millimetre)) call remark(deck%settings, problems, indentation_group, key_k, 'is '// &
         short_text(ratio)//' times that of Sun''s formula; it is probably in N/mm^1.5.')

@@ -1,12 +1,11 @@
 !> Checks of doublers and ply drops with other groups: interfaces, frames, patch and symmetry, and their comparison with
 !> those of another deck.
 module deck_zones
-  use deck_comparisons, only: both, differ, integer_list, short_list
+  use deck_comparisons, only: both, differ, integer_list, list_objection, material_objection, short_list
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use deck_remarks, only: remark, report
   use kinds, only: wp
-  use material_parameters, only: constant_names, constants, constants_of
   use ply_stacks, only: ply_stack_t
   use ply_zone_parameters, only: back_face, doubler_t, ply_drop_t, ply_zone_t
   use roundings, only: rounding
@@ -26,18 +25,18 @@ contains
     type(problems_t), intent(inout) :: problems
     integer :: i
 
-    if (allocated(deck%zones%doublers)) then
-      do i = 1, size(deck%zones%doublers)
-        call check_window(deck, deck%zones%doublers(i), doubler_group, i, problems)
-        call remark_patch(deck, deck%zones%doublers(i), doubler_group, i, problems)
+    if (allocated(deck%setup%zones%doublers)) then
+      do i = 1, size(deck%setup%zones%doublers)
+        call check_window(deck, deck%setup%zones%doublers(i), doubler_group, i, problems)
+        call remark_patch(deck, deck%setup%zones%doublers(i), doubler_group, i, problems)
       end do
     end if
-    if (allocated(deck%zones%drops)) then
-      do i = 1, size(deck%zones%drops)
+    if (allocated(deck%setup%zones%drops)) then
+      do i = 1, size(deck%setup%zones%drops)
         ! Frames lie on the back.
-        if (deck%zones%drops(i)%flat_face /= back_face) &
-          call check_window(deck, deck%zones%drops(i), ply_drop_group, i, problems)
-        call remark_patch(deck, deck%zones%drops(i), ply_drop_group, i, problems)
+        if (deck%setup%zones%drops(i)%flat_face /= back_face) &
+          call check_window(deck, deck%setup%zones%drops(i), ply_drop_group, i, problems)
+        call remark_patch(deck, deck%setup%zones%drops(i), ply_drop_group, i, problems)
         call check_interfaces(deck, i, problems)
       end do
     end if
@@ -56,8 +55,8 @@ contains
     integer :: i
 
     reach = (abs(zone%at) + zone%size/2)*(1 - rounding)
-    do i = 1, size(deck%supports)
-      associate (support => deck%supports(i))
+    do i = 1, size(deck%setup%supports)
+      associate (support => deck%setup%supports(i))
         if (support%shape == window_rectangle .and. any(reach > support%window/2)) then
           call report(deck%settings, problems, group, key_zone_size, 'it reaches beyond the window of the frame, '// &
                       'which would cut it; allowed: within '//short_list(support%window)//'.', place)
@@ -80,12 +79,12 @@ contains
     type(problems_t), intent(inout) :: problems
     type(ply_zone_t) :: patch, inner
 
-    if (.not. (deck%has_impactor .and. deck%mesh%patch > 0)) return
-    patch%at = deck%mesh%struck
-    patch%size = deck%mesh%patch
+    if (.not. (deck%setup%impactor%is_present .and. deck%setup%mesh%patch > 0)) return
+    patch%at = deck%setup%mesh%struck
+    patch%size = deck%setup%mesh%patch
     inner%at = zone%at
-    inner%size = zone%size - 2*deck%mesh%patch
-    if (.not. zone%overlaps(patch, rounding*maxval(deck%plate%length))) return
+    inner%size = zone%size - 2*deck%setup%mesh%patch
+    if (.not. zone%overlaps(patch, rounding*maxval(deck%setup%plate%length))) return
     if (all(abs(patch%at - zone%at) <= inner%size/2 + patch%size/2 + rounding*zone%size)) return
     call remark(deck%settings, problems, group, key_zone_at, 'its edge lies under the impactor; the step of the '// &
                 'surface there has no effect on the contact.', place)
@@ -101,17 +100,17 @@ contains
     type(ply_stack_t) :: whole, rest
     integer :: i
 
-    if (problems%errors() > 0 .or. size(deck%delaminations) == 0) return
-    here = deck%zones%at([huge(1.0_wp), huge(1.0_wp)])
-    whole = deck%zones%stack(deck%laminate, deck%materials, here)
-    here(size(here) - size(deck%zones%drops) + place) = .true.
-    rest = deck%zones%stack(deck%laminate, deck%materials, here)
-    do i = 1, size(deck%delaminations)
-      associate (below => deck%delaminations(i)%below_ply)
+    if (problems%errors() > 0 .or. size(deck%setup%delaminations) == 0) return
+    here = deck%setup%zones%at([huge(1.0_wp), huge(1.0_wp)])
+    whole = deck%setup%zones%stack(deck%setup%laminate, deck%setup%materials, here)
+    here(size(here) - size(deck%setup%zones%drops) + place) = .true.
+    rest = deck%setup%zones%stack(deck%setup%laminate, deck%setup%materials, here)
+    do i = 1, size(deck%setup%delaminations)
+      associate (below => deck%setup%delaminations(i)%below_ply)
         if (below < 1 .or. below >= size(whole%plies)) cycle
         if (rest%has(below) .and. rest%has(below + 1)) then
           if (abs(whole%plies(below)%z_bottom - rest%plies(rest%place(below))%z_bottom) <= &
-              rounding*sum(deck%laminate%thickness)) cycle
+              rounding*sum(deck%setup%laminate%thickness)) cycle
         end if
         call report(deck%settings, problems, ply_drop_group, key_plies, 'the interface below ply '// &
                     to_text(below)//' of &delamination ends or changes its height there, which is not modelled; '// &
@@ -129,17 +128,19 @@ contains
     integer :: i, k
 
     alike = .true.
-    associate (zones => deck%zones)
+    associate (zones => deck%setup%zones)
       if (allocated(zones%doublers)) then
         do i = 1, size(zones%doublers)
-          alike = alike .and. any([(is_image(zones%doublers(i), zones%doublers(k), signs, maxval(deck%plate%length)) &
+          alike = alike .and. any([(is_image(zones%doublers(i), zones%doublers(k), signs, &
+                                           maxval(deck%setup%plate%length)) &
                                     .and. have_same_plies(zones%doublers(i), zones%doublers(k)), &
                                     k=1, size(zones%doublers))])
         end do
       end if
       if (allocated(zones%drops)) then
         do i = 1, size(zones%drops)
-          alike = alike .and. any([(is_image(zones%drops(i), zones%drops(k), signs, maxval(deck%plate%length)) .and. &
+          alike = alike .and. any([(is_image(zones%drops(i), zones%drops(k), signs, &
+                                           maxval(deck%setup%plate%length)) .and. &
                                     have_same_drops(zones%drops(i), zones%drops(k)), k=1, size(zones%drops))])
         end do
       end if
@@ -196,15 +197,15 @@ contains
     end if
     do i = 1, zone_count(deck, 1)
       if (objection /= '') return
-      associate (mine => deck%zones%doublers(i), its => old%zones%doublers(i))
-        objection = place_objection('&doubler '''//mine%name//'''', mine, its, deck%initial%cut_at)
+      associate (mine => deck%setup%zones%doublers(i), its => old%setup%zones%doublers(i))
+        objection = place_objection('&doubler '''//mine%name//'''', mine, its, deck%setup%initial%cut_at)
         if (objection == '') objection = plies_objection(deck, old, i)
       end associate
     end do
     do i = 1, zone_count(deck, 2)
       if (objection /= '') return
-      associate (mine => deck%zones%drops(i), its => old%zones%drops(i))
-        objection = place_objection('&ply_drop '//to_text(i), mine, its, deck%initial%cut_at)
+      associate (mine => deck%setup%zones%drops(i), its => old%setup%zones%drops(i))
+        objection = place_objection('&ply_drop '//to_text(i), mine, its, deck%setup%initial%cut_at)
         if (objection == '' .and. .not. have_same_drops(mine, its)) &
           objection = both('plies of &ply_drop '//to_text(i), integer_list(mine%plies), integer_list(its%plies))
       end associate
@@ -218,8 +219,8 @@ contains
     integer, intent(in) :: kind
 
     number = 0
-    if (kind == 1 .and. allocated(deck%zones%doublers)) number = size(deck%zones%doublers)
-    if (kind == 2 .and. allocated(deck%zones%drops)) number = size(deck%zones%drops)
+    if (kind == 1 .and. allocated(deck%setup%zones%doublers)) number = size(deck%setup%zones%doublers)
+    if (kind == 2 .and. allocated(deck%setup%zones%drops)) number = size(deck%setup%zones%drops)
   end function zone_count
 
   !> Difference of the places of a zone in two decks.
@@ -249,35 +250,20 @@ contains
     integer, intent(in) :: i
     !> One clause; empty: no difference
     character(len=:), allocatable :: objection
-    real(wp) :: here(constants), there(constants)
-    integer :: ply, k
 
     objection = ''
-    associate (mine => deck%zones%doublers(i), its => old%zones%doublers(i))
+    associate (mine => deck%setup%zones%doublers(i), its => old%setup%zones%doublers(i))
       if (mine%is_cohesive .neqv. its%is_cohesive) then
         objection = both('bond of &doubler '''//mine%name//'''', bond_name(mine), bond_name(its))
       else if (mine%face /= its%face) then
         objection = both('face of &doubler '''//mine%name//'''', face_name(mine%face), face_name(its%face))
-      else if (size(mine%laminate%angle) /= size(its%laminate%angle)) then
-        objection = both('plies of &doubler '''//mine%name//'''', short_list(mine%laminate%angle), &
-                         short_list(its%laminate%angle))
-      else if (any(differ(mine%laminate%angle, its%laminate%angle))) then
-        objection = both('plies of &doubler '''//mine%name//'''', short_list(mine%laminate%angle), &
-                         short_list(its%laminate%angle))
-      else if (any(differ(mine%laminate%thickness, its%laminate%thickness))) then
-        objection = both('ply_thickness of &doubler '''//mine%name//'''', short_list(mine%laminate%thickness(:1)), &
-                         short_list(its%laminate%thickness(:1)))
       end if
-      if (objection /= '') return
-      do ply = 1, size(mine%laminate%angle)
-        here = constants_of(deck%materials(mine%laminate%material(ply)))
-        there = constants_of(old%materials(its%laminate%material(ply)))
-        k = findloc(differ(here, there), .true., dim=1)
-        if (k == 0) cycle
-        objection = both('&material '//trim(constant_names(k))//' of &doubler '''//mine%name//'''', to_text(here(k)), &
-                         to_text(there(k)))
-        return
-      end do
+      if (objection == '') objection = list_objection('plies of &doubler '''//mine%name//'''', mine%laminate%angle, &
+                                                      its%laminate%angle)
+      if (objection == '') objection = list_objection('ply_thickness of &doubler '''//mine%name//'''', &
+                                                      mine%laminate%thickness(:1), its%laminate%thickness(:1))
+      if (objection == '') objection = material_objection(deck, old, mine%laminate%material, its%laminate%material, &
+                                                          '&doubler '''//mine%name//'''')
     end associate
   end function plies_objection
 

@@ -35,11 +35,11 @@ contains
     real(wp), allocatable :: shares(:)
     integer :: i, stringer
 
-    call deck%zones%find_shares(deck%plate%length, known, shares)
+    call deck%setup%zones%find_shares(deck%setup%plate%length, known, shares)
     step = huge(step)
     do i = 1, size(shares)
       if (.not. shares(i) > 0) cycle
-      do stringer = 0, size(deck%stringers)
+      do stringer = 0, size(deck%setup%stringers)
         step = min(step, step_of_plies(deck, known(:, i), stringer, slope))
       end do
     end do
@@ -70,7 +70,7 @@ contains
     step = 0
     setup = small_setup(deck, 2, here)
     if (stringer > 0) then
-      setup%stringers = [deck%stringers(stringer)]
+      setup%stringers = [deck%setup%stringers(stringer)]
       setup%stringers(1)%at = 0
       setup%stringers(1)%ends = [-setup%plate%length(setup%stringers(1)%along), &
                                  setup%plate%length(setup%stringers(1)%along)]/2
@@ -78,7 +78,7 @@ contains
     call create_model(setup, alone, model, error)
     if (allocated(error)) return
     plies = new_ply_failure(model)
-    scaling = create_inertia_scaling(deck%setup_t, deck%stepping%central%mass_scaling)
+    scaling = create_inertia_scaling(deck%setup, deck%stepping%central%mass_scaling)
     call highest_element_frequency(model, largest_stiffness(plies), scaling, frequency, element, of_elements)
     if (present(slope)) then
       do direction = 1, 2
@@ -122,15 +122,15 @@ contains
     type(setup_t) :: setup
     integer :: i
 
-    setup%kinematics = deck%kinematics
-    setup%materials = deck%materials
-    setup%laminate = deck%laminate
-    setup%zones = deck%zones%everywhere(here)
-    setup%delaminations = deck%delaminations
+    setup%materials = deck%setup%materials
+    setup%laminate = deck%setup%laminate
+    setup%zones = deck%setup%zones%everywhere(here)
+    setup%delaminations = deck%setup%delaminations
     setup%plate%length = cells*[shortest_edge(deck, 1), shortest_edge(deck, 2)]
     setup%plate%edges = edge_free
     setup%plate%symmetry = symmetry_none
-    setup%mesh = mesh_t(elements=cells, grading=1, shear=deck%mesh%shear, mass=deck%mesh%mass)
+    setup%mesh = mesh_t(elements=cells, grading=1, shear=deck%setup%mesh%shear, mass=deck%setup%mesh%mass, &
+                        kinematics=deck%setup%mesh%kinematics)
     do i = 1, size(setup%delaminations)
       associate (d => setup%delaminations(i))
         d%zone = setup%plate%length
@@ -149,7 +149,7 @@ contains
     integer, intent(in) :: direction
     type(cell_line_t) :: line
 
-    line = cells_along(deck%plate, deck%mesh, direction)
+    line = cells_along(deck%setup%plate, deck%setup%mesh, direction)
     edge = minval(line%sides())
   end function shortest_edge
 end module element_steps

@@ -39,15 +39,15 @@ contains
     bound = ''
     if (model_size%at_most) bound = 'at most '
     ! Damage lengthens the contact by a time that is known roughly.
-    lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%has_crack_bands())
+    lengthened = deck%stepping%time%extends_to_contact_end .and. (has_cohesive(deck) .or. deck%setup%has_crack_bands())
     time_bound = bound
     if (lengthened) time_bound = 'about '
     seconds = measured_element_time(deck)
     sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
-               in_usual_unit(step, time_kind, deck%units)//' for '// &
+               in_usual_unit(step, time_kind, deck%case%units)//' for '// &
                bound//counted(rounded_text(model_size%elements), 'element')//' of all layers: '// &
                time_bound//duration_text(seconds*steps*model_size%elements)//' of one processor'
-    if (deck%has_crack_bands()) sentence = sentence//' as long as plies do not soften'
+    if (deck%setup%has_crack_bands()) sentence = sentence//' as long as plies do not soften'
     if (lengthened) sentence = sentence//'; damage may change the number of steps by a third'
     sentence = sentence//'.'
   end function explicit_sentence
@@ -59,13 +59,13 @@ contains
     type(elastic_impact_t) :: elastic
 
     end = deck%stepping%time%end
-    if (.not. (deck%is_impact() .and. deck%expected%of_impact)) return
+    if (.not. (deck%setup%is_impact() .and. deck%expected%of_impact)) return
     elastic%last_touch = deck%expected%last_touch
     elastic%deflection = deck%expected%deflection
     if (deck%expected%is_cut .and. (deck%stepping%central%settle > 0 .or. &
                                     deck%stepping%time%extends_to_contact_end)) &
-      elastic = contact_end(start_elastic_impact(deck%setup_t, deck%expected%scales), 0.0_wp)
-    end = end_of_run(deck%stepping, deck%load_start + stiffened_duration(deck%setup_t, deck%expected%scales, &
+      elastic = contact_end(start_elastic_impact(deck%setup, deck%expected%scales), 0.0_wp)
+    end = end_of_run(deck%stepping, deck%setup%loading%start + stiffened_duration(deck%setup, deck%expected%scales, &
                                                                          elastic%last_touch, elastic%deflection))
   end function expected_end
 
@@ -73,7 +73,7 @@ contains
   pure logical function has_cohesive(deck)
     type(deck_t), intent(in) :: deck
 
-    has_cohesive = any(deck%delaminations%law == law_cohesive)
+    has_cohesive = any(deck%setup%delaminations%law == law_cohesive)
   end function has_cohesive
 
   !> Sentence on the step of the deck where it is longer than the step that is used; otherwise empty.
@@ -87,9 +87,9 @@ contains
 
     sentence = ''
     if (.not. deck%settings%is_given(time_group, key_step)) return
-    given = deck%settings%real_of(time_group, key_step)/2**deck%refine
+    given = deck%settings%real_of(time_group, key_step)/2**deck%case%refine
     if (given > step) sentence = 'The step of the deck, '// &
-      in_usual_unit(given, time_kind, deck%units)//', is longer and is not taken.'
+      in_usual_unit(given, time_kind, deck%case%units)//', is longer and is not taken.'
   end function untaken_step
 
   !> Ratio of the stable step of the flat plate to that of the deflected one, with the largest slope of half a sine.
@@ -98,8 +98,8 @@ contains
     real(wp) :: slope, steep
 
     ratio = 1
-    if (deck%kinematics /= kinematics_von_karman) return
-    slope = pi*deck%stepping%expected%deflection/minval(free_span(deck%setup_t))
+    if (deck%setup%mesh%kinematics /= kinematics_von_karman) return
+    slope = pi*deck%stepping%expected%deflection/minval(free_span(deck%setup))
     steep = smallest_element_step(deck, slope)
     if (steep > 0) ratio = smallest_element_step(deck)/steep
   end function shortened

@@ -19,8 +19,8 @@ contains
     integer :: i, k, next
 
     allocate (lines(0))
-    associate (zones => deck%zones)
-      next = size(deck%laminate%angle) + 1
+    associate (zones => deck%setup%zones)
+      next = size(deck%setup%laminate%angle) + 1
       if (allocated(zones%doublers)) then
         do i = 1, size(zones%doublers)
           associate (plies => size(zones%doublers(i)%laminate%angle))
@@ -49,7 +49,7 @@ contains
     character(len=:), allocatable :: words
     type(laminate_t) :: local
 
-    local = deck%zones%laminate_of(deck%laminate, deck%zones%at(point))
+    local = deck%setup%zones%laminate_of(deck%setup%laminate, deck%setup%zones%at(point))
     words = length_text(deck, sum(local%thickness))
   end function thickness_at
 end module ply_zone_tables

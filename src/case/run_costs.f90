@@ -34,10 +34,10 @@ contains
     type(line_t), allocatable :: lines(:)
 
     allocate (lines(0))
-    if (deck%is_static()) then
-      call append(lines, counted(to_text(deck%static%steps), 'load step')//min_time(deck, model_size, &
-        deck%static%steps*tangents_of_load_step*factor_over_solve, &
-        deck%static%steps*tangents_of_load_step))
+    if (deck%setup%is_static()) then
+      call append(lines, counted(to_text(deck%setup%loading%steps), 'load step')//min_time(deck, model_size, &
+        deck%setup%loading%steps*tangents_of_load_step*factor_over_solve, &
+        deck%setup%loading%steps*tangents_of_load_step))
     else if (.not. deck%stepping%time%step > 0) then
       return
     else if (is_explicit(deck%stepping)) then
@@ -60,9 +60,9 @@ contains
     real(wp) :: steps, solves
 
     steps = deck%stepping%time%end/deck%stepping%time%step
-    solves = merge(1.0_wp, solves_if_curved, deck%kinematics == kinematics_linear)
+    solves = merge(1.0_wp, solves_if_curved, deck%setup%mesh%kinematics == kinematics_linear)
     sentence = 'About '//counted(rounded_text(max(1.0_wp, anint(steps))), 'step')//' of '// &
-               in_usual_unit(deck%stepping%time%step, time_kind, deck%units)
+               in_usual_unit(deck%stepping%time%step, time_kind, deck%case%units)
     if (is_error_controlled(deck%stepping%adapt)) sentence = sentence//', fewer as they grow'
     sentence = sentence//min_time(deck, model_size, steps*solves + factor_over_solve, steps*solves)
   end function implicit_sentence
@@ -79,11 +79,11 @@ contains
     real(wp) :: seconds
 
     seconds = seconds_per_unknown*model_size%unknowns*residuals + model_size%megabytes*solves* &
-              seconds_per_megabyte(merge(2, 1, size(deck%delaminations) > 0))
+              seconds_per_megabyte(merge(2, 1, size(deck%setup%delaminations) > 0))
     clause = ': about '
     if (seconds > 1) clause = ': at least '
     clause = clause//duration_text(seconds)//' of one processor'
-    if (deck%has_ply_damage .or. size(deck%delaminations) > 0) clause = clause// &
+    if (deck%setup%ply_damage%is_present .or. size(deck%setup%delaminations) > 0) clause = clause// &
       ' without damage, many times that with damage'
     clause = clause//'.'
   end function min_time

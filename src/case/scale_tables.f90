@@ -57,23 +57,23 @@ contains
     type(line_t), allocatable :: lines(:)
 
     allocate (lines(0))
-    if (system_named(deck%units) == 0) then
+    if (system_named(deck%case%units) == 0) then
       call append(lines, 'Scales of the case, in the units of the deck (mm, ms and N if &case has units):')
     else
       call append(lines, 'Scales of the case:')
     end if
     associate (o => deck%expected, scales => deck%expected%scales)
-      call put(trim(merge('thickness of the laminate    ', 'thickness at the struck point', deck%zones%is_empty())), &
-               scales%thickness, length)
-      call put_sub_plies(lines, deck, stacked_plies(deck%laminate, deck%materials))
+      call put(trim(merge('thickness of the laminate    ', 'thickness at the struck point', &
+                          deck%setup%zones%is_empty())), scales%thickness, length)
+      call put_sub_plies(lines, deck, stacked_plies(deck%setup%laminate, deck%setup%materials))
       call put('mass of the plate', scales%plate_mass, mass)
-      call put('mass of the stringers', mass_of(deck%stringers), mass)
+      call put('mass of the stringers', mass_of(deck%setup%stringers), mass)
       call put('period of the first bending mode', scales%first_period, time)
       call put('delamination threshold force (closed form)', scales%threshold, force)
       call put('force at interlaminar shear failure beside the contact', scales%onset, force)
       if (.not. o%of_impact) return
       call put('impact energy', scales%energy, energy)
-      call put('stiffness k of the contact law', deck%indentation%k, contact)
+      call put('stiffness k of the contact law', deck%setup%impactor%indentation%k, contact)
       call put('rise time of the contact force', scales%contact_time, time)
       call put('time steps in the rise time', scales%contact_time/deck%stepping%time%step, bare)
       call put('bending wavelength at first contact', scales%wave_length, length)
@@ -153,14 +153,14 @@ contains
     integer :: range(2), first
 
     allocate (lines(0))
-    if (.not. deck%ply_damage%in_situ) return
-    plies = stacked_plies(deck%laminate, deck%materials)
+    if (.not. deck%setup%ply_damage%in_situ) return
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     range = 0
     first = 1
     last = ''
     do while (range(2) < size(plies))
       range = block_of(plies, range(2) + 1)
-      material = material_in_place(plies, range(1), deck%materials, deck%ply_damage)
+      material = material_in_place(plies, range(1), deck%setup%materials, deck%setup%ply_damage)
       values = read_as(deck, material%yt, pressure)//', '//read_as(deck, material%s12, pressure)
       if (values /= last .and. last /= '') then
         call append(lines, strength_line(first, range(1) - 1, last))
@@ -198,14 +198,14 @@ contains
     integer :: place, i
 
     allocate (lines(0))
-    if (.not. (deck%has_ply_damage .and. deck%ply_damage%weibull_modulus > 0)) return
-    do place = 1, size(deck%materials)
+    if (.not. (deck%setup%ply_damage%is_present .and. deck%setup%ply_damage%weibull_modulus > 0)) return
+    do place = 1, size(deck%setup%materials)
       volumes = block_volumes(deck, place)
       factors = fibre_factors(deck, place)
-      if (first_alike(deck%materials, place) /= place .or. .not. all(volumes > 0)) cycle
+      if (first_alike(deck%setup%materials, place) /= place .or. .not. all(volumes > 0)) cycle
       do i = 1, size(names)
         call append(lines, table_line(trim(names(i))//', '//read_as(deck, volumes(i), volume)//' '// &
-                                      unit_of(deck, volume), read_as(deck, factors(i)*deck%materials(place)%xt, &
+                                      unit_of(deck, volume), read_as(deck, factors(i)*deck%setup%materials(place)%xt, &
                                                                      pressure), unit_of(deck, pressure)))
       end do
     end do
@@ -222,13 +222,15 @@ contains
     integer :: place, ply
 
     allocate (lines(0))
-    if (system_named(deck%units) == 0 .or. .not. deck%has_ply_damage) return
-    plies = stacked_plies(deck%laminate, deck%materials)
-    do place = 1, size(deck%materials)
-      if (.not. deck%materials(place)%toughness(1) > 0 .or. first_alike(deck%materials, place) /= place) cycle
+    if (system_named(deck%case%units) == 0 .or. .not. deck%setup%ply_damage%is_present) return
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    do place = 1, size(deck%setup%materials)
+      if (.not. deck%setup%materials(place)%toughness(1) > 0 .or. first_alike(deck%setup%materials, place) /= place) &
+        cycle
       blocks = [(block_thickness(plies, ply), ply=1, size(plies))]
       blocks = pack(blocks, plies%material == place)
-      is_thick = blocks*product(base_units(system_named(deck%units))**length%exponents) >= thick_block*(1 - rounding)
+      is_thick = blocks*product(base_units(system_named(deck%case%units))**length%exponents) &
+                 >= thick_block*(1 - rounding)
       call append_line(pack(blocks, .not. is_thick), .false.)
       call append_line(pack(blocks, is_thick), .true.)
     end do
@@ -248,7 +250,7 @@ contains
       if (maxval(thicknesses) > minval(thicknesses)*(1 + rounding)) name = name//' to '// &
                                                                         read_as(deck, maxval(thicknesses), length)
       name = 'G_ft, blocks of '//name//' mm (T300/920: '//measured_toughness(are_thick)//')'
-      call append(lines, table_line(name, read_as(deck, deck%materials(place)%toughness(1), toughness), &
+      call append(lines, table_line(name, read_as(deck, deck%setup%materials(place)%toughness(1), toughness), &
                                     unit_of(deck, toughness)))
     end subroutine append_line
   end function toughness_lines
@@ -275,7 +277,7 @@ contains
     character(len=:), allocatable :: digits
     integer :: system
 
-    system = system_named(deck%units)
+    system = system_named(deck%case%units)
     digits = short_text(value)
     if (system > 0) digits = short_text(value*product(base_units(system)**dimension%exponents)/dimension%size)
   end function read_as
@@ -287,7 +289,7 @@ contains
     character(len=:), allocatable :: unit
 
     unit = ''
-    if (system_named(deck%units) > 0) unit = ' '//trim(length%unit)
+    if (system_named(deck%case%units) > 0) unit = ' '//trim(length%unit)
   end function length_unit
 
   !> That unit in the deck's own.
@@ -297,7 +299,7 @@ contains
     integer :: system
 
     its_size = 1
-    system = system_named(deck%units)
+    system = system_named(deck%case%units)
     if (system == 0) return
     base = base_units(system)
     its_size = length%size/base(1)
@@ -322,6 +324,6 @@ contains
     character(len=:), allocatable :: unit
 
     unit = trim(dimension%name)
-    if (system_named(deck%units) > 0) unit = trim(dimension%unit)
+    if (system_named(deck%case%units) > 0) unit = trim(dimension%unit)
   end function unit_of
 end module scale_tables

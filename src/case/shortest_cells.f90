@@ -47,8 +47,8 @@ contains
     call find_line(deck, row, group, key, place)
     if (group == '') return
     free = deck
-    free%mesh%x_lines = [real(wp) ::]
-    free%mesh%y_lines = [real(wp) ::]
+    free%setup%mesh%x_lines = [real(wp) ::]
+    free%setup%mesh%y_lines = [real(wp) ::]
     price = smallest_element_step(free)/smallest_element_step(deck)
     if (.not. price > max_price) return
     number = deck%stepping%time%end/deck%stepping%time%step
@@ -74,9 +74,9 @@ contains
     call find_line(deck, row, group, key, place)
     if (group /= '') then
       words = words//', beside a line of &'//group//' '//key
-    else if (lies_within(deck%mesh%patch)) then
+    else if (lies_within(deck%setup%mesh%patch)) then
       words = words//', in the loaded patch (&'//mesh_group//' '//key_patch//')'
-    else if (lies_within(deck%mesh%core(row%direction))) then
+    else if (lies_within(deck%setup%mesh%core(row%direction))) then
       words = words//', in the core (&'//mesh_group//' '//key_core//')'
     end if
 
@@ -87,7 +87,8 @@ contains
       !> Extent of the region
       real(wp), intent(in) :: extent
 
-      lies_within = all(abs(row%sides - deck%mesh%struck(row%direction)) <= extent/2*(1 + rounding)) .and. extent > 0
+      lies_within = all(abs(row%sides - deck%setup%mesh%struck(row%direction)) <= extent/2*(1 + rounding)) .and. &
+                    extent > 0
     end function lies_within
   end function shortest_cell_text
 
@@ -113,11 +114,11 @@ contains
 
     shortest = huge(shortest)
     do direction = 1, 2
-      line = cells_along(deck%plate, deck%mesh, direction)
+      line = cells_along(deck%setup%plate, deck%setup%mesh, direction)
       lengths = line%sides()
       if (minval(lengths) >= shortest*(1 - rounding)) cycle
       shortest = minval(lengths)
-      distances = abs(line%middles() - deck%mesh%struck(direction))
+      distances = abs(line%middles() - deck%setup%mesh%struck(direction))
       cell = minloc(distances, dim=1, mask=lengths <= shortest*(1 + rounding))
       row = row_t(direction, line%ends(cell))
     end do
@@ -136,9 +137,9 @@ contains
     group = ''
     key = ''
     place = 1
-    do i = 1, size(deck%supports)
-      if (deck%supports(i)%shape /= window_rectangle) cycle
-      if (.not. has_side(deck%supports(i)%window(row%direction)/2)) cycle
+    do i = 1, size(deck%setup%supports)
+      if (deck%setup%supports(i)%shape /= window_rectangle) cycle
+      if (.not. has_side(deck%setup%supports(i)%window(row%direction)/2)) cycle
       group = support_group
       key = key_window
       place = i
@@ -148,9 +149,9 @@ contains
     if (group /= '') key = key_zone_size
     if (group /= '') return
     if (row%direction == 1) then
-      if (.not. any([(has_side(deck%mesh%x_lines(i)), i=1, size(deck%mesh%x_lines))])) return
+      if (.not. any([(has_side(deck%setup%mesh%x_lines(i)), i=1, size(deck%setup%mesh%x_lines))])) return
     else
-      if (.not. any([(has_side(deck%mesh%y_lines(i)), i=1, size(deck%mesh%y_lines))])) return
+      if (.not. any([(has_side(deck%setup%mesh%y_lines(i)), i=1, size(deck%setup%mesh%y_lines))])) return
     end if
     group = mesh_group
     key = key_lines(row%direction)
@@ -162,7 +163,7 @@ contains
       !> The distance
       real(wp), intent(in) :: distance
 
-      has_side = any(abs(abs(row%sides) - abs(distance)) <= rounding*deck%plate%length(row%direction))
+      has_side = any(abs(abs(row%sides) - abs(distance)) <= rounding*deck%setup%plate%length(row%direction))
     end function has_side
 
   end subroutine find_line
@@ -179,13 +180,13 @@ contains
 
     group = ''
     place = 0
-    if (allocated(deck%zones%doublers)) &
-      place = findloc([(any(is_side(deck%zones%doublers(i)%edges(row%direction))), &
-                        i=1, size(deck%zones%doublers))], .true., dim=1)
+    if (allocated(deck%setup%zones%doublers)) &
+      place = findloc([(any(is_side(deck%setup%zones%doublers(i)%edges(row%direction))), &
+                        i=1, size(deck%setup%zones%doublers))], .true., dim=1)
     if (place > 0) group = doubler_group
-    if (group == '' .and. allocated(deck%zones%drops)) then
-      place = findloc([(any(is_side(deck%zones%drops(i)%edges(row%direction))), i=1, size(deck%zones%drops))], &
-                      .true., dim=1)
+    if (group == '' .and. allocated(deck%setup%zones%drops)) then
+      place = findloc([(any(is_side(deck%setup%zones%drops(i)%edges(row%direction))), i=1, &
+                        size(deck%setup%zones%drops))], .true., dim=1)
       if (place > 0) group = ply_drop_group
     end if
     place = max(place, 1)
@@ -197,7 +198,7 @@ contains
       !> The coordinate
       real(wp), intent(in) :: at
 
-      associate (length => deck%plate%length(row%direction))
+      associate (length => deck%setup%plate%length(row%direction))
         is_side = any(abs(row%sides - at) <= rounding*length) .and. abs(at) < length/2*(1 - rounding)
       end associate
     end function is_side

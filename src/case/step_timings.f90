@@ -36,10 +36,10 @@ contains
     integer :: steps
 
     seconds = 0
-    setup = small_setup(deck, ceiling(sqrt(real(elements, wp)/(1 + size(deck%delaminations)))), &
-                        deck%zones%at(deck%mesh%struck))
-    setup%has_ply_damage = deck%has_ply_damage
-    setup%ply_damage = deck%ply_damage
+    setup = small_setup(deck, ceiling(sqrt(real(elements, wp)/(1 + size(deck%setup%delaminations)))), &
+                        deck%setup%zones%at(deck%setup%mesh%struck))
+    setup%ply_damage%is_present = deck%setup%ply_damage%is_present
+    setup%ply_damage = deck%setup%ply_damage
     call create_model(setup, alone, model, error)
     if (allocated(error)) return
     allocate (now, source=new_state(model))

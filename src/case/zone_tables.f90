@@ -25,18 +25,18 @@ contains
     real(wp) :: cells(2)
 
     allocate (lines(0))
-    if (.not. any(deck%delaminations%law == law_cohesive)) return
+    if (.not. any(deck%setup%delaminations%law == law_cohesive)) return
     cells = fewest_cells(deck)
     call append(lines, table_line('fewest cells in a process zone, of shear and of opening', short_text(cells(1))// &
                                   ', '//short_text(cells(2)), ''))
     if (.not. is_explicit(deck%stepping)) return
-    if (.not. any(deck%delaminations%law == law_cohesive .and. &
-                  deck%delaminations%growth_control == growth_by_energy)) return
-    if (.not. deck%has_impactor) cells(1) = minval(cells)
+    if (.not. any(deck%setup%delaminations%law == law_cohesive .and. &
+                  deck%setup%delaminations%growth_control == growth_by_energy)) return
+    if (.not. deck%setup%impactor%is_present) cells(1) = minval(cells)
     if (cells(1) >= resolving_cells) return
     call append(lines, error_line('error of the load at growth due to these cells (strips)', load_errors(cells(1))))
-    if (deck%has_impactor) call append(lines, error_line('error of the area due to these cells (impacts)', &
-                                                         area_errors(cells(1))))
+    if (deck%setup%impactor%is_present) &
+      call append(lines, error_line('error of the area due to these cells (impacts)', area_errors(cells(1))))
   end function zone_lines
 
   !> A range of errors, %, or that it is unknown.

@@ -71,11 +71,12 @@ contains
 
     associate (model => at%model, operator => at%operator, old => at%old, new => at%new)
       new%time = old%time + self%step
-      new%load_factor = new%time/model%setup%ramp_time
+      new%load_factor = new%time/model%setup%loading%ramp_time
       call new%interfaces%ties%ramp_down(model, self%step)
       self%patch_square = sum((new%contact%weights(new%contact%points)/model%mesh%multiplicity)**2)
-      if (model%setup%has_impactor) self%coupling = begin_coupling(model, self%integrator, old, self%step)
-      self%keeps_velocity = model%setup%has_impactor .and. .not. (allocated(self%guess) .or. model%has_point_stiffness)
+      if (model%setup%impactor%is_present) self%coupling = begin_coupling(model, self%integrator, old, self%step)
+      self%keeps_velocity = model%setup%impactor%is_present .and. &
+                            .not. (allocated(self%guess) .or. model%has_point_stiffness)
       self%keeps_displacement = self%keeps_velocity &
         .and. is_exact(model, operator, self%integrator%mass_factor(self%step))
       self%skips_elements = self%keeps_displacement .and. modulo(old%step + 1, between_checks) > 0 &
@@ -177,7 +178,7 @@ contains
                                 old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
     energy = model%product(new%motion%displacement, new%motion%internal)/2
-    if (.not. model%setup%has_thermal) return
+    if (.not. model%setup%thermal%is_present) return
     ! Residual stresses store energy that is not the work of these forces: their work is added to the energy at the
     ! start. Done for all decks this would make linear steps 6 % slower.
     energy = model%product(new%motion%displacement - old%motion%displacement, &
@@ -215,7 +216,7 @@ contains
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
 
-    may_stop = at%new%iterations > 0 .or. .not. at%model%setup%has_impactor
+    may_stop = at%new%iterations > 0 .or. .not. at%model%setup%impactor%is_present
   end function may_stop
 
   !> Solves for a correction by the tangent, and for the impactor's force.
@@ -231,7 +232,7 @@ contains
     logical :: converged
 
     at%negative_curvature = .false.
-    associate (integrator => self%integrator, has_impactor => at%model%setup%has_impactor)
+    associate (integrator => self%integrator, has_impactor => at%model%setup%impactor%is_present)
       call find_tangent(at, [integrator%stiffness_factor(), integrator%mass_factor(self%step)], &
                         self%factor_is_due, self%renewal, self%uses_element_tangents, tangent, error)
       if (allocated(error)) return
@@ -255,9 +256,10 @@ contains
     integer :: iterations
 
     associate (model => at%model, old => at%old, new => at%new)
-      if (.not. model%setup%has_impactor) return
+      if (.not. model%setup%impactor%is_present) return
       new%patch_mean = new%contact_deflection(model)
-      call self%coupling%find_force(model%setup%indentation, old%indentation, new%patch_mean, 0.0_wp, iterations, error)
+      call self%coupling%find_force(model%setup%impactor%indentation, old%indentation, new%patch_mean, 0.0_wp, &
+                                    iterations, error)
       new%force_iterations = new%force_iterations + iterations
     end associate
   end subroutine find_force
@@ -285,11 +287,12 @@ contains
       call new%count_step(old)
       new%deflection = model%deflection(new%motion%displacement)
       new%patch_mean = new%contact_deflection(model)
-      if (model%setup%has_impactor) then
+      if (model%setup%impactor%is_present) then
         new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
                                self%coupling%force_end)
         new%force = self%coupling%force_end
-        call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+        call commit_indentation(model%setup%impactor%indentation, new%indentation, &
+                                new%impactor%displacement - new%patch_mean)
       end if
       call model%profile%enter('energy ledger')
       call record_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)

@@ -47,9 +47,9 @@ contains
       if (due) call operator%renew(model, new, factors(1), factors(2), error)
       if (allocated(error)) return
       call set_state(tangent, at, factors)
-      tangent%elements = model%setup%kinematics == kinematics_von_karman .and. (uses_element_tangents &
+      tangent%elements = model%setup%mesh%kinematics == kinematics_von_karman .and. (uses_element_tangents &
                                                                                 .or. model%has_point_stiffness)
-      tangent%elements = .not. due .and. (model%setup%has_ply_damage .or. tangent%elements)
+      tangent%elements = .not. due .and. (model%setup%ply_damage%is_present .or. tangent%elements)
       ! The operator has the compressive modulus for all strains of a compressed ply, the tangent for their mean.
       tangent%elements = tangent%elements .or. model%setup%is_bimodular()
       if (model%has_point_stiffness) &
@@ -91,7 +91,7 @@ contains
     !> Factor of mass in the tangent
     real(wp), intent(in) :: mass_factor
 
-    exact = model%setup%kinematics == kinematics_linear .and. .not. model%setup%has_variable_sections()
+    exact = model%setup%mesh%kinematics == kinematics_linear .and. .not. model%setup%has_variable_sections()
     if (exact) exact = abs(operator%mass_factor/mass_factor - 1) <= mass_precision
   end function is_exact
 
@@ -109,7 +109,7 @@ contains
       push(3, :) = contact%weights/model%mesh%multiplicity
       allocate (tangent%pattern(numbering%rows))
       call numbering%gather(push, tangent%pattern)
-      tangent%force_slope = coupling%slope(model%setup%indentation, at%old%indentation, &
+      tangent%force_slope = coupling%slope(model%setup%impactor%indentation, at%old%indentation, &
                                            at%new%contact_deflection(model))
     end associate
   end subroutine add_force_slope

@@ -77,7 +77,7 @@ contains
                                     new%motion%displacement - old%motion%displacement, taken)
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
-    if (.not. model%setup%has_impactor) return
+    if (.not. model%setup%impactor%is_present) return
     impactor = impactor_energy(model%setup%impactor, new%impactor)
     new%ledger%impactor = impactor
     new%ledger%indentation = new%indentation%work

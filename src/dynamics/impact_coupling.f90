@@ -7,7 +7,7 @@ module impact_coupling
   use tan_sun_indentation, only: indentation_t
   use impactor_integrators, only: predict, takes_mean_force
   use newmark_integrators, only: plate_integrator_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use newton_iterations, only: newton_iteration_t
   use states, only: state_t
   implicit none
@@ -43,7 +43,7 @@ contains
 
   !> Coupling in a step.
   pure function begin_coupling(model, integrator, old, step) result(coupling)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(plate_integrator_t), intent(in) :: integrator
     !> State at the start
     type(state_t), intent(in) :: old
@@ -96,7 +96,7 @@ contains
     associate (model => at%model, operator => at%operator, new => at%new)
       before = self%unknown
       new%patch_mean = new%contact_deflection(model) + new%contact%mean(model%communicator, at%correction)
-      call self%find_force(model%setup%indentation, at%old%indentation, new%patch_mean, &
+      call self%find_force(model%setup%impactor%indentation, at%old%indentation, new%patch_mean, &
                            merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
       if (is_factored) at%correction = at%correction + (self%share*(self%unknown - before))*operator%response
       new%force_iterations = new%force_iterations + iterations

@@ -46,7 +46,7 @@ contains
     real(wp) :: energy
 
     energy = 0
-    if (model%setup%has_thermal) then
+    if (model%setup%thermal%is_present) then
       call equilibrate(model, operator, .false., state, error)
       if (allocated(error)) return
       energy = energy_of(state)
@@ -70,7 +70,7 @@ contains
   pure logical function has_initial_motion(model)
     type(model_t), intent(in) :: model
 
-    has_initial_motion = model%setup%has_thermal .or. lines_precede(model)
+    has_initial_motion = model%setup%thermal%is_present .or. lines_precede(model)
   end function has_initial_motion
 
   !> True: lines are displaced before a run in time.
@@ -132,7 +132,7 @@ contains
                                 + state%interfaces%cohesive%dissipation(model, before%interfaces%cohesive)
     state%deflection = model%deflection(state%motion%displacement)
     ! The impactor starts at first contact with the deflected plate.
-    if (model%setup%has_impactor) &
+    if (model%setup%impactor%is_present) &
       state%contact%offset = -state%contact%mean(model%communicator, state%motion%displacement)
     if (allocated(model%nose)) &
       state%contact%touched_at = model%nose%first_contact(model%communicator, state%motion%displacement(3, :))

@@ -48,7 +48,7 @@ contains
         associate (line => model%lines(i))
           if (.not. line%load%prescribed) cycle
           if (place /= merge(1 + line%load%layer, 0, line%load%component <= 3)) cycle
-          values = line%load%motion_at(time, model%setup%ramp_time)
+          values = line%load%motion_at(time, model%setup%loading%ramp_time)
           call line%move_to(values(derivative), change)
         end associate
       end do

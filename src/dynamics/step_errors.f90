@@ -61,7 +61,7 @@ contains
     total = sum(self%share)
     call model%communicator%sum(total)
     self%share = self%share/total
-    if (.not. model%setup%has_impactor) return
+    if (.not. model%setup%impactor%is_present) return
     self%known = past
     self%time = -step*[1, 2]
     self%indentation = model%setup%impactor%velocity*self%time
@@ -120,7 +120,7 @@ contains
     deflection = max(expected%deflection, self%largest, abs(trial%deflection))
     if (deflection > 0) error = max(sqrt(square), abs(dot_product(weights, [trial%deflection, now%deflection, &
                                                                             self%struck])))/deflection
-    if (.not. model%setup%has_impactor .or. self%impact_is_over(expected, trial)) return
+    if (.not. model%setup%impactor%is_present .or. self%impact_is_over(expected, trial)) return
     force = max(expected%force, self%force, trial%force)
     if (force > 0) error = max(error, max(self%stiffness, stiffness_of(model, trial))/force* &
                                abs(dot_product(weights, [trial%indentation%alpha, now%indentation%alpha, &
@@ -132,7 +132,7 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    stiffness = indentation_stiffness(model%setup%indentation, state%indentation, state%indentation%alpha)
+    stiffness = indentation_stiffness(model%setup%impactor%indentation, state%indentation, state%indentation%alpha)
   end function stiffness_of
 
   !> True: the impactor has left the plate and moves away from it, and no other contact is expected.
@@ -162,7 +162,7 @@ contains
     self%deflection(:, 2) = self%deflection(:, 1)
     self%deflection(:, 1) = now%motion%displacement(3, :size(self%share))
     self%largest = max(self%largest, abs(next%deflection))
-    if (.not. model%setup%has_impactor) return
+    if (.not. model%setup%impactor%is_present) return
     self%force = max(self%force, next%force)
     self%stiffness = max(self%stiffness, stiffness_of(model, next))
   end subroutine record

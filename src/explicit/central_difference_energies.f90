@@ -73,7 +73,7 @@ contains
         call now%plies%total_dissipation(model)
         ledger%ply_damage = sum(now%plies%dissipated) + now%plies%permanent_shear
       end if
-      if (model%setup%has_impactor) then
+      if (model%setup%impactor%is_present) then
         ledger%indentation = now%indentation%work
         if (.not. model%setup%impactor%travel > 0) ledger%impactor = method%impact%energy(model, method%steps%now, now)
       end if

@@ -133,14 +133,14 @@ contains
     type(state_t), intent(in) :: now
     real(wp) :: frequency, square
 
-    if (depends_on_slopes(model%elements, model%setup%kinematics) .and. &
+    if (depends_on_slopes(model%elements, model%setup%mesh%kinematics) .and. &
         modulo(now%step, steps_between_frequencies) == 0) then
       frequency = stiffened_frequency(model, largest_stiffness(now%plies), self%of_elements, self%motion)
       if (frequency > self%stiffened .or. frequency < lengthening_ratio*self%stiffened) &
         self%stiffened = stiffened_reserve*frequency
     end if
     square = self%stiffened**2
-    if (model%setup%has_impactor) &
+    if (model%setup%impactor%is_present) &
       square = square + self%impact%contact_frequency_square(model, now%indentation)
     step = self%parameters%stable_step(sqrt(square))
   end function longest_step
@@ -160,7 +160,7 @@ contains
     step = self%steps%now
     longest = self%longest_step(model, now)
     if (.not. (step <= longest .and. step > lengthening_ratio*longest)) &
-      step = commensurate_step(model%setup%ramp_time, longest)
+      step = commensurate_step(model%setup%loading%ramp_time, longest)
     self%steps = step_lengths_t(now=step, last=self%steps%now, kept=kept)
     call prepare(self, model)
     load_factors = [now%load_factor, model%setup%load_factor_at(now%time + step)]

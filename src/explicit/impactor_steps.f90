@@ -60,10 +60,11 @@ contains
     type(indentation_t), intent(in) :: indentation
     real(wp) :: slope, compliance, inverse_mass
 
-    slope = self%patch%gain**2*indentation_stiffness(model%setup%indentation, indentation, indentation%alpha)
+    slope = self%patch%gain**2*indentation_stiffness(model%setup%impactor%indentation, indentation, indentation%alpha)
     inverse_mass = 0
     if (.not. model%setup%impactor%travel > 0) inverse_mass = 1/model%setup%impactor%mass
-    associate (patch => self%patch, force => indentation_force(model%setup%indentation, indentation, indentation%alpha))
+    associate (patch => self%patch, &
+               force => indentation_force(model%setup%impactor%indentation, indentation, indentation%alpha))
       compliance = sum(patch%weights**2*patch%inverse)/model%mesh%multiplicity + inverse_mass
       if (any(patch%slopes > 0)) slope = slope + patch%gain*force/compliance* &
         (maxval(patch%slopes*patch%inverse)/model%mesh%multiplicity + sum(patch%slopes)*inverse_mass)
@@ -101,14 +102,14 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: alpha, before, change, w(size(self%patch%local))
 
-    if (model%setup%has_impactor .and. now%time <= model%setup%load_start) then
+    if (model%setup%impactor%is_present .and. now%time <= model%setup%loading%start) then
       call self%place(model, now)
       ! The velocity at the middle of a step, with the full one at its end.
       self%velocity = now%impactor%velocity - steps%now/2*model%setup%impactor%gravity
       return
     end if
     call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
-    if (.not. model%setup%has_impactor) then
+    if (.not. model%setup%impactor%is_present) then
       call self%patch%find_indentation(w, 0.0_wp, alpha)
       now%patch_mean = -alpha
       return
@@ -116,8 +117,8 @@ contains
     associate (impactor => now%impactor, parameters => model%setup%impactor)
       before = now%force
       if (parameters%travel > 0) then
-        change = parameters%travel*smooth_ramp(now%time/model%setup%ramp_time, &
-                                               parameters%rise/model%setup%ramp_time, 0) - impactor%displacement
+        change = parameters%travel*smooth_ramp(now%time/model%setup%loading%ramp_time, &
+                                               parameters%rise/model%setup%loading%ramp_time, 0) - impactor%displacement
         self%velocity = change/steps%now
       else
         call accelerate(self, model, steps, before)
@@ -126,8 +127,8 @@ contains
       impactor%displacement = impactor%displacement + change
       call self%patch%find_indentation(w, impactor%displacement, alpha)
       now%patch_mean = impactor%displacement - alpha
-      now%force = self%patch%gain*indentation_force(model%setup%indentation, now%indentation, alpha)
-      call commit_indentation(model%setup%indentation, now%indentation, alpha)
+      now%force = self%patch%gain*indentation_force(model%setup%impactor%indentation, now%indentation, alpha)
+      call commit_indentation(model%setup%impactor%indentation, now%indentation, alpha)
       impactor%force = now%force
       impactor%velocity = self%velocity
       if (parameters%travel > 0) then

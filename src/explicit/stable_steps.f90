@@ -112,9 +112,9 @@ contains
     unused = 0
     do b = 1, model%elements%batches
       call gather(model%elements%points(:, :, b), motion, r)
-      call strains_of_batch(model%elements, b, model%setup%kinematics, r, strains, slopes)
+      call strains_of_batch(model%elements, b, model%setup%mesh%kinematics, r, strains, slopes)
       if (allocated(model%elements%surface_slopes)) call take_surface_slopes(model%elements, b, slopes)
-      if (model%setup%kinematics == kinematics_linear) strains = 0
+      if (model%setup%mesh%kinematics == kinematics_linear) strains = 0
       call in_plane_resultants(stiffness(:, :, b), unit_area, strains, unused)
       added = gradient_bound*geometric_stiffness(stiffness(:, :, b), model%elements%inverse_jacobian(:, :, :, b), &
                                                  slopes, strains)/max(smallest_divisor, model%elements%mass(:, 1, b))
@@ -140,7 +140,7 @@ contains
     do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
       associate (beam => model%elements%beams(k), lane => model%elements%beams(k)%lane)
         added(lane) = max(added(lane), line_gradient_bound/beam%mass(1)*beam%length()* &
-                          beam%slope_stiffness(model%setup%kinematics /= kinematics_linear, &
+                          beam%slope_stiffness(model%setup%mesh%kinematics /= kinematics_linear, &
                                                reshape(transpose(r(lane, :, :)), [45])))
       end associate
     end do

@@ -13,8 +13,30 @@ module impact_parameters
   !> Permanent dent: Tan and Sun's linear one, or Yang and Sun's.
   integer, parameter, public :: dent_tan_sun = 1, dent_yang_sun = 2
 
+  !> Force against indentation (Eq. 3 of the paper with a reloading branch).
+  type :: indentation_law_t
+    !> True: the deck has the group
+    logical :: is_given = .false.
+    !> law_tan_sun, law_hertz or law_thornton
+    integer :: law = law_tan_sun
+    !> Contact stiffness, F = k alpha**1.5
+    real(wp) :: k = 0
+    !> Exponent of unloading
+    real(wp) :: q = 2.5_wp
+    !> Exponent of reloading after separation
+    real(wp) :: reload = 1.5_wp
+    !> Slope of Tan and Sun's dent
+    real(wp) :: beta = 0.094_wp
+    !> Indentation above which a dent remains; with Thornton's law that at which the struck face yields
+    real(wp) :: alpha_critical = 0
+    !> dent_tan_sun or dent_yang_sun
+    integer :: dent = dent_tan_sun
+  end type indentation_law_t
+
   !> The rigid impactor.
   type :: impactor_parameters_t
+    !> True: the deck has an impactor
+    logical :: is_present = .false.
     !> Mass
     real(wp) :: mass = 0
     !> Velocity at first contact, positive towards the plate
@@ -33,23 +55,7 @@ module impact_parameters
     real(wp) :: at(2) = 0
     !> One of the integrators above
     integer :: integrator = integrator_gear4
+    !> Force against indentation of the face under it
+    type(indentation_law_t) :: indentation
   end type impactor_parameters_t
-
-  !> Force against indentation (Eq. 3 of the paper with a reloading branch).
-  type :: indentation_law_t
-    !> law_tan_sun, law_hertz or law_thornton
-    integer :: law = law_tan_sun
-    !> Contact stiffness, F = k alpha**1.5
-    real(wp) :: k = 0
-    !> Exponent of unloading
-    real(wp) :: q = 2.5_wp
-    !> Exponent of reloading after separation
-    real(wp) :: reload = 1.5_wp
-    !> Slope of Tan and Sun's dent
-    real(wp) :: beta = 0.094_wp
-    !> Indentation above which a dent remains; with Thornton's law that at which the struck face yields
-    real(wp) :: alpha_critical = 0
-    !> dent_tan_sun or dent_yang_sun
-    integer :: dent = dent_tan_sun
-  end type indentation_law_t
 end module impact_parameters

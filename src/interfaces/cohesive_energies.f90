@@ -4,7 +4,7 @@ module cohesive_energies
   use cohesive_interfaces, only: cohesive_interfaces_t
   use cohesive_points, only: cohesive_point_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: stored_beyond_work
@@ -16,7 +16,7 @@ contains
   pure real(wp) function stored_beyond_work(self, model, old, before, after) result(energy)
     !> The interfaces at the end of the step
     type(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The interfaces at its start
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns before and after it, (5, points)

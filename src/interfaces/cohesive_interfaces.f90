@@ -13,7 +13,7 @@ module cohesive_interfaces
   use cohesive_points, only: cohesive_point_t, dissipated_fraction, mode_mixture
   use cohesive_tangents, only: dissipation_slopes
   use exact_sums, only: exact_sum_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: total_of, totals_of
   implicit none
   private
@@ -63,7 +63,7 @@ contains
 
   !> All cohesive interfaces, failed within their starters.
   pure function new_cohesive_interfaces(model, free) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> True for jumps released by starters, (local points)
     logical, intent(in) :: free(:)
     type(cohesive_interfaces_t) :: self
@@ -90,7 +90,7 @@ contains
   !> Adds the forces of the tractions on the jumps, and updates the history variables of the trial state.
   pure subroutine add_forces(self, model, old, displacement, force, energy)
     class(cohesive_interfaces_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
@@ -123,7 +123,7 @@ contains
   !> Derivatives of the forces by the jumps at this rank's points, unsymmetric where damage grows in a mixed mode.
   pure function tangents_at(self, model, old, displacement) result(tangents)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
@@ -161,7 +161,7 @@ contains
   !> Adds the derivative of the dissipated energy of this rank's points with respect to the unknowns.
   pure subroutine add_dissipation_slopes(self, model, old, displacement, slopes)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The interfaces in the last accepted state
     type(cohesive_interfaces_t), intent(in) :: old
     !> Unknowns, (5, points)
@@ -180,7 +180,7 @@ contains
   !> Energy dissipated since an earlier state, of the full plate, the same on every rank.
   real(wp) function dissipation(self, model, old) result(energy)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The interfaces in the earlier state
     type(cohesive_interfaces_t), intent(in) :: old
 
@@ -196,7 +196,7 @@ contains
   !> toughness. The same on every rank.
   function area(self, model)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The area, (zones); zero for zones without a cohesive law
     real(wp) :: area(size(model%mesh%zones))
 
@@ -206,7 +206,7 @@ contains
   !> Energy dissipated in each zone of the full plate, the same on every rank.
   function dissipated_energy(self, model) result(energy)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The energy, (zones); zero for zones without a cohesive law
     real(wp) :: energy(size(model%mesh%zones))
 
@@ -217,7 +217,7 @@ contains
   !> Sum of the areas of the cohesive points times a value, in each zone of the full plate. Collective.
   function total_in_zones(self, model, values) result(totals)
     type(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Values, (local points)
     real(wp), intent(in) :: values(:)
     !> (zones); zero for zones without a cohesive law
@@ -236,7 +236,7 @@ contains
   !> Damage of this rank's points.
   pure function damage(self, model)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
     real(wp) :: damage(size(model%zone))
 
@@ -247,7 +247,7 @@ contains
   !> Dissipated fraction of the toughness at this rank's points.
   pure function dissipated_fractions(self, model)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> 0 to 1; 0 where there is no cohesive law, (local points)
     real(wp) :: dissipated_fractions(size(model%zone))
     integer :: i
@@ -264,7 +264,7 @@ contains
   !> Fraction of shear in the energy of the jumps at this rank's points.
   pure function shear_share(self, model, displacement)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> 0 to 1; 0 where there is no cohesive law, (local points)
@@ -281,7 +281,7 @@ contains
   !> Pressure on closed surfaces at this rank's points.
   pure function pressure(self, model, displacement)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Pressure; 0 where there is no cohesive law, (local points)
@@ -299,7 +299,7 @@ contains
 
   !> True if contact prevents penetration of the surfaces of a zone.
   pure logical function prevents_penetration(model, zone)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
 
@@ -309,7 +309,7 @@ contains
   !> True for zones with a damaged point next to the border, where growth ends. The same on every rank.
   function border_reached(self, model)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> (zones)
     logical :: border_reached(size(model%mesh%zones))
     real(wp) :: reached(size(model%mesh%zones))
@@ -329,7 +329,7 @@ contains
   !> Law of one of this rank's cohesive points. The toughness of one whose damage is held is not reached.
   pure type(cohesive_law_t) function law_at(self, model, i) result(law)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The point
     integer, intent(in) :: i
 
@@ -342,7 +342,7 @@ contains
   !> Surfaces at one of this rank's cohesive points.
   pure type(cohesive_surfaces_t) function surfaces_of(self, model, i) result(surfaces)
     class(cohesive_interfaces_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The point
     integer, intent(in) :: i
 
@@ -355,7 +355,7 @@ contains
   subroutine visit(self, archive, model)
     class(cohesive_interfaces_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(self%cohesive)) return

@@ -5,7 +5,7 @@ module cohesive_sliding
   use archives, only: archive_t
   use cohesive_surfaces, only: cohesive_surfaces_t
   use cohesive_interfaces, only: cohesive_interfaces_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: total_of
   implicit none
   private
@@ -20,7 +20,7 @@ contains
   !> repeated until the limits have converged.
   subroutine update_friction_limits(interfaces, model, displacement, updates, converged)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Number of updates before convergence
@@ -51,7 +51,7 @@ contains
   !> True if any interface has friction.
   pure logical function present_in(interfaces, model)
     type(cohesive_interfaces_t), intent(in) :: interfaces
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
 
     present_in = allocated(interfaces%cohesive)
     if (present_in) present_in = any(model%setup%delaminations%friction > 0)
@@ -59,7 +59,7 @@ contains
 
   !> Frictional heat between two states, of the full plate, the same on every rank.
   real(wp) function heat_since(model, old, new) result(heat)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The interfaces in both states
     type(cohesive_interfaces_t), intent(in) :: old, new
 
@@ -75,7 +75,7 @@ contains
   subroutine visit_friction(interfaces, archive, model)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
     integer :: i
 

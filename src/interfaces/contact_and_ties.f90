@@ -10,7 +10,7 @@ module contact_and_ties
   use interface_ties, only: interface_ties_t, create_interface_ties, tie_stiffness, connection_exact, &
                             connection_penalty, connection_contact
   use surface_contact, only: contact_pressure, contact_residual, updated_decay, updated_multiplier
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: contact_and_ties_t, new_contact_and_ties
@@ -44,7 +44,7 @@ contains
 
   !> All interfaces with their starters.
   pure function new_contact_and_ties(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(contact_and_ties_t) :: self
     integer :: points
 
@@ -59,7 +59,7 @@ contains
   subroutine add_to_residual(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(contact_and_ties_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Residual at the owned points, (5, points)
@@ -87,7 +87,7 @@ contains
   !> Force of contact or a penalty tie on the jumps at a point. Pressures are those of the last residual.
   pure function force(self, model, i, jumps)
     type(contact_and_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
     !> The jumps
@@ -107,7 +107,7 @@ contains
   !> Updates the multipliers by the pressures found, which have converged once they are consistent with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(contact_and_ties_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
@@ -127,7 +127,7 @@ contains
   !> Sets the multipliers to the pressures of the last residual, and updates the decay by the gaps.
   subroutine update_multipliers(self, model, displacement, converged)
     type(contact_and_ties_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> True: the pressures agree with the gaps, the step has converged
@@ -157,7 +157,7 @@ contains
   !> far. The same on every rank.
   real(wp) function complementarity(self, model, displacement)
     class(contact_and_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     integer, allocatable :: points(:)
@@ -181,7 +181,7 @@ contains
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function work(self, model, displacement, change)
     class(contact_and_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns at the end of the step and their change, (5, points)
     real(wp), intent(in) :: displacement(:, :), change(:, :)
     integer :: i
@@ -196,7 +196,7 @@ contains
   !> errors of the predictor into large pressures.
   subroutine keep_contact_closed(self, model, guess)
     class(contact_and_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
     integer, allocatable :: points(:)
@@ -211,7 +211,7 @@ contains
   !> Stiffness that ties and contact add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, added)
     class(contact_and_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
     !> Stiffness added to the three jumps, (3, points); ghosts zero
@@ -252,7 +252,7 @@ contains
   subroutine visit(self, archive, model)
     class(contact_and_ties_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 
     call self%interface_ties_t%visit(archive, model)

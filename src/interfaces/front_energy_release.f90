@@ -8,7 +8,7 @@ module front_energy_release
   use benzeggagh_kenane, only: release_ratio
   use motions, only: motion_t
   use contact_and_ties, only: contact_and_ties_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use two_state_energy_release, only: two_state_rates
   implicit none
   private
@@ -30,7 +30,7 @@ contains
 
   !> Energy release rates along the front of a zone.
   function release_along_front(model, stiffness, contact, motion, zone, method) result(front)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
@@ -56,7 +56,7 @@ contains
 
   !> Rates by virtual crack closure, from forces and jumps averaged along the front.
   function vcct_rates(model, contact, motion, zone, segments, line) result(modes)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     !> Motion with its forces
@@ -89,7 +89,7 @@ contains
 
   !> Contributions of the nodes next to each segment to its crack closure integral. Collective.
   function moments_of(model, contact, motion, zone, segments, line) result(figures)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
     !> Motion with its forces
@@ -126,7 +126,7 @@ contains
 
   !> Force that holds the jump at a point: external less internal and inertia forces.
   pure function tie_force(model, motion, i) result(force)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Point below the interface, on the rank that owns it
@@ -140,7 +140,7 @@ contains
 
   !> Distance along a front over which forces and jumps are averaged.
   pure real(wp) function front_reach(model, zone) result(reach)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
 
@@ -150,7 +150,7 @@ contains
 
   !> Index of a node's point below an interface on the rank that owns it; 0: on another rank or none.
   pure integer function owned_lower_point(model, zone, node) result(i)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
     !> Node

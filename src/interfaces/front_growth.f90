@@ -6,7 +6,7 @@ module front_growth
   use front_energy_release, only: front_energy_release_t, release_along_front, front_reach
   use motions, only: motion_t
   use interface_states, only: interface_state_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: grow_fronts, find_release_ratio
@@ -19,7 +19,7 @@ contains
 
   !> Delaminates cells where the energy release rate exceeds its critical value.
   subroutine grow_fronts(model, stiffness, motion, state, fracture, grown)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Motion with its forces
@@ -49,7 +49,7 @@ contains
 
   !> Largest ratio of energy release rate to its critical value in a static analysis, where fronts do not grow.
   subroutine find_release_ratio(model, stiffness, motion, state)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Motion with its forces
@@ -70,7 +70,7 @@ contains
 
   !> Delaminates the cells ahead of the most loaded segments of one front.
   subroutine release_cells(model, state, zone, front, fracture, grown)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(inout) :: state
     !> Index of the zone
     integer, intent(in) :: zone
@@ -151,7 +151,7 @@ contains
 
   !> Releases the jumps of the new delamination; surfaces under pressure start in contact.
   subroutine open_faces(model, motion, state)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Motion with its forces
     type(motion_t), intent(in) :: motion
     type(interface_state_t), intent(inout) :: state

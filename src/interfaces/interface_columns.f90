@@ -4,7 +4,7 @@ module interface_columns
   use kinds, only: wp
   use interface_figures, only: figures_of, interface_figures_t
   use interface_states, only: interface_state_t
-  use models, only: model_t
+  use plate_loads, only: loaded_plate_t
   use motions, only: motion_t
   use projected_areas, only: projected_areas_of
   use result_tables, only: result_row_length
@@ -59,7 +59,7 @@ contains
 
   !> Delaminated area. Collective.
   function area_values(model, interfaces) result(values)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column, of the full plate
     real(wp) :: values(size(area_rows))
@@ -70,7 +70,7 @@ contains
   !> Ratio of energy release rate to its critical value, released energy, penetration and complementarity of surfaces.
   !> Collective.
   function release_values(model, interfaces, displacement) result(values)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -84,7 +84,7 @@ contains
 
   !> Zones whose border is reached, and projected areas. Collective.
   function border_values(model, interfaces) result(values)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column
     real(wp) :: values(size(border_rows))
@@ -94,7 +94,7 @@ contains
 
   !> Forces of the rigs. Collective.
   function rig_values(model, interfaces, motion, loads) result(values)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     type(motion_t), intent(in) :: motion
     !> Forces of pressure and lines at the owned points, (5, points)
@@ -107,7 +107,7 @@ contains
 
   !> Quantities of each interface, one interface after the other. Collective.
   function interface_values(model, interfaces) result(values)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> One value per column and interface
     real(wp) :: values(size(interface_rows)*size(model%mesh%zones))

@@ -9,7 +9,7 @@ module interface_fields
   use interface_figures, only: figures_of, interface_figures_t
   use interface_states, only: interface_state_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use motions, only: motion_t
   use joined_stacks, only: joined_stacks_of
   use onset_index, only: onset_of_elements
@@ -47,7 +47,7 @@ contains
 
   !> Writes the requested fields.
   subroutine write_interface_fields(model, stiffness, interfaces, motion, output, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
@@ -82,7 +82,7 @@ contains
 
   !> Writes the quantities of interfaces in history and summary, for pictures at the times of the fields.
   subroutine write_figures(model, interfaces, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
@@ -107,7 +107,7 @@ contains
 
   !> Writes the onset index of delamination.
   subroutine write_onset(model, stiffness, interfaces, motion, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
@@ -127,7 +127,7 @@ contains
 
   !> Jumps at the interface above each point's layer.
   pure function jumps(model, displacement)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Jumps of u, v and w, zero in the first layer, (3, points)
@@ -138,7 +138,7 @@ contains
 
   !> 1 in elements whose interface above has delaminated.
   function delaminated_above(model, interfaces) result(delaminated)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> 1 or 0, with a cohesive law between them, (1, elements)
     real(wp), allocatable :: delaminated(:, :)
@@ -168,7 +168,7 @@ contains
 
   !> 1 in elements whose interface on top was delaminated before the run, else 0.
   function starters_above(model) result(starters)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> (elements)
     integer, allocatable :: starters(:)
     type(delaminated_region_t) :: region
@@ -194,7 +194,7 @@ contains
 
   !> Contact pressure at the interface above each point's layer.
   pure function pressures(model, interfaces, displacement)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -208,7 +208,7 @@ contains
   !> Ratio of energy release rate to its critical value in the intact cells ahead of the fronts, zero elsewhere. At the
   !> border of a zone it is given for the last delaminated cell.
   function release_ahead(model, stiffness, contact, motion) result(ratio)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells

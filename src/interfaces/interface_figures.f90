@@ -5,7 +5,7 @@ module interface_figures
   use interface_states, only: interface_state_t
   use kinds, only: wp
   use mesh_parameters, only: symmetry_point
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: interface_figures_t, figures_of, stages_of
@@ -33,7 +33,7 @@ contains
 
   !> Results of all interfaces, in the order of the zones. Collective.
   function figures_of(model, interfaces) result(figures)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> (zones)
     type(interface_figures_t) :: figures(size(model%mesh%zones))
@@ -58,7 +58,7 @@ contains
 
   !> Stage of failure of each interface. Collective.
   function stages_of(model, interfaces) result(stages)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> (zones)
     integer :: stages(size(model%mesh%zones))
@@ -89,7 +89,7 @@ contains
   !> Largest -x, x, -y and y of the delamination in the modelled part: failed nodes of a cohesive law, entire cells
   !> where fronts release ties. Collective.
   function bounds_of(model, interfaces) result(bounds)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> (4, zones); `empty_bound` without delamination
     real(wp) :: bounds(4, size(model%mesh%zones))
@@ -116,7 +116,7 @@ contains
 
   !> Largest -x, x, -y and y of the delaminated cells of a zone.
   pure function cell_bounds(model, interfaces, zone) result(bounds)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> Index of the zone
     integer, intent(in) :: zone

@@ -8,7 +8,7 @@ module interface_flaws
   use field_mappings, only: area_field
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use models, only: model_t
+  use discretizations, only: discretization_t
   use roundings, only: rounding
   implicit none
   private
@@ -21,7 +21,7 @@ contains
   !> the cut are images of cells of the modelled part.
   pure subroutine weaken_beside(interfaces, model, zone, cracked, reach, part)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
     !> True for cells of the mesh in which the ply has cracked, on all ranks
@@ -49,7 +49,7 @@ contains
   !> Reduces the strengths of the undamaged points of an interface within a distance of a rectangle.
   pure subroutine weaken_around(interfaces, model, zone, x, y, reach, part)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
     !> Ends of the rectangle
@@ -118,7 +118,7 @@ contains
   subroutine visit_flaws(interfaces, archive, model)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 
     if (.not. allocated(interfaces%strength)) return

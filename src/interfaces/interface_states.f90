@@ -4,7 +4,7 @@ module interface_states
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: growth_equilibrium
-  use models, only: model_t
+  use plate_loads, only: loaded_plate_t
   use contact_and_ties, only: contact_and_ties_t, new_contact_and_ties
   use cohesive_interfaces, only: cohesive_interfaces_t, new_cohesive_interfaces
   use interface_flaws, only: visit_flaws
@@ -46,7 +46,7 @@ contains
 
   !> All interfaces with their starters.
   pure function new_interface_state(model) result(self)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(interface_state_t) :: self
 
     allocate (self%border_reached(size(model%mesh%zones)), source=.false.)
@@ -59,7 +59,7 @@ contains
   !> Adds the forces of ties and contact to a residual and sets that of tied jumps to zero.
   subroutine add_to_residual(self, model, displacement, residual)
     class(interface_state_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Residual at the owned points, (5, points)
@@ -73,7 +73,7 @@ contains
   !> Sets the multipliers of surfaces and frames to the contact pressures found.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(interface_state_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
@@ -96,7 +96,7 @@ contains
   !> Keeps closed contacts of surfaces and frames closed in the predictor.
   subroutine keep_contact_closed(self, model, guess)
     class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
 
@@ -107,7 +107,7 @@ contains
   !> Work of contact and penalty ties in a step, of this rank's points.
   pure real(wp) function contact_work(self, model, displacement, change) result(work)
     class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns at the end of the step and their change, (5, points)
     real(wp), intent(in) :: displacement(:, :), change(:, :)
 
@@ -118,7 +118,7 @@ contains
   !> Frictional heat since an earlier state, of the full plate, the same on every rank.
   real(wp) function friction_heat(self, model, old) result(heat)
     class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> The earlier state
     class(interface_state_t), intent(in) :: old
 
@@ -129,7 +129,7 @@ contains
   !> integrator.
   pure real(wp) function unreleased(self, model)
     class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     integer :: zone
 
     unreleased = 0
@@ -142,7 +142,7 @@ contains
   !> Stiffness that ties, contact and cohesive laws add to the diagonal of the operator.
   pure subroutine added_stiffness(self, model, diagonal, stiffness_factor, added)
     class(interface_state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Diagonal of the operator without it, (5, points)
     real(wp), intent(in) :: diagonal(:, :)
     !> Factor of internal forces in the operator
@@ -164,7 +164,7 @@ contains
   subroutine visit(self, archive, model)
     class(interface_state_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     integer, allocatable :: reached(:)
 
     call archive%item('release_ratio', self%release_ratio)

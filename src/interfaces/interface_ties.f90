@@ -4,7 +4,7 @@ module interface_ties
   use archives, only: archive_t
   use delamination_parameters, only: contact_none, law_cohesive, tie_penalty, unloading_glued
   use delaminated_regions, only: delaminated_region_t, create_region
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use text, only: to_text
   implicit none
   private
@@ -38,7 +38,7 @@ contains
 
   !> Ties of all interfaces with their starters.
   pure subroutine create_interface_ties(model, self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     class(interface_ties_t), intent(inout) :: self
     integer :: zone
 
@@ -58,7 +58,7 @@ contains
   !> Updates the free jumps: those at nodes around which all cells have delaminated.
   pure subroutine free_jumps(self, model)
     class(interface_ties_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer :: i, line(2)
 
     do i = 1, size(self%free)
@@ -72,7 +72,7 @@ contains
   !> Kind of connection at a point.
   pure integer function connection(self, model, i)
     class(interface_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
 
@@ -93,7 +93,7 @@ contains
 
   !> Stiffness of a penalty tie at a point.
   pure real(wp) function tie_stiffness(model, i) result(stiffness)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Point of this rank
     integer, intent(in) :: i
 
@@ -105,7 +105,7 @@ contains
   !> Owned points with contact of surfaces.
   pure function in_contact(self, model) result(points)
     class(interface_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Points of this rank, ascending
     integer, allocatable :: points(:)
     integer :: i
@@ -118,7 +118,7 @@ contains
   !> Sets the correction of tied jumps to zero.
   pure subroutine constrain_correction(self, model, correction)
     class(interface_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Correction of the unknowns, (5, points)
     real(wp), intent(inout) :: correction(:, :)
     integer :: i
@@ -132,7 +132,7 @@ contains
   !> Largest penetration of separated surfaces, the same on every rank.
   real(wp) function penetration(self, model, displacement)
     class(interface_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
 
@@ -150,7 +150,7 @@ contains
   !> Delaminated area of each zone of the full plate where fronts release ties.
   pure function area(self, model)
     class(interface_ties_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The area, (zones); zero for zones with a cohesive law
     real(wp) :: area(size(self%regions))
     integer :: zone, i, j
@@ -171,7 +171,7 @@ contains
   subroutine visit(self, archive, model)
     class(interface_ties_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer :: zone
 
     do zone = 1, size(self%regions)

@@ -2,7 +2,7 @@
 module joined_stacks
   use element_batches, only: first_element, lanes
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use strain_recovery, only: nodal_strains
   implicit none
   private
@@ -23,7 +23,7 @@ contains
   !> Stacks of a state. Layers are treated as tied in a cell if less than half of the area between them has delaminated.
   !> Collective; the same on every rank.
   function joined_stacks_of(model, stiffness, delaminated, displacement) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated fraction of the area above each element, (1, elements)
@@ -58,7 +58,7 @@ contains
 
   !> Shear forces, their derivatives and delaminated fractions of all elements of the mesh. Collective.
   function gathered(model, stiffness, delaminated, displacement) result(everywhere)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated fraction of the area above each element, (1, elements)
@@ -74,7 +74,7 @@ contains
     allocate (everywhere(7, model%mesh%elements()), source=0.0_wp)
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call nodal_strains(model%elements, b, model%setup%kinematics, motion, strains)
+      call nodal_strains(model%elements, b, model%setup%mesh%kinematics, motion, strains)
       do lane = 1, model%elements%lanes_used(b)
         i = first_element(b) + lane - 1
         associate (element => model%distribution%elements(i))

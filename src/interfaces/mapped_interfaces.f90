@@ -7,7 +7,7 @@ module mapped_interfaces
   use cohesive_points, only: damage_at_fraction
   use surface_friction, only: friction_traction, sliding_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: put_fractions, set_damage, set_slips
@@ -17,7 +17,7 @@ contains
   !> Replaces the damage by the dissipated fraction of the toughness.
   pure subroutine put_fractions(interfaces, model)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
 
     if (allocated(interfaces%cohesive)) interfaces%points%damage = interfaces%dissipated_fractions(model)
   end subroutine put_fractions
@@ -25,7 +25,7 @@ contains
   !> Replaces the dissipated fraction of the toughness by the damage.
   pure subroutine set_damage(interfaces, model)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer :: i
 
     if (.not. allocated(interfaces%cohesive)) return
@@ -43,7 +43,7 @@ contains
   !> and the elastic energy of forces above the limit would be spurious.
   pure subroutine set_slips(interfaces, model, displacement)
     type(cohesive_interfaces_t), intent(inout) :: interfaces
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     type(sliding_t) :: new

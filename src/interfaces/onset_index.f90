@@ -5,7 +5,7 @@ module onset_index
   use interlaminar_stresses, only: unit_stresses_t, unit_stresses_of
   use joined_stacks, only: joined_stacks_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_stacks, only: ply_stack_t
   implicit none
   private
@@ -35,7 +35,7 @@ contains
 
   !> Largest index of the interfaces within each element and on top of it, and the ply above that interface.
   pure function onset_of_elements(model, stacks) result(onset)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     !> Index and ply; both 0 without strengths, (2, elements)
@@ -61,7 +61,7 @@ contains
 
   !> Index of each interface in the cells of the mesh where it lies within one layer, 0 in the others.
   pure function onset_of_joined_cells(model, stacks) result(onset)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     !> Stress over strength, (cells of the mesh, zones)
@@ -88,7 +88,7 @@ contains
 
   !> Gathers the data for indices.
   pure function new_onset(model, stacks) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     type(onset_t) :: self
@@ -109,7 +109,7 @@ contains
   !> Indices of the interfaces below a range of plies of an element's stack.
   pure function indices(self, model, element, range)
     class(onset_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of the mesh
     integer, intent(in) :: element
     !> First and last ply

@@ -6,7 +6,7 @@ module projected_areas
   use interface_states, only: interface_state_t
   use kinds, only: wp
   use load_vectors, only: add_patch_weights
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   implicit none
   private
@@ -26,7 +26,7 @@ contains
   !> Areas of the full plate by all rules: sums of nodal areas times the largest fraction of all interfaces at the node.
   !> All points of a node belong to one rank, so that only the sums are collective.
   function projected_areas_of(model, interfaces) result(areas)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> In the order of the rules
     real(wp) :: areas(area_rules)
@@ -64,7 +64,7 @@ contains
 
   !> Delaminated area of each point by all rules. Collective.
   function areas_of_points(model, interfaces) result(areas)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> (rules, local points); at the border of a zone a point of the joined layers has its part
     real(wp) :: areas(area_rules, size(model%zone))
@@ -86,7 +86,7 @@ contains
 
   !> Largest part of delaminated cells at each point, of all zones in which fronts release ties. Collective.
   function areas_of_fronts(model, interfaces) result(areas)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> (local points)
     real(wp) :: areas(size(model%zone))

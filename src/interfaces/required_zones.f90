@@ -7,7 +7,7 @@ module required_zones
   use joined_stacks, only: joined_stacks_of
   use kinds, only: wp
   use layer_extents, only: cells_ahead, cells_at_once, onset_of_layers, thicknesses_ahead
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use onset_index, only: onset_of_joined_cells
   use roundings, only: rounding
   implicit none
@@ -20,7 +20,7 @@ contains
   !> interface are more compliant than one layer. Extents that grow get additional cells. Collective; the same on every
   !> rank.
   function required_extents(model, stiffness, interfaces, displacement) result(extents)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
@@ -48,7 +48,7 @@ contains
 
   !> Extents over the cells without layers that the onset index requires.
   function around_onset(model, stiffness, interfaces, displacement) result(extents)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
@@ -70,7 +70,7 @@ contains
   !> Extends a rectangle by adjacent cells whose index requires it. Distant cells with an index between a half and 1, as
   !> at a clamped edge, are not included.
   pure subroutine extend(model, centre, onset, extents)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Centre of the rectangle
     real(wp), intent(in) :: centre(2)
     !> Onset index of the cells without layers, (cells)
@@ -98,7 +98,7 @@ contains
 
   !> Full extents that include a cell.
   pure function extents_to(model, centre, cell) result(extents)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Centre of the rectangle
     real(wp), intent(in) :: centre(2)
     !> The cell
@@ -114,7 +114,7 @@ contains
 
   !> Centre of a layered rectangle.
   pure function centre_of(model, zone) result(centre)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Its index
     integer, intent(in) :: zone
     real(wp) :: centre(2)
@@ -124,7 +124,7 @@ contains
 
   !> Extents of the damaged points. Collective.
   function around_damage(model, interfaces) result(extents)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     !> Full extents along x and y, (2, zones)
     real(wp) :: extents(2, size(model%mesh%zones))
@@ -146,7 +146,7 @@ contains
 
   !> Extents with additional cells on each side; zero remains zero.
   pure function with_margin(model, extents, cells, least) result(wider)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Full extents along x and y, (2, zones)
     real(wp), intent(in) :: extents(:, :)
     !> Cells

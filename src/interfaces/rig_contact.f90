@@ -10,7 +10,7 @@ module rig_contact
   use exact_sums, only: exact_sum_t
   use rank_totals, only: totals_of
   use surface_contact, only: contact_pressure, contact_residual, updated_multiplier
-  use models, only: model_t
+  use plate_loads, only: loaded_plate_t
   use support_parameters, only: max_supports
   implicit none
   private
@@ -42,7 +42,7 @@ contains
   !> Initial state: the plate in contact with its frames without pressure, except for the reaction of clamps with a
   !> force. Slopes are those of contact, so that frames support it from the first step.
   pure function new_rig_contact(model) result(self)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(rig_contact_t) :: self
 
     if (.not. model%rig%unilateral) return
@@ -56,7 +56,7 @@ contains
 
   !> Owned points on unilateral frames.
   pure function on_frame(model) result(points)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Points of this rank, ascending
     integer, allocatable :: points(:)
     integer :: i
@@ -68,7 +68,7 @@ contains
   pure subroutine add_to_residual(self, model, displacement, residual)
     !> The state; receives pressures and slopes
     class(rig_contact_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Residual at the owned points, (5, points)
@@ -90,7 +90,7 @@ contains
   !> Adds the forces of springs and of clamps with a force to internal forces, and their stored energy.
   pure subroutine add_springs(self, model, displacement, force, energy)
     class(rig_contact_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Internal forces at the owned points, (5, points)
@@ -111,7 +111,7 @@ contains
   !> Sets the multipliers to the pressures found; they have converged once they agree with the gaps.
   subroutine update_contact(self, model, displacement, tolerance, updates, converged)
     class(rig_contact_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Tolerance of complementarity
@@ -139,7 +139,7 @@ contains
   !> Work of the pressure in a step, of this rank's points.
   pure real(wp) function work(self, model, change)
     class(rig_contact_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Change of the unknowns, (5, points)
     real(wp), intent(in) :: change(:, :)
 
@@ -153,7 +153,7 @@ contains
   !> Keeps closed contacts closed in the predictor, and open ones from penetrating.
   subroutine keep_contact_closed(self, model, guess)
     class(rig_contact_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Predictor of the unknowns at its end, (5, points)
     real(wp), intent(inout) :: guess(:, :)
     integer, allocatable :: points(:)
@@ -167,7 +167,7 @@ contains
   !> Adds the stiffness of frames and clamps to that of the diagonal.
   pure subroutine add_stiffness(self, model, stiffness_factor, added)
     class(rig_contact_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Factor of internal forces in the operator
     real(wp), intent(in) :: stiffness_factor
     !> Stiffness added to u, v and w, (3, points); ghosts zero
@@ -189,7 +189,7 @@ contains
   !> constrained w, pressure on its frame, and springs of its clamps. The same on every rank.
   function reactions(self, model, displacement, internal, inertia, loads)
     class(rig_contact_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Unknowns, internal forces and inertia forces at the owned points, (5, points)
     real(wp), intent(in) :: displacement(:, :), internal(:, :), inertia(:, :)
     !> Forces of pressure and lines at the owned points, (5, points)
@@ -230,7 +230,7 @@ contains
   subroutine visit(self, archive, model)
     class(rig_contact_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 
     if (.not. model%rig%unilateral) return

@@ -9,7 +9,7 @@ module tie_release
   use kinds, only: wp
   use archives, only: archive_t
   use delamination_parameters, only: contact_none
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: tie_release_t, new_tie_release
@@ -39,7 +39,7 @@ contains
 
   !> No tie has been released.
   pure function new_tie_release(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(tie_release_t) :: self
     !> Number of elements that a shear wave crosses while the force of a released tie decreases to zero. With 10 the
     !> energy released is the same within a few per cent for all shorter steps. With 5 and 20 the force history changes
@@ -68,7 +68,7 @@ contains
   !> carries the normal force at once, so that only the shear forces are ramped down.
   pure subroutine release(self, model, free_before, free, forces)
     class(tie_release_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
     !> Forces that held the jumps, (3, local points)
@@ -89,7 +89,7 @@ contains
   function first_opening(self, model, free_before, free, opening) result(energy)
     !> The ties at the end of the step
     class(tie_release_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> True where jumps were free and where they are now, (local points)
     logical, intent(in) :: free_before(:), free(:)
     !> Jumps, (5, points)
@@ -112,7 +112,7 @@ contains
   !> Reduces the forces over a step.
   pure subroutine ramp_down(self, model, step)
     class(tie_release_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Time step
     real(wp), intent(in) :: step
     integer :: i
@@ -135,7 +135,7 @@ contains
   !> Adds the forces to a residual.
   pure subroutine add_to_residual(self, model, residual)
     class(tie_release_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Residual at the owned points, (5, points)
     real(wp), intent(inout) :: residual(:, :)
     integer :: i
@@ -152,7 +152,7 @@ contains
   subroutine record(self, model, old, change, taken)
     !> The ties at the end of the step
     class(tie_release_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The ties at its start
     type(tie_release_t), intent(in) :: old
     !> Change of the unknowns, (5, points)
@@ -183,7 +183,7 @@ contains
   subroutine visit(self, archive, model)
     class(tie_release_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp), allocatable :: fields(:, :)
 
     if (.not. model%map%layered) return

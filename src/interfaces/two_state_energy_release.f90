@@ -18,7 +18,7 @@ module two_state_energy_release
   use delamination_fronts, only: front_segment_t
   use virtual_crack_closure, only: two_state_release, converted_strains, segment_mean
   use motions, only: motion_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: two_state_rates
@@ -27,7 +27,7 @@ contains
 
   !> Rates of the segments of a front.
   function two_state_rates(model, section_stiffness, motion, zone, segments) result(modes)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     type(motion_t), intent(in) :: motion
@@ -51,7 +51,7 @@ contains
 
   !> Energy release rates of the segments from the states at their nodes.
   function rates_of_states(model, segments, found, stiffness) result(rates)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(front_segment_t), intent(in) :: segments(:)
     !> Extrapolated strains, (8, 3 nodes, 2 layers, 2 sides, segments)
     real(wp), intent(in) :: found(:, :, :, :, :)
@@ -104,7 +104,7 @@ contains
   !> Strains without the components that vanish on a line of symmetry, as their mean from both sides does on the full
   !> plate.
   pure function symmetric(model, node, strains)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Node
     integer, intent(in) :: node
     !> Strains at the node
@@ -150,7 +150,7 @@ contains
   !> Elements above and below the interface on the delaminated and the intact side of every segment, as numbered on this
   !> rank; 0: on another rank.
   pure function front_elements(model, zone, segments) result(elements)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Index of the zone
     integer, intent(in) :: zone
     type(front_segment_t), intent(in) :: segments(:)
@@ -173,7 +173,7 @@ contains
   !> Strains of the elements along a front at the three nodes of their segments, and their stiffness; zero for elements
   !> of other ranks. Every batch is computed once.
   subroutine front_states(model, section_stiffness, field, segments, elements, strains, stiffness)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: section_stiffness(:, :, :)
     !> Motion of every layer, (5, points)
@@ -191,7 +191,7 @@ contains
     batches = merge(batch_of(elements), 0, elements > 0)
     do e = 1, size(elements)
       if (batches(e) == 0 .or. any(batches(:e - 1) == batches(e))) cycle
-      call nodal_strains(model%elements, batches(e), model%setup%kinematics, field, at_nodes)
+      call nodal_strains(model%elements, batches(e), model%setup%mesh%kinematics, field, at_nodes)
       do same = e, size(elements)
         if (batches(same) /= batches(e)) cycle
         s = 1 + (same - 1)/4

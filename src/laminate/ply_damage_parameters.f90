@@ -27,6 +27,8 @@ module ply_damage_parameters
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
+    !> True: plies can fail
+    logical :: is_present = .false.
     !> Divisor of the elastic constants affected by a mode of failure
     real(wp) :: d = 100
     !> Smallest value of an elastic constant, as a fraction of the undamaged one

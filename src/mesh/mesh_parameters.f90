@@ -1,8 +1,9 @@
 !> Parameters of plate, supports and mesh in the deck.
 module mesh_parameters
+  use gauges, only: gauge_t
   use kinds, only: wp
   use mathematical_constants, only: pi
-  use plate_options, only: shear_assumed, mass_consistent
+  use plate_options, only: kinematics_von_karman, mass_consistent, shear_assumed
   use roundings, only: rounding
   implicit none
   private
@@ -37,6 +38,8 @@ module mesh_parameters
     integer :: symmetry = symmetry_none
     !> Symmetry of the case if the full plate is modelled and may fail; symmetry_none: none
     integer :: kept = symmetry_none
+    !> Strain gauges; unallocated: none
+    type(gauge_t), allocatable :: gauges(:)
   end type plate_t
 
   !> The rectangle of elements.
@@ -58,6 +61,8 @@ module mesh_parameters
     integer :: shear = shear_assumed
     !> Mass matrix, one of `plate_options`
     integer :: mass = mass_consistent
+    !> Strains of the element, kinematics_von_karman or kinematics_linear
+    integer :: kinematics = kinematics_von_karman
   end type mesh_t
 contains
 

@@ -22,8 +22,8 @@ contains
     !> The laminate's section
     type(section_t), intent(in) :: section
 
-    idle = setup%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
-             .or. setup%has_thermal)
+    idle = setup%mesh%kinematics == kinematics_linear .and. zones == 0 .and. .not. (setup%has_variable_sections() &
+             .or. setup%thermal%is_present)
     idle = idle .and. is_flat(setup%plate) .and. setup%zones%is_empty()
     if (allocated(setup%stringers)) idle = idle .and. size(setup%stringers) == 0
     if (allocated(setup%lines)) idle = idle .and. all(setup%lines%component > 2)

@@ -1,10 +1,10 @@
 !> A load case: initial state, supports, loads and impactor, and the kind of analysis with its load steps.
 module load_cases
-  use impact_parameters, only: impactor_parameters_t, indentation_law_t
+  use impact_parameters, only: impactor_parameters_t
   use initial_state_parameters, only: initial_state_t
   use kinds, only: wp
   use line_loads, only: line_load_t
-  use load_step_parameters, only: load_stepping_t
+  use loading_parameters, only: loading_t
   use pressure_loads, only: pressure_t
   use smooth_starts, only: smooth_ramp, smooth_step
   use support_parameters, only: support_t
@@ -12,33 +12,30 @@ module load_cases
   private
   public :: load_case_t
 
-  !> Kinds of analysis: motion in time, or load steps, each an equilibrium without inertia.
-  integer, parameter, public :: analysis_in_time = 1, analysis_by_load_steps = 2
-
-  !> A load case. Other modules call its procedures instead of comparing the kind of analysis.
-  type :: load_case_t
-    !> analysis_in_time or analysis_by_load_steps
-    integer :: analysis = analysis_in_time
-    !> Rigs under the plate; unallocated: none
-    type(support_t), allocatable :: supports(:)
-    !> True for the loads of the deck
-    logical :: has_impactor = .false., has_indentation = .false., has_pressure = .false., has_thermal = .false.
-    !> Impactor
-    type(impactor_parameters_t) :: impactor
-    !> Indentation law
-    type(indentation_law_t) :: indentation
-    !> Pressure
-    type(pressure_t) :: pressure
+  !> A uniform change of temperature.
+  type :: thermal_t
+    !> True: residual stresses of the change are modelled
+    logical :: is_present = .false.
     !> Temperature minus the stress-free temperature of the laminate
     real(wp) :: temperature_change = 0
+  end type thermal_t
+
+  !> A load case.
+  type :: load_case_t
+    !> Rigs under the plate; unallocated: none
+    type(support_t), allocatable :: supports(:)
+    !> Impactor
+    type(impactor_parameters_t) :: impactor
+    !> Pressure
+    type(pressure_t) :: pressure
+    !> Change of temperature
+    type(thermal_t) :: thermal
     !> Lines across the plate; unallocated: none
     type(line_load_t), allocatable :: lines(:)
-    !> Load steps; not used in time
-    type(load_stepping_t) :: static
+    !> Growth of the loads
+    type(loading_t) :: loading
     !> Initial state
     type(initial_state_t) :: initial
-    !> Start of the loads of lines, and duration of their ramps; not used in load steps
-    real(wp) :: load_start = 0, ramp_time = 1
   contains
     procedure :: is_static
     procedure :: has_inertia
@@ -59,7 +56,7 @@ contains
   elemental logical function is_static(self)
     class(load_case_t), intent(in) :: self
 
-    is_static = self%analysis == analysis_by_load_steps
+    is_static = self%loading%by_steps
   end function is_static
 
   !> True: inertia forces act. Without them rigid-body motions must be constrained, and a softening plate has an
@@ -67,21 +64,21 @@ contains
   elemental logical function has_inertia(self)
     class(load_case_t), intent(in) :: self
 
-    has_inertia = self%analysis == analysis_in_time
+    has_inertia = .not. self%loading%by_steps
   end function has_inertia
 
   !> True: an impactor moves freely or with a prescribed travel in time.
   elemental logical function moves_impactor(self)
     class(load_case_t), intent(in) :: self
 
-    moves_impactor = self%has_impactor .and. self%has_inertia()
+    moves_impactor = self%impactor%is_present .and. self%has_inertia()
   end function moves_impactor
 
   !> True: an impactor is pressed into the plate in load steps.
   elemental logical function presses_impactor(self)
     class(load_case_t), intent(in) :: self
 
-    presses_impactor = self%has_impactor .and. self%is_static()
+    presses_impactor = self%impactor%is_present .and. self%is_static()
   end function presses_impactor
 
   !> True: an impactor of known mass and contact stiffness has an initial velocity.
@@ -89,7 +86,7 @@ contains
     class(load_case_t), intent(in) :: self
 
     is_impact = self%moves_impactor() .and. self%impactor%mass > 0 .and. self%impactor%velocity > 0 .and. &
-                self%indentation%k > 0
+                self%impactor%indentation%k > 0
   end function is_impact
 
   !> Name of the quantity that increases from step to step.
@@ -126,11 +123,12 @@ contains
 
     load_level = 1
     if (self%is_static()) load_level = time
-    if (self%is_static() .or. self%has_thermal .or. self%initial%is_inherited) return
-    if (self%has_impactor .and. .not. self%impactor%travel > 0) return
+    if (self%is_static() .or. self%thermal%is_present .or. self%initial%is_inherited) return
+    if (self%impactor%is_present .and. .not. self%impactor%travel > 0) return
     level = -1
-    if (self%has_impactor) level = smooth_ramp(time/self%ramp_time, self%impactor%rise/self%ramp_time, 0)
-    if (self%has_pressure) level = max(level, self%pressure%amplitude(time))
+    if (self%impactor%is_present) &
+      level = smooth_ramp(time/self%loading%ramp_time, self%impactor%rise/self%loading%ramp_time, 0)
+    if (self%pressure%is_present) level = max(level, self%pressure%amplitude(time))
     if (allocated(self%lines)) then
       do i = 1, size(self%lines)
         if (abs(self%lines(i)%value) > 0) &
@@ -146,7 +144,7 @@ contains
     !> The time
     real(wp), intent(in) :: time
 
-    load_factor = max(0.0_wp, time - self%load_start)/self%ramp_time
+    load_factor = max(0.0_wp, time - self%loading%start)/self%loading%ramp_time
   end function load_factor_at
 
   !> Factor at a time of the offsets between initial and prescribed displacements of supports and lines: it decreases
@@ -157,6 +155,6 @@ contains
     real(wp), intent(in) :: time
 
     left = 1
-    if (self%load_start > 0) left = 1 - smooth_step(time/self%load_start, 0)
+    if (self%loading%start > 0) left = 1 - smooth_step(time/self%loading%start, 0)
   end function offset_left
 end module load_cases

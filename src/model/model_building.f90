@@ -154,11 +154,11 @@ contains
       if (allocated(error)) return
       if (.not. is_flat(self%setup%plate)) call build_shape(self, mesh%node_coordinates(:, mesh%point_node( &
                                                                                          partition%points)))
-      if (self%setup%has_thermal) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
+      if (self%setup%thermal%is_present) allocate (self%free(lanes, 7, self%elements%batches), source=0.0_wp)
       do element = 1, size(partition%elements)
         associate (stack => self%stacks(self%stack(element)), section => sections(self%stack(element)))
           call self%elements%set_section(element, section%stiffness, section%mass)
-          if (self%setup%has_thermal) self%free(lane_of(element), :, batch_of(element)) = &
+          if (self%setup%thermal%is_present) self%free(lane_of(element), :, batch_of(element)) = &
             free_resultants(stack%plies, stack%plies%elasticity)
         end associate
       end do
@@ -184,9 +184,9 @@ contains
                                    reshape([(([x(i), y(j)], i=1, size(x)), j=1, size(y))], [2, size(x)*size(y)]), &
                                    laminates, laminate_of)
     end associate
-    if (.not. setup%has_thermal) return
+    if (.not. setup%thermal%is_present) return
     do i = 1, size(laminates)
-      call laminates(i)%set_thermal_strains(setup%materials, setup%temperature_change)
+      call laminates(i)%set_thermal_strains(setup%materials, setup%thermal%temperature_change)
     end do
   end subroutine find_laminates
 

@@ -57,7 +57,7 @@ contains
     call self%patch%spread(weights, 0.0_wp)
     self%patch%area = self%setup%mesh%patch**2
     if (self%setup%impactor%spreads) call build_nose(self)
-    if (self%setup%has_pressure) call build_pressure(self)
+    if (self%setup%pressure%is_present) call build_pressure(self)
     if (allocated(self%lumped)) then
       allocate (mass(3, self%borders%columns), source=0.0_wp)
       call add_lumped_mass(self%elements, self%elements%mass, beam_mass(self%elements), mass)

@@ -2,56 +2,24 @@
 !> requires a new model.
 module models
   use kinds, only: wp
-  use mathematical_constants, only: pi
   use bending_forces, only: add_bending_force, add_bending_inertia
-  use cohesive_laws, only: cohesive_law_t
   use contact_areas, only: contact_area_t
   use contact_patches, only: contact_patch_t
-  use surface_contact, only: contact_law_t
   use inertia_forces, only: add_inertia_force
   use internal_forces, only: add_internal_force
   use plate_loads, only: loaded_plate_t
-  use ply_stacks, only: ply_stack_t
   use rig_models, only: hold_openings
   use section_laws, only: section_law_t
-  use setups, only: setup_t
-  use stacking, only: section_t
   implicit none
   private
   public :: model_t
 
-  !> Fraction of the stiffness of the plate's lowest bending wave that is negligible in an operator: with exact
-  !> residuals, the corrections of elastic modes are then exact to a thousandth.
-  real(wp), parameter :: negligible_share = 1.0e-3_wp
-
   !> Model on this rank's part of the mesh: plate, laws and loads, which are constant in a run. It has many components
-  !> because plies, interfaces and the nose each have theirs.
+  !> because it has those of the loaded plate. A module that needs a part of it takes that part: discretization_t,
+  !> composite_plate_t or loaded_plate_t.
   type, extends(loaded_plate_t) :: model_t
-    !> The setup of the deck
-    type(setup_t) :: setup
-    !> Number of plies, those of doublers included
-    integer :: plies = 0
-    !> The different laminates of the plate, the skin's first
-    type(ply_stack_t), allocatable :: laminates(:)
-    !> The different stacks of elements, one for each layer of the mesh
-    type(ply_stack_t), allocatable :: stacks(:)
-    !> Stack of each of this rank's elements, (elements)
-    integer, allocatable :: stack(:)
-    !> Section of the full laminate, and the same with the bending moduli of plies with E1c
-    type(section_t) :: section, bending_section
-    !> Thickness of the laminate
-    real(wp) :: thickness = 0
-    !> Resultants of the thermal strains of undamaged plies, and their energy per area, (lanes, 7, batches); allocated
-    !> only if they are modelled
-    real(wp), allocatable :: free(:, :, :)
     !> Nodal I0, I1, I2 of a lumped mass, (3, local points); allocated only if requested
     real(wp), allocatable :: lumped(:, :)
-    !> Area of each point of a lower layer, (local points)
-    real(wp), allocatable :: contact_area(:)
-    !> Contact of each zone's surfaces
-    type(contact_law_t), allocatable :: contact_laws(:)
-    !> Cohesive law of each zone; not used where fronts release ties
-    type(cohesive_law_t), allocatable :: cohesive_laws(:)
     !> True if layers, frames or clamps add stiffness to the operator's diagonal
     logical :: has_point_stiffness = .false.
     !> The deck's patch under the impactor; the state has the present one
@@ -64,7 +32,6 @@ module models
     procedure, private :: add_inertia
     procedure :: inertia
     procedure :: held_unknowns
-    procedure :: negligible_stiffness
   end type model_t
 
 contains
@@ -78,16 +45,6 @@ contains
     held = self%fixed
     if (allocated(self%setup%supports)) call hold_openings(self%mesh, self%setup%plate, self%setup%supports, held)
   end function held_unknowns
-
-  !> Stiffness per area that is negligible in an operator but keeps it from being singular (doc/theory/newton.md,
-  !> assumptions): a small fraction of that of the plate's lowest bending wave, D (pi/L)^4 with the smaller bending
-  !> stiffness D and the longer side L.
-  pure real(wp) function negligible_stiffness(self) result(stiffness)
-    class(model_t), intent(in) :: self
-
-    stiffness = negligible_share*min(self%section%stiffness(13), self%section%stiffness(16)) &
-                *(pi/maxval(self%setup%plate%length))**4
-  end function negligible_stiffness
 
   !> Internal forces at the owned points and strain energy of this rank's elements.
   subroutine internal(self, stiffness, displacement, force, energy, law, free)
@@ -138,12 +95,13 @@ contains
     real(wp), contiguous, intent(in), optional :: free(:, :, :)
 
     if (self%map%layered) then
-      call add_internal_force(self%elements, stiffness, self%setup%kinematics, self%motion_of(displacement), field, &
-                              energy, law, free)
+      call add_internal_force(self%elements, stiffness, self%setup%mesh%kinematics, self%motion_of(displacement), &
+                              field, energy, law, free)
     else if (self%membrane_idle) then
       call add_bending_force(self%elements, stiffness, displacement, field, energy)
     else
-      call add_internal_force(self%elements, stiffness, self%setup%kinematics, displacement, field, energy, law, free)
+      call add_internal_force(self%elements, stiffness, self%setup%mesh%kinematics, displacement, field, energy, law, &
+                              free)
     end if
   end subroutine add_elements
 

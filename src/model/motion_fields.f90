@@ -3,7 +3,7 @@ module motion_fields
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
-  use models, only: model_t
+  use discretizations, only: discretization_t
   use motions, only: motion_t
   use output_parameters, only: output_t, field_displacement, field_rotation, field_velocity
   use result_tables, only: result_row_length
@@ -25,7 +25,7 @@ contains
 
   !> Writes the requested fields.
   subroutine write_motion_fields(model, motion, output, fields, error)
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     type(motion_t), intent(in) :: motion
     !> Requested fields
     type(output_t), intent(in) :: output

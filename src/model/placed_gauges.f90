@@ -6,7 +6,7 @@ module placed_gauges
   use gauges, only: face_back, face_front, gauge_t
   use kinds, only: wp
   use mathematical_constants, only: degree
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use roundings, only: rounding
@@ -25,7 +25,7 @@ contains
 
   !> Strains of all gauges, the same on every rank. Collective.
   function gauge_strains(model, displacement) result(strains)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> One per gauge
@@ -35,12 +35,12 @@ contains
     integer :: i
 
     allocate (strains(0))
-    if (.not. allocated(model%setup%gauges)) return
-    if (size(model%setup%gauges) == 0) return
-    allocate (sums(size(model%setup%gauges)))
+    if (.not. allocated(model%setup%plate%gauges)) return
+    if (size(model%setup%plate%gauges) == 0) return
+    allocate (sums(size(model%setup%plate%gauges)))
     motion = model%motion_of(displacement)
     do i = 1, size(sums)
-      call add_strain(model, model%setup%gauges(i), motion, sums(i))
+      call add_strain(model, model%setup%plate%gauges(i), motion, sums(i))
     end do
     strains = totals_of(model%communicator, sums)
   end function gauge_strains
@@ -75,7 +75,7 @@ contains
   !> Adds the strain of a gauge: that of its cell, or the mean over the cells that meet there. Only cells of this rank
   !> contribute.
   subroutine add_strain(model, gauge, motion, total)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -105,7 +105,7 @@ contains
 
   !> Strain of a surface in an element.
   function surface_strain(model, gauge, motion, element, place) result(strain)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The gauge, on one of the surfaces
     type(gauge_t), intent(in) :: gauge
     !> Motion of the layers, (5, points)
@@ -118,7 +118,7 @@ contains
     real(wp) :: strain(3)
     real(wp) :: all(lanes, 9, 8), shape(4), mean(6), z
 
-    call nodal_strains(model%elements, batch_of(element), model%setup%kinematics, motion, all)
+    call nodal_strains(model%elements, batch_of(element), model%setup%mesh%kinematics, motion, all)
     shape = [(1 - place(1))*(1 - place(2)), place(1)*(1 - place(2)), (1 - place(1))*place(2), product(place)]
     mean = matmul(shape, all(lane_of(element), corners, :6))
     associate (plies => model%stacks(model%stack(element))%plies)
@@ -129,7 +129,7 @@ contains
 
   !> Position of a gauge or its image in the modelled part, and its direction there.
   pure subroutine find_place(model, gauge, at, angle)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(gauge_t), intent(in) :: gauge
     !> The point
     real(wp), intent(out) :: at(2)

@@ -5,7 +5,7 @@ module placed_stringers
   use kinds, only: wp
   use line_loads, only: along_x, line_load_t
   use mesh_parameters, only: curvatures, initial_deflection
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use placed_lines, only: relative_stiffness
   use roundings, only: rounding
   use stringers, only: face_front, is_covered, stringer_t
@@ -22,7 +22,7 @@ contains
   !> symmetry counts half in the modelled part; at an edge of the plate its only cell has all of it.
   subroutine place_stringers(model)
     !> The model, with its elements; receives their beams
-    type(model_t), intent(inout) :: model
+    class(composite_plate_t), intent(inout) :: model
     type(edge_beam_t), allocatable :: beams(:), found(:)
     integer :: element, total, pass, batch
 
@@ -52,7 +52,7 @@ contains
   !> stringer's reaction acts on the springs of one node, whose fraction of the line is at least a sixth of the shortest
   !> cell: these are stiff against the stringer over the length of the plate.
   pure real(wp) function stiffness_on_line(model, load) result(stiffness)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(line_load_t), intent(in) :: load
     integer :: i, along
 
@@ -94,7 +94,7 @@ contains
 
   !> Beams on the edges of an element, in the order of the deck.
   subroutine find_beams(model, element, beams)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Position among this rank's elements
     integer, intent(in) :: element
     type(edge_beam_t), allocatable, intent(out) :: beams(:)
@@ -131,7 +131,7 @@ contains
 
   !> A beam on one edge of an element.
   function beam_of(model, element, stringer, side, sides, share) result(beam)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Position among this rank's elements
     integer, intent(in) :: element
     type(stringer_t), intent(in) :: stringer
@@ -161,7 +161,7 @@ contains
 
   !> Cells of the full plate beside an edge.
   pure integer function cells_beside(model, cell, direction, side) result(cells)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Column or row of a cell, direction across the edge: 1 for x, 2 for y
     integer, intent(in) :: cell, direction
     !> Side of the cell on which the edge lies, -1 or 1

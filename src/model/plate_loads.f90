@@ -1,6 +1,6 @@
 !> Loads and supports of the plate at its points: pressure, lines, rigs, constant in a run.
 module plate_loads
-  use discretizations, only: discretization_t
+  use composite_plates, only: composite_plate_t
   use surface_contact, only: contact_law_t
   use kinds, only: wp
   use placed_lines, only: placed_line_t
@@ -9,8 +9,8 @@ module plate_loads
   private
   public :: loaded_plate_t
 
-  !> A discretization with its supports and loads. It has many components because it has those of the discretization.
-  type, extends(discretization_t) :: loaded_plate_t
+  !> A plate with its supports and loads. It has many components because it has those of the plate.
+  type, extends(composite_plate_t) :: loaded_plate_t
     !> Nodal forces of the deck's pressure, (5, local points); ghosts zero. Allocated only with a pressure
     real(wp), allocatable :: pressure(:, :)
     !> Lines; empty: none

@@ -12,6 +12,8 @@ module pressure_loads
 
   !> Pressure on the struck face.
   type :: pressure_t
+    !> True: the deck has a pressure
+    logical :: is_present = .false.
     !> Force per area, positive along z
     real(wp) :: value = 0
     !> history_step or history_ramp

@@ -4,7 +4,7 @@ module section_stiffnesses
   use kinds, only: wp
   use archives, only: archive_t
   use element_batches, only: batch_of, lane_of
-  use models, only: model_t
+  use discretizations, only: discretization_t
   implicit none
   private
   public :: visit_stiffness
@@ -16,7 +16,7 @@ contains
     class(archive_t), intent(inout) :: archive
     !> Name of the item
     character(len=*), intent(in) :: name
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     !> Section stiffness of this rank's elements, (lanes, 21, batches)
     real(wp), intent(inout) :: stiffness(:, :, :)
     real(wp) :: values(21, model%elements%elements)

@@ -2,9 +2,7 @@
 module setups
   use hertz_contact, only: relative_radius
   use kinds, only: wp
-  use plate_options, only: kinematics_von_karman
   use mesh_parameters, only: plate_t, mesh_t, curvatures
-  use gauges, only: gauge_t
   use stringers, only: stringer_t
   use load_cases, only: load_case_t
   use material_parameters, only: material_t, modulus_differs
@@ -16,11 +14,8 @@ module setups
   private
   public :: setup_t
 
-  !> A load case and its plate: geometry, mesh, laminate and damage. It has many components because every group of the
-  !> deck on the plate or its loads has one.
+  !> A load case and its plate: geometry, mesh, laminate and damage.
   type, extends(load_case_t) :: setup_t
-    !> kinematics_von_karman or kinematics_linear
-    integer :: kinematics = kinematics_von_karman
     !> Plate
     type(plate_t) :: plate
     !> Mesh and element
@@ -33,10 +28,6 @@ module setups
     type(ply_zones_t) :: zones
     !> Stringers; unallocated: none
     type(stringer_t), allocatable :: stringers(:)
-    !> Strain gauges; unallocated: none
-    type(gauge_t), allocatable :: gauges(:)
-    !> True: plies can fail
-    logical :: has_ply_damage = .false.
     !> Damage of the plies
     type(ply_damage_t) :: ply_damage
     !> Interfaces that may delaminate, from the struck face downwards; unallocated: none
@@ -104,7 +95,7 @@ contains
     integer :: i
 
     has_crack_bands = .false.
-    if (.not. self%has_ply_damage) return
+    if (.not. self%ply_damage%is_present) return
     associate (used => self%used_materials())
       has_crack_bands = all([(all(self%materials(used(i))%toughness > 0), i=1, size(used))])
     end associate
@@ -135,14 +126,14 @@ contains
   pure logical function counts_rates(self)
     class(setup_t), intent(in) :: self
 
-    counts_rates = self%has_rates() .and. .not. self%is_static() .and. (self%is_impact() .or. self%has_pressure)
+    counts_rates = self%has_rates() .and. .not. self%is_static() .and. (self%is_impact() .or. self%pressure%is_present)
   end function counts_rates
 
   !> True: the sections of the elements depend on their state, by failure of plies or the sign of their stresses.
   pure logical function has_variable_sections(self)
     class(setup_t), intent(in) :: self
 
-    has_variable_sections = self%has_ply_damage .or. self%is_bimodular()
+    has_variable_sections = self%ply_damage%is_present .or. self%is_bimodular()
   end function has_variable_sections
 
   !> Radius of the sphere that touches a flat plate as the nose touches this one; 0: the nose has no radius.

@@ -3,7 +3,7 @@ module stringer_columns
   use edge_beams, only: axial_row, beam_strains, bending_row, twist_row
   use element_batches, only: lanes
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use reference_fields, only: gather
   use result_tables, only: result_row_length
   use stiffened_elements, only: strains_of_beam
@@ -26,7 +26,7 @@ contains
 
   !> Values of all stringers, the same on every rank. Collective.
   function stringer_values(model, displacement) result(values)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Those of the first, then those of the next
@@ -43,7 +43,7 @@ contains
 
   !> First stringer whose strain at the free edge exceeds its strength; 0: none. Collective.
   integer function weakest_stringer(model, displacement) result(weakest)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp), allocatable :: ranges(:, :)
@@ -59,7 +59,7 @@ contains
 
   !> Largest value of each column, and largest value with the other sign; at least 0. Collective.
   function ranges_of(model, displacement) result(ranges)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Unknowns, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (sign, column)
@@ -76,8 +76,8 @@ contains
         call gather(model%elements%points(:, :, b), motion, r)
         do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
           i = columns*(model%elements%beams(k)%stringer - 1)
-          call widen(ranges(:, i + 1:i + columns), resultants(model, k, strains_of_beam(model%elements, k, &
-                                                                                        model%setup%kinematics, r)))
+          call widen(ranges(:, i + 1:i + columns), &
+                     resultants(model, k, strains_of_beam(model%elements, k, model%setup%mesh%kinematics, r)))
         end do
       end do
     end if
@@ -88,7 +88,7 @@ contains
 
   !> Columns of a beam at its three points.
   pure function resultants(model, k, strains) result(values)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Number of the beam
     integer, intent(in) :: k
     !> Its strains

@@ -4,7 +4,7 @@ module stringer_fields
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use output_parameters, only: field_displacement, output_t
   use reference_fields, only: gather
   use result_tables, only: result_row_length
@@ -31,7 +31,7 @@ contains
 
   !> Writes them if there are stringers.
   subroutine write_stringer_fields(model, displacement, output, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Requested fields
@@ -52,7 +52,7 @@ contains
 
   !> The largest value in magnitude at each of this rank's elements.
   subroutine find_values(model, displacement, values)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> (column, element)
@@ -67,7 +67,7 @@ contains
       if (.not. model%elements%has_beams(b)) cycle
       call gather(model%elements%points(:, :, b), motion, r)
       do k = model%elements%first_beam(b), model%elements%first_beam(b + 1) - 1
-        found = resultants(model, k, strains_of_beam(model%elements, k, model%setup%kinematics, r))
+        found = resultants(model, k, strains_of_beam(model%elements, k, model%setup%mesh%kinematics, r))
         associate (value => values(:, first_element(b) + model%elements%beams(k)%lane - 1))
           do i = 1, 3
             where (abs(found(:, i)) > abs(value)) value = found(:, i)

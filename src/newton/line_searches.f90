@@ -6,7 +6,7 @@
 !> plate, so a search with a changing active set would end at each contact.
 module line_searches
   use kinds, only: wp
-  use models, only: model_t
+  use discretizations, only: discretization_t
   use solution_controls, only: newton_controls_t
   implicit none
   private
@@ -42,7 +42,7 @@ contains
   !> Starts a search along a correction. Collective.
   subroutine begin(self, model, start, direction, residual, smooth, contact_stiffness, negative_curvature)
     class(line_search_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     !> Displacement before the correction, and the correction, (5, points)
     real(wp), intent(in) :: start(:, :), direction(:, :)
     !> Residual at the owned points, and without contacts and ties, (5, points)
@@ -75,7 +75,7 @@ contains
   !> Accepts the fraction if the directional derivative is small enough, otherwise chooses another one. Collective.
   subroutine assess(self, model, smooth, ends)
     class(line_search_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
     !> Residual at this fraction, without contacts and ties, (5, points)
     real(wp), intent(in) :: smooth(:, :)
     !> True: the fraction is accepted

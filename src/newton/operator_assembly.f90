@@ -22,7 +22,7 @@ contains
   pure logical function is_positive_definite(model) result(positive)
     type(model_t), intent(in) :: model
 
-    positive = model%setup%has_inertia() .or. model%setup%kinematics == kinematics_linear
+    positive = model%setup%has_inertia() .or. model%setup%mesh%kinematics == kinematics_linear
     if (.not. model%setup%has_inertia() .and. model%map%layered) &
       positive = positive .and. .not. any(model%setup%delaminations%law == law_cohesive)
   end function is_positive_definite
@@ -38,7 +38,8 @@ contains
 
     separate = .not. (model%membrane_idle .or. model%map%layered .or. size(model%lines) > 0 .or. &
                       allocated(model%elements%initial_slopes) .or. allocated(model%elements%beams))
-    if (model%setup%kinematics == kinematics_von_karman) separate = separate .and. all(abs(displacement(3, :)) <= 0)
+    if (model%setup%mesh%kinematics == kinematics_von_karman) &
+      separate = separate .and. all(abs(displacement(3, :)) <= 0)
     separate = model%communicator%all(separate .and. uncoupled(stiffness, model%elements%mass))
   end function has_separate_membrane
 
@@ -69,10 +70,10 @@ contains
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
       if (allocated(model%free)) then
-        call tangent(model%elements, b, stiffness(:, :, b), model%setup%kinematics, motion, stiffness_factor, &
+        call tangent(model%elements, b, stiffness(:, :, b), model%setup%mesh%kinematics, motion, stiffness_factor, &
                      consistent_factor, matrices, model%free(:, :, b))
       else
-        call tangent(model%elements, b, stiffness(:, :, b), model%setup%kinematics, motion, stiffness_factor, &
+        call tangent(model%elements, b, stiffness(:, :, b), model%setup%mesh%kinematics, motion, stiffness_factor, &
                      consistent_factor, matrices)
       end if
       do column = 1, 45

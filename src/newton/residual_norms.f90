@@ -3,7 +3,7 @@
 module residual_norms
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use numberings, only: numbering_t
   use stepping_parameters, only: equilibrium_t
   use tangent_operators, only: tangent_operator_t
@@ -20,7 +20,7 @@ contains
   !> finite. The same on every rank.
   real(wp) function relative_residual(model, operator, equilibrium, residual, references, displacement, may_end, &
                                       largest) result(norm)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The operator. Round-off of products of its diagonal and the unknowns is a lower bound of the residual: shear
     !> forces of a thin plate are small differences of large numbers
     type(tangent_operator_t), intent(in) :: operator

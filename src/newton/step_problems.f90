@@ -252,7 +252,7 @@ contains
                         at%negative_curvature)
     else if (.not. corrected) then
       ! Divergence, or an operator that is not definite, as where all contacts open: a shorter step may succeed.
-      if ((problem%may_be_shortened .or. at%model%setup%has_impactor .or. at%new%iterations > 0) .and. &
+      if ((problem%may_be_shortened .or. at%model%setup%impactor%is_present .or. at%new%iterations > 0) .and. &
           error%code == exit_convergence) deallocate (error)
     end if
   end subroutine correct

@@ -152,7 +152,7 @@ contains
     self%factorizations = self%factorizations + 1
     self%response = 0
     self%compliance = 0
-    if (model%setup%has_impactor) call self%find_response(model, contact, error)
+    if (model%setup%impactor%is_present) call self%find_response(model, contact, error)
   end subroutine factorize
 
   !> Computes the unit-load solution of the impactor's force.

@@ -201,7 +201,7 @@ contains
 
     associate (model => self%model)
       allocate (columns(5, max(size(force, 2), model%borders%columns)), source=0.0_wp)
-      call add_tangent_force(model%elements, self%stiffness, model%setup%kinematics, &
+      call add_tangent_force(model%elements, self%stiffness, model%setup%mesh%kinematics, &
                              model%motion_of(self%displacement), model%motion_of(motion), columns, self%free, &
                              self%mean_change)
       call model%borders%add(columns)

@@ -4,7 +4,7 @@ module band_states
   use crack_bands, only: band_state_t, is_damaged
   use field_mappings, only: ply_field, ply_shear_field
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_damage_parameters, only: energy_modes, failure_modes, fibre_compression, fibre_tension, &
                                    matrix_compression, matrix_cracking, matrix_crushing, matrix_tension
   implicit none
@@ -44,7 +44,7 @@ contains
 
   !> Plies without damage.
   pure function new_band_states(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(band_states_t) :: self
     integer :: range(2, model%elements%elements), i, place, next
 
@@ -183,7 +183,7 @@ contains
   subroutine visit(self, archive, model)
     class(band_states_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer, parameter :: numbers = 3 + energy_modes
     real(wp), dimension(:, :), allocatable :: table, strains, closed, kinked, cracked
     integer :: element, entry, ply

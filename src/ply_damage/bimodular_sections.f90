@@ -5,7 +5,7 @@ module bimodular_sections
   use kinds, only: wp
   use mean_sections, only: mean_sections_t, new_mean_sections
   use mean_stiffnesses, only: change_values, mean_change, sub_ply_middle, mean_strains_at
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plies, only: elasticity_t, compressed, uniaxial_strain
   use ply_stacks, only: ply_stack_t
   use section_laws, only: section_law_t
@@ -38,7 +38,7 @@ contains
 
   !> Sections without strains.
   function new_bimodular_sections(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(bimodular_sections_t) :: self
 
     self%signs = new_mean_sections(model)
@@ -48,7 +48,7 @@ contains
     self%stacks = model%stacks
     self%stack = model%stack
     allocate (self%failed(model%elements%elements), source=.false.)
-    if (model%setup%has_ply_damage) allocate (self%constants(model%plies, model%elements%elements))
+    if (model%setup%ply_damage%is_present) allocate (self%constants(model%plies, model%elements%elements))
   end function new_bimodular_sections
 
   !> Takes over the reduced constants of the plies of an element.

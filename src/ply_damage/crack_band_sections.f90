@@ -16,7 +16,7 @@ module crack_band_sections
   use kinds, only: wp
   use loading_rates, only: loading_rates_t, new_loading_rates
   use mean_sections, only: mean_sections_t, new_mean_sections
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plies, only: ply_t, elasticity_t
   use ply_damage_parameters, only: energy_modes, matrix_tension, matrix_compression
   use ply_strains, only: invariant_measure, moment_values, moments_from, strain_moments_t
@@ -82,7 +82,7 @@ contains
 
   !> Plies without damage.
   function new_crack_band_sections(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(crack_band_sections_t) :: self
     integer :: i, ply
 
@@ -324,7 +324,7 @@ contains
   !> loaded remain until there is a trial. Collective.
   subroutine update_strengths(self, model)
     class(crack_band_sections_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
 
     if (.not. allocated(self%volumes)) return
     call self%volumes%update(model%communicator, self%states, self%plies, self%area, model%mesh%multiplicity)
@@ -368,7 +368,7 @@ contains
   subroutine visit(self, archive, model)
     class(crack_band_sections_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer :: element
 
     call self%states%visit(archive, model)

@@ -3,7 +3,7 @@ module criterion_strains
   use kinds, only: wp
   use element_batches, only: lanes, first_element
   use strain_recovery, only: mean_strains
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: mean_strains_of_elements
@@ -12,7 +12,7 @@ contains
 
   !> Mean strains of this rank's elements.
   function mean_strains_of_elements(model, displacement) result(strains)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Membrane exx, eyy, gxy; curvature kxx, kyy, kxy; transverse shear gxz, gyz of the plate, (8, elements)
@@ -24,7 +24,7 @@ contains
     allocate (strains(8, model%elements%elements))
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call mean_strains(model%elements, b, model%setup%kinematics, motion, means)
+      call mean_strains(model%elements, b, model%setup%mesh%kinematics, motion, means)
       do lane = 1, model%elements%lanes_used(b)
         strains(:, first_element(b) + lane - 1) = means(lane, :)
       end do

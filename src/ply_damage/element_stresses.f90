@@ -6,7 +6,7 @@ module element_stresses
   use criterion_strains, only: mean_strains_of_elements
   use ply_criteria, only: shear_force
   use ply_failures, only: ply_failure_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: element_strains, has_ply, stress_of_ply, stresses_of_ply
@@ -15,7 +15,7 @@ contains
 
   !> Mean strains and shear forces of every element, from which the stresses of its plies are computed.
   function element_strains(model, failures, displacement) result(strains)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
     !> Displacement, ghosts up to date, (5, points)
@@ -32,7 +32,7 @@ contains
 
   !> Stresses of a ply in its own axes, with its reduced stiffness.
   pure function stresses_of_ply(model, failures, strains, ply) result(stresses)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
     !> Result of element_strains
@@ -60,7 +60,7 @@ contains
 
   !> Stress of one ply of one element in its own axes and its mid-plane: s11, s22, s12, s13, s23.
   pure function stress_of_ply(model, failures, elasticity, strains, ply, element) result(stress)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
     !> Reduced elastic constants of the ply
@@ -81,7 +81,7 @@ contains
 
   !> A ply of an element with its permanent strain.
   pure function strained_ply(model, failures, number, element) result(ply)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: failures
     !> Number of the ply, and element of this rank that has it
@@ -96,7 +96,7 @@ contains
 
   !> Transverse shear stress of one ply of one element.
   pure function shear_of_ply(model, strains, ply, element) result(shear)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Result of element_strains
     real(wp), intent(in) :: strains(:, :)
     !> Ply of the laminate, and element of this rank with this ply
@@ -113,7 +113,7 @@ contains
 
   !> True if an element of this rank has a ply.
   pure logical function has_ply(model, ply, element)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate, and element
     integer, intent(in) :: ply, element
 

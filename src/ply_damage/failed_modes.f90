@@ -7,7 +7,7 @@ module failed_modes
   use plies, only: elasticity_t
   use ply_damage_parameters, only: failure_modes
   use degradation, only: degraded
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use criterion_strains, only: mean_strains_of_elements
   use ply_criteria, only: failure_measures
   implicit none
@@ -30,17 +30,17 @@ contains
 
   !> No failure.
   pure function new_failed_modes(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(failed_modes_t) :: self
 
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     allocate (self%occurred(failure_modes, model%plies, model%elements%elements), source=.false.)
   end function new_failed_modes
 
   !> Finds the modes whose criteria are met for the first time.
   subroutine find(self, model, stiffness, displacement, found)
     class(failed_modes_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Displacement, ghosts up to date, (5, points)
@@ -66,7 +66,7 @@ contains
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
     class(failed_modes_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate, and element of this rank that has it
     integer, intent(in) :: ply, element
     !> Constants of the ply
@@ -82,7 +82,7 @@ contains
   !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element) result(elasticity)
     class(failed_modes_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
     !> Constants of the element's plies
@@ -112,7 +112,7 @@ contains
   subroutine visit(self, archive, model)
     class(failed_modes_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp), allocatable :: table(:, :)
     integer :: element, ply
 

@@ -2,7 +2,7 @@
 module failed_plies_areas
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_damage_parameters, only: failure_modes
   use ply_failures, only: ply_failure_t
   use rank_totals, only: totals_of
@@ -14,7 +14,7 @@ contains
 
   !> Area in which each ply has failed in each mode, of the full plate. Collective.
   function failed_areas(model, failures) result(areas)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(ply_failure_t), intent(in) :: failures
     !> (modes, plies)
     real(wp) :: areas(failure_modes, model%plies)
@@ -24,7 +24,7 @@ contains
     integer :: k, mode, i
 
     areas = 0
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     do i = 1, model%elements%elements
       area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
       associate (plies => model%stacks(model%stack(i))%number)
@@ -41,14 +41,14 @@ contains
 
   !> Number of ply elements failed in each mode, of the full plate. Collective.
   function failed_counts(model, failures) result(counts)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(ply_failure_t), intent(in) :: failures
     !> Fibre failure, matrix cracking, matrix crushing
     integer :: counts(failure_modes)
     integer :: element, k, mode
 
     counts = 0
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     do element = 1, model%elements%elements
       associate (plies => model%stacks(model%stack(element))%number)
         do k = 1, size(plies)

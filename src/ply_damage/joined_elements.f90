@@ -15,7 +15,7 @@ module joined_elements
   use field_mappings, only: area_field
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plies, only: ply_t
   use ply_strains, only: strain_moments_t, moment_values, strains_of_ply, moments_from
   implicit none
@@ -59,7 +59,7 @@ contains
 
   !> Finds the elements that share their state with others. Collective.
   function find_joined_elements(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(joined_elements_t) :: self
     integer, allocatable :: numbers(:), parts(:, :)
     logical, allocatable :: joined(:, :), mine(:)
@@ -68,7 +68,7 @@ contains
     associate (mesh => model%mesh, elements => model%distribution%elements)
       allocate (parts(most, mesh%elements()), joined(2, mesh%elements()), numbers(mesh%elements()))
       do element = 1, mesh%elements()
-        call find_parts(mesh, element, model%setup%has_impactor, parts(:, element), joined(:, element))
+        call find_parts(mesh, element, model%setup%impactor%is_present, parts(:, element), joined(:, element))
       end do
       numbers = unpack([(element, element=1, size(numbers))], parts(2, :) > 0, 0)
       call number_them(numbers)
@@ -267,7 +267,7 @@ contains
   subroutine visit(self, archive, model, separated)
     class(joined_elements_t), intent(in) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Receives them, (elements)
     logical, intent(out) :: separated(:)
     real(wp) :: fields(1, size(separated))

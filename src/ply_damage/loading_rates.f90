@@ -8,7 +8,7 @@ module loading_rates
   use crack_bands, only: band_strains_t, crack_band_t
   use field_mappings, only: ply_field
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_strains, only: strain_moments_t, strains_of_ply
   use plies, only: ply_t
   implicit none
@@ -37,7 +37,7 @@ contains
 
   !> Rates of plies without load.
   pure function new_loading_rates(model, states) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Number of plies of all elements
     integer, intent(in) :: states
     type(loading_rates_t) :: self
@@ -92,7 +92,7 @@ contains
   subroutine visit(self, archive, model, range, offset, number)
     class(loading_rates_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> First and last ply of each element, and what its number is less than the place of its state
     integer, intent(in) :: range(:, :), offset(:)
     !> Number of each ply among those of the plate

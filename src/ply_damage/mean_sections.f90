@@ -5,7 +5,7 @@ module mean_sections
   use element_batches, only: batch_of, lane_of, lanes
   use kinds, only: wp
   use mean_stiffnesses, only: change_values, mean_change, sub_ply_middle, mean_strains_at
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_stacks, only: ply_stack_t
   use plies, only: ply_t, compressed, uniaxial_strain
   implicit none
@@ -37,7 +37,7 @@ contains
 
   !> Sections with all sub-plies in tension.
   function new_mean_sections(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(mean_sections_t) :: self
     integer :: first(model%plies + 1, size(model%laminates)), range(2), k, element
 

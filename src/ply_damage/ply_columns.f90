@@ -2,7 +2,7 @@
 module ply_columns
   use failed_plies_areas, only: failed_counts
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_failures, only: ply_failure_t
   use result_tables, only: result_row_length
   implicit none
@@ -29,7 +29,7 @@ contains
 
   !> Failures in each mode. Collective.
   function ply_values(model, plies) result(values)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> One value per column, the same on every rank

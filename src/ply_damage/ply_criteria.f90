@@ -6,7 +6,7 @@ module ply_criteria
   use ply_damage_parameters, only: failure_modes, stress_at_faces
   use ply_stresses, only: middle_stress, face_stresses
   use failure_criteria, only: chosen_indices
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   implicit none
   private
   public :: failure_measures, shear_force
@@ -17,7 +17,7 @@ contains
   !> square roots of the criteria, and thus proportional to the load except for the linear terms of crushing after Hou
   !> and Hashin.
   function failure_measures(model, stiffness, element, elasticity, strains) result(measures)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Element of this rank

@@ -11,6 +11,7 @@ module ply_failures
   use ply_damage_parameters, only: energy_modes, failure_modes
   use stacking, only: in_plane_section
   use section_stiffnesses, only: visit_stiffness
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use rank_totals, only: totals_of
   use failed_modes, only: failed_modes_t, new_failed_modes
@@ -71,7 +72,7 @@ contains
 
   !> No failure. Collective.
   function new_ply_failure(model) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(ply_failure_t) :: self
 
     self%stiffness = model%elements%stiffness
@@ -131,7 +132,7 @@ contains
   !> Adds the forces of the elements on the layers; history variables of softening plies are accepted. Collective.
   subroutine add_layer_forces(self, model, motion, force, energies)
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Motion of the layers, ghosts up to date, (5, points)
     real(wp), contiguous, intent(in) :: motion(:, :)
     !> Internal forces on the layers, (5, columns of the borders), added to
@@ -144,15 +145,15 @@ contains
       self%bands%keeps_damage = self%keeps_stiffness
       ! Before the forces: a restart computes the last forces again, with the strengths that they had.
       if (.not. self%keeps_stiffness) call self%bands%update_strengths(model)
-      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
                               self%bands, self%free, energies)
       if (.not. self%keeps_stiffness) call self%bands%commit_sections(self%stiffness, self%free)
       self%bands%keeps_damage = .false.
     else if (allocated(self%signs)) then
-      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
                               self%signs, self%free, energies)
     else
-      call add_internal_force(model%elements, self%stiffness, model%setup%kinematics, motion, force, energy, &
+      call add_internal_force(model%elements, self%stiffness, model%setup%mesh%kinematics, motion, force, energy, &
                               free=self%free, energies=energies)
     end if
   end subroutine add_layer_forces
@@ -161,7 +162,7 @@ contains
   subroutine record(self, model, energy)
     !> The failures with the trial of the step
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Energy of all modes, of the full plate, the same on every rank
     real(wp), intent(out) :: energy
     real(wp) :: energies(energy_modes)
@@ -176,7 +177,7 @@ contains
   !> Computes the energy dissipated by softening plies so far in each mode. Collective.
   subroutine total_dissipation(self, model)
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp) :: energies(energy_modes + 1)
 
     energies = totals_of(model%communicator, self%bands%dissipated())*model%mesh%multiplicity
@@ -220,7 +221,7 @@ contains
   !> Failed modes of a ply in all elements.
   pure function failed_in_elements(self, model, ply) result(failed)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate
     integer, intent(in) :: ply
     !> True for failed modes, (modes, elements); false in elements without this ply
@@ -236,10 +237,9 @@ contains
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, model, ply, element)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Ply of the laminate, and element of this rank
     integer, intent(in) :: ply, element
-    !> The constants
     type(elasticity_t) :: elasticity
 
     if (allocated(self%bands)) then
@@ -264,7 +264,7 @@ contains
   !> Plies of an element with their permanent strains.
   pure function strained_plies(self, model, element) result(plies)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
     type(ply_t), allocatable :: plies(:)
@@ -292,7 +292,7 @@ contains
   !> Reduced elastic constants of the plies of an element.
   pure function elasticities(self, model, element)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
     !> Those of the element's plies
@@ -307,7 +307,7 @@ contains
   !> Finds new failures in an accepted state and reduces the stiffness. Collective.
   subroutine grow(self, model, displacement)
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     logical, allocatable :: failing(:)
@@ -318,7 +318,7 @@ contains
       call self%bands%update_strengths(model)
       return
     end if
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     call self%modes%find(model, self%stiffness, displacement, failing)
     self%softened = model%communicator%any(any(failing))
     if (.not. self%softened) return
@@ -330,7 +330,7 @@ contains
   !> Computes the reduced stiffness of an element.
   subroutine soften(self, model, element)
     type(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
 
@@ -347,12 +347,12 @@ contains
   subroutine restack(self, model, is_split)
     !> The failures, loaded from elements with more plies
     class(ply_failure_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> True for these elements, (elements)
     logical, intent(in) :: is_split(:)
     integer :: element
 
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     do element = 1, size(is_split)
       if (.not. is_split(element)) cycle
       associate (stack => model%stacks(model%stack(element)), &
@@ -372,7 +372,7 @@ contains
   subroutine visit(self, archive, model)
     class(ply_failure_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     integer :: mode, element, i
 
     call self%modes%visit(archive, model)
@@ -384,8 +384,8 @@ contains
       if (model%setup%ply_damage%permanent_shear) &
         call archive%item('ply_failure/dissipated_by_shear', self%permanent_shear)
     end if
-    if (model%setup%has_ply_damage) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
-    if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%has_ply_damage)) return
+    if (model%setup%ply_damage%is_present) call visit_stiffness(archive, 'ply_failure/stiffness', model, self%stiffness)
+    if (.not. (archive%loading .and. allocated(self%free) .and. model%setup%ply_damage%is_present)) return
     do element = 1, model%elements%elements
       associate (plies => model%stacks(model%stack(element))%number)
         self%free(lane_of(element), :, batch_of(element)) = &

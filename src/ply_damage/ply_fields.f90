@@ -5,7 +5,7 @@ module ply_fields
   use errors, only: error_t
   use fields_file, only: fields_file_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use output_parameters, only: output_t, field_ply_damage, field_stress, field_face_stress
   use plies, only: elasticity_t
   use ply_failures, only: ply_failure_t
@@ -44,7 +44,7 @@ contains
 
   !> Writes the requested fields.
   subroutine write_ply_fields(model, plies, displacement, output, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
     !> Displacement, ghosts up to date, (5, points)
@@ -64,7 +64,7 @@ contains
     if (any(requested)) strains = element_strains(model, plies, displacement)
     do ply = 1, model%plies
       associate (name => 'ply_'//to_text(ply)//'_')
-        if (output%requests(field_ply_damage) .and. model%setup%has_ply_damage) then
+        if (output%requests(field_ply_damage) .and. model%setup%ply_damage%is_present) then
           call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
           if (allocated(plies%bands)) &
             call fields%write_cell_field(name//'fibres_crushed', crushed_in(model, plies%bands, ply), error)
@@ -85,7 +85,7 @@ contains
 
   !> 1 in elements in which the fibres of a ply have failed by compression, else 0.
   pure function crushed_in(model, bands, ply) result(crushed)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Softening plies
     type(crack_band_sections_t), intent(in) :: bands
     !> Ply of the laminate
@@ -103,7 +103,7 @@ contains
 
   !> Lost fractions of E1 and E2 of a ply.
   pure function stiffness_lost(model, plies, ply) result(lost)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of its plies
     type(ply_failure_t), intent(in) :: plies
     !> Ply of the laminate

@@ -6,7 +6,7 @@ module separated_elements
   use crack_band_sections, only: crack_band_sections_t
   use crack_bands, only: stiffness_lost
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use roundings, only: rounding
   implicit none
   private
@@ -54,7 +54,7 @@ contains
   subroutine visit_separated(sections, archive, model)
     type(crack_band_sections_t), intent(inout) :: sections
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     logical :: separated(size(sections%area))
 
     call sections%joined%visit(archive, model, separated)

@@ -12,7 +12,7 @@ module stressed_volumes
   use communicators, only: communicator_t
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plies, only: ply_t
   use ply_blocks, only: block_of
   use ply_damage_parameters, only: fibre_tension, ply_damage_t
@@ -58,7 +58,7 @@ contains
 
   !> Volumes of plies without load.
   function new_stressed_volumes(model, bands, states) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Laws of the plies
     type(crack_band_t), intent(in) :: bands(:)
     !> States of the plies of all elements

@@ -51,7 +51,7 @@ contains
 
     coarse = coarser_deck(deck)
     if (lacks_window_lines(coarse)) return
-    call create_model(coarse%setup_t, communicator, model, error)
+    call create_model(coarse%setup, communicator, model, error)
     call choose_stepper(coarse%stepping, stepper)
     if (.not. allocated(error)) call stepper%start(model, coarse%stepping, coarse%linear_solver, .false., error)
     if (allocated(error)) return
@@ -82,11 +82,11 @@ contains
     integer :: direction, number
 
     coarse = deck
-    coarse%mesh%cell = coarser*deck%mesh%cell
+    coarse%setup%mesh%cell = coarser*deck%setup%mesh%cell
     do direction = 1, 2
-      do number = max(2, (deck%mesh%elements(direction) + 1)/coarser), deck%mesh%elements(direction)
-        coarse%mesh%elements(direction) = number
-        if (has_enough_elements(coarse%plate, coarse%mesh, direction)) exit
+      do number = max(2, (deck%setup%mesh%elements(direction) + 1)/coarser), deck%setup%mesh%elements(direction)
+        coarse%setup%mesh%elements(direction) = number
+        if (has_enough_elements(coarse%setup%plate, coarse%setup%mesh, direction)) exit
       end do
     end do
     associate (time => coarse%stepping%time)

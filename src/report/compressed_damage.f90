@@ -7,7 +7,7 @@ module compressed_damage
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
   use mesh_parameters, only: symmetry_point
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use ply_damage_parameters, only: fibre_failure
   use rank_totals, only: totals_of
   use states, only: state_t
@@ -45,7 +45,7 @@ contains
 
   !> Damage of a state. Collective.
   function damage_of(model, now, along) result(damage)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> Axis of the load
     integer, intent(in) :: along
@@ -65,7 +65,7 @@ contains
 
   !> Length between the supports of the plate along an axis: that of the window of its frame, or of the plate.
   pure real(wp) function between_supports(model, axis) result(length)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> The axis
     integer, intent(in) :: axis
     integer :: i
@@ -80,7 +80,7 @@ contains
 
   !> Delamination of an interface: failed nodes of a cohesive law, or cells released by fronts.
   function delaminated(model, now, along, zone) result(collected)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> Axis of the load, and interface
     integer, intent(in) :: along, zone
@@ -116,7 +116,7 @@ contains
 
   !> Fibre failure of a ply.
   function fibres_failed(model, now, along, ply) result(collected)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> Axis of the load, and ply
     integer, intent(in) :: along, ply
@@ -125,7 +125,7 @@ contains
     integer :: i
 
     allocate (collected%rows(model%mesh%cells(3 - along)), source=0.0_wp)
-    if (.not. model%setup%has_ply_damage) return
+    if (.not. model%setup%ply_damage%is_present) return
     associate (failed => now%plies%failed_in_elements(model, ply), mesh => model%mesh)
       do i = 1, model%elements%elements
         if (.not. failed(fibre_failure, i)) cycle
@@ -149,7 +149,7 @@ contains
   pure subroutine add_cell(collected, model, along, place)
     !> Receives it
     type(collected_t), intent(inout) :: collected
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Axis of the load
     integer, intent(in) :: along
     !> Column and row of the cell
@@ -176,7 +176,7 @@ contains
 
   !> Quantities from the contributions of all ranks. Collective.
   function figures_of(model, along, collected) result(figures)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Axis of the load
     integer, intent(in) :: along
     !> Contribution of this rank for each interface or ply
@@ -205,7 +205,7 @@ contains
   !> Fraction of the width between the supports with failure in its rows. A strip of the plate's thickness is excluded
   !> at each side, where supports prevent opening.
   pure real(wp) function share_of_width(model, along, failed) result(share)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Axis of the load
     integer, intent(in) :: along
     !> True for rows with failure

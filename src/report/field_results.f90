@@ -7,7 +7,7 @@ module field_results
   use interface_fields, only: interface_field_rows, starters_above, write_interface_fields
   use kinds, only: wp
   use mesh_parameters, only: initial_deflection
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use motion_fields, only: motion_field_rows, write_motion_fields
   use output_clocks, only: shown_time
   use output_parameters, only: output_t
@@ -45,7 +45,7 @@ contains
 
   !> Writes points at the heights of their layers, and elements.
   subroutine write_mesh(model, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(fields_file_t), intent(inout) :: fields
     !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
@@ -69,7 +69,7 @@ contains
   !> Heights at which the owned points are drawn: the middle of their layer, or of the laminate where there is one
   !> layer, on the stress-free shape.
   pure function heights(model) result(z)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Height of each owned point
     real(wp) :: z(model%distribution%owned)
     integer :: i
@@ -83,7 +83,7 @@ contains
 
   !> Heights of the middles of layers above the mid-plane.
   pure function middles_of_layers(model) result(z)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Height of each owned point
     real(wp) :: z(model%distribution%owned)
     integer :: i, point, last
@@ -109,7 +109,7 @@ contains
 
   !> Writes the requested fields of the state reached, if their physics is modelled.
   subroutine write_fields(model, stepper, output, fields, error)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     class(stepper_t), intent(in) :: stepper
     !> Requested fields
     type(output_t), intent(in) :: output

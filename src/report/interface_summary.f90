@@ -29,10 +29,10 @@ contains
     call json%put('projected_area_rule', projected_rule)
     call json%open_list('interfaces')
     do zone = 1, size(figures%interfaces)
-      associate (figure => figures%interfaces(zone), interface => deck%delaminations(zone))
+      associate (figure => figures%interfaces(zone), interface => deck%setup%delaminations(zone))
         call json%open_object('')
         call json%put('ply_above', interface%below_ply)
-        if (interface%bonds_doublers()) call json%put('doublers', names_of_doublers(deck%zones, interface))
+        if (interface%bonds_doublers()) call json%put('doublers', names_of_doublers(deck%setup%zones, interface))
         call json%put('is_cohesive', interface%law == law_cohesive)
         call json%put('area', figure%area)
         call json%put('energy', figure%energy)
@@ -65,7 +65,7 @@ contains
     end if
     call json%open_object(name)
     call json%put('at', event(1))
-    if (deck%has_impactor) call json%put('force', event(2))
+    if (deck%setup%impactor%is_present) call json%put('force', event(2))
     call json%put('deflection', event(3))
     call json%close()
   end subroutine put_event

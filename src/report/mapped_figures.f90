@@ -5,7 +5,7 @@ module mapped_figures
   use exact_sums, only: exact_sum_t
   use json_text, only: json_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   use roundings, only: rounding
   use states, only: state_t
@@ -51,7 +51,7 @@ contains
   !> Stores the quantities of a state; of a plate that is cut, the first time before the cut. Collective.
   subroutine note(self, model, state, moment)
     class(mapped_figures_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(state_t), intent(inout) :: state
     !> before_mapping, after_mapping or before_cutting
     integer, intent(in) :: moment
@@ -76,7 +76,7 @@ contains
 
   !> Areas of all plies times the damage of fibres and of the matrix, of the full plate. Collective.
   function damage_of_plies(model, state) result(areas)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     type(state_t), intent(in) :: state
     !> Of fibres and of the matrix
     real(wp) :: areas(2)

@@ -49,19 +49,19 @@ contains
     character(len=result_name_length), allocatable :: names(:)
     integer :: zone, line, gauge, stringer
 
-    names = pack(names_of(plate_rows), apply_to(deck))
-    do zone = 1, size(deck%delaminations)
-      names = [names, numbered(interface_rows, deck%delaminations(zone)%below_ply)]
+    names = pack(names_of(plate_rows), apply_to(deck%setup))
+    do zone = 1, size(deck%setup%delaminations)
+      names = [names, numbered(interface_rows, deck%setup%delaminations(zone)%below_ply)]
     end do
-    if (size(deck%lines) > 0) names = [names, names_of(line_column_rows(:1))]
-    do line = 1, size(deck%lines)
+    if (size(deck%setup%lines) > 0) names = [names, names_of(line_column_rows(:1))]
+    do line = 1, size(deck%setup%lines)
       names = [names, numbered(line_column_rows(2:), line)]
     end do
-    if (has_ends(deck%plate, deck%lines)) names = [names, names_of(end_rows)]
-    do gauge = 1, size(deck%gauges)
+    if (has_ends(deck%setup%plate, deck%setup%lines)) names = [names, names_of(end_rows)]
+    do gauge = 1, size(deck%setup%plate%gauges)
       names = [names, numbered(gauge_column_rows, gauge)]
     end do
-    do stringer = 1, size(deck%stringers)
+    do stringer = 1, size(deck%setup%stringers)
       names = [names, numbered(stringer_column_rows, stringer)]
     end do
     if (deck%output%force_filter > 0) names = [names, names_of(filter_rows)]
@@ -76,13 +76,13 @@ contains
     integer :: i
 
     apply = .true.
-    if (load%has_impactor) return
+    if (load%impactor%is_present) return
     do i = 1, size(plate_rows)
       select case (cell(plate_rows(i), column_name))
       case ('contact_area')
         apply(i) = .false.
       case ('stress')
-        apply(i) = load%has_pressure
+        apply(i) = load%pressure%is_present
       end select
     end do
   end function apply_to
@@ -135,12 +135,13 @@ contains
     logical, allocatable :: whole(:)
     integer :: i
 
-    whole = [pack(are_whole(plate_rows), apply_to(deck)), (are_whole(interface_rows), i=1, size(deck%delaminations))]
-    if (size(deck%lines) > 0) &
-      whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%lines))]
-    if (has_ends(deck%plate, deck%lines)) whole = [whole, are_whole(end_rows)]
-    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%gauges)), &
-             (are_whole(stringer_column_rows), i=1, size(deck%stringers))]
+    whole = [pack(are_whole(plate_rows), apply_to(deck%setup)), &
+             (are_whole(interface_rows), i=1, size(deck%setup%delaminations))]
+    if (size(deck%setup%lines) > 0) &
+      whole = [whole, are_whole(line_column_rows(:1)), (are_whole(line_column_rows(2:)), i=1, size(deck%setup%lines))]
+    if (has_ends(deck%setup%plate, deck%setup%lines)) whole = [whole, are_whole(end_rows)]
+    whole = [whole, (are_whole(gauge_column_rows), i=1, size(deck%setup%plate%gauges)), &
+             (are_whole(stringer_column_rows), i=1, size(deck%setup%stringers))]
     if (deck%output%force_filter > 0) whole = [whole, are_whole(filter_rows)]
   end function column_whole
 

@@ -9,7 +9,7 @@ module run_figures
   use interface_figures, only: figures_of, interface_figures_t
   use kinds, only: wp
   use line_columns, only: pressed_axis
-  use models, only: model_t
+  use plate_loads, only: loaded_plate_t
   use ply_damage_parameters, only: failure_modes
   use projected_areas, only: area_rules, projected_areas_of
   use states, only: state_t
@@ -59,7 +59,7 @@ contains
 
   !> Results of the state reached. Collective.
   subroutine find_figures(model, now, figures)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> Its results
     type(run_figures_t), intent(out) :: figures

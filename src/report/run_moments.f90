@@ -19,8 +19,9 @@ contains
     !> Such as 1.878 ms, time 0.001878, load factor 0.5, or 0.5 of the run
     character(len=:), allocatable :: words
 
-    words = deck%progress_name()//' '//rounded_text(time)
-    if (deck%units /= '' .and. .not. deck%is_static()) words = in_usual_unit(time, time_kind, deck%units)
-    if (deck%is_static() .and. deck%static%dissipation > 0) words = rounded_text(time)//' of the run'
+    words = deck%setup%progress_name()//' '//rounded_text(time)
+    if (deck%case%units /= '' .and. .not. deck%setup%is_static()) &
+      words = in_usual_unit(time, time_kind, deck%case%units)
+    if (deck%setup%is_static() .and. deck%setup%loading%dissipation > 0) words = rounded_text(time)//' of the run'
   end function moment
 end module run_moments

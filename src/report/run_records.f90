@@ -9,7 +9,7 @@ module run_records
   use kinds, only: wp
   use mapped_figures, only: mapped_figures_t
   use line_columns, only: end_values, line_values, pressed_axis
-  use models, only: model_t
+  use plate_loads, only: loaded_plate_t
   use output_clocks, only: shown_time
   use placed_gauges, only: back_to_back, gauge_strains, percent_bending
   use projected_areas, only: area_dissipated, area_rules, projected_areas_of
@@ -79,7 +79,7 @@ contains
 
   !> The record at the start of a run.
   pure function new_run_record(model) result(self)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(run_record_t) :: self
     integer :: zones
 
@@ -94,7 +94,7 @@ contains
   !> Collective.
   subroutine inherit(self, model, now)
     class(run_record_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> The state inherited from another run
     type(state_t), intent(in) :: now
     real(wp) :: projected(area_rules)
@@ -110,7 +110,7 @@ contains
   !> Updates the record with an accepted step. Collective.
   subroutine observe(self, model, now, between_stages)
     class(run_record_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> Steps between two checks of the interfaces
     integer, intent(in) :: between_stages
@@ -148,7 +148,7 @@ contains
   !> Collective.
   subroutine observe_reactions(self, model, now)
     class(run_record_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     real(wp), allocatable :: ends(:), strains(:)
     real(wp) :: bending
@@ -159,10 +159,11 @@ contains
     if (.not. allocated(self%before%plies)) self%before = damage_of(model, now, pressed_axis(model))
     strains = gauge_strains(model, now%motion%displacement)
     bending = 0
-    if (all(back_to_back(model%setup%gauges) > 0)) bending = percent_bending(strains(back_to_back(model%setup%gauges)))
+    if (all(back_to_back(model%setup%plate%gauges) > 0)) &
+      bending = percent_bending(strains(back_to_back(model%setup%plate%gauges)))
     call self%compression%observe(now%time, ends(1), ends(2), ends(3), bending)
-    if (all(back_to_back(model%setup%gauges) > 0)) &
-      call self%compression%observe_gauges(strains(back_to_back(model%setup%gauges)))
+    if (all(back_to_back(model%setup%plate%gauges) > 0)) &
+      call self%compression%observe_gauges(strains(back_to_back(model%setup%plate%gauges)))
   end subroutine observe_reactions
 
   !> Time, contact force and deflection of a state.

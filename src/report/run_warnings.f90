@@ -60,7 +60,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: warnings(:)
 
-    if (deck%load_level(stepper%now%time) >= 1) return
+    if (deck%setup%load_level(stepper%now%time) >= 1) return
     allocate (warnings(0))
     call add_energy_warnings(energy_check%check(stepper%now%ledger, stepper%now%interfaces%unreleased(model), 1.0_wp, &
                                                 .true.), deck, stepper, record, warnings)
@@ -78,7 +78,7 @@ contains
     integer :: i
 
     do i = 1, size(warnings)
-      if (deck%strict) then
+      if (deck%case%strict) then
         if (.not. allocated(error)) call fail(error, exit_convergence, warnings(i)%text)
       else
         call log%warning(warnings(i)%text)
@@ -119,12 +119,12 @@ contains
     if (is_new(record, 'membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
       call add('membrane', has_fibre_failure(deck, model, now))
     ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
-    if (is_new(record, 'perforation') .and. deck%has_ply_damage .and. now%force > 0 .and. now%impactor%velocity >= 0) &
-      call add('perforation', is_perforated(model, now))
-    exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%load_level(now%time), &
-                                  deck%is_static())
+    if (is_new(record, 'perforation') .and. deck%setup%ply_damage%is_present .and. now%force > 0 .and. &
+        now%impactor%velocity >= 0) call add('perforation', is_perforated(model, now))
+    exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%setup%load_level(now%time), &
+                                  deck%setup%is_static())
     call record%note_motion(deck, now)
-    if (deck%is_impact() .or. has_developed(deck, now%time)) then
+    if (deck%setup%is_impact() .or. has_developed(deck, now%time)) then
       call add('scaled', record%scaled_energy > limit_of('scaled')*now%ledger%largest)
       call add('contact', stepper%dissipates_in_contact() .and. &
                now%ledger%contact > limit_of('contact')*now%ledger%largest)
@@ -202,7 +202,7 @@ contains
     type(deck_t), intent(in) :: deck
 
     limit = deck%expected%scales%thickness
-    if (deck%impactor%radius > 0) limit = min(limit, deck%impactor%radius)
+    if (deck%setup%impactor%radius > 0) limit = min(limit, deck%setup%impactor%radius)
   end function max_indentation
 
   !> True: adaptive layers extend so far beyond the core that damage does, too.
@@ -211,9 +211,9 @@ contains
     !> The interface, with its present zone
     type(delamination_t), intent(in) :: interface
 
-    leaves = interface%is_adaptive .and. deck%mesh%cell > 0 .and. &
-             any(interface%zone + 2*abs(interface%zone_at) > deck%mesh%core + &
-                 2*((cells_ahead + cells_at_once)*deck%mesh%cell + &
+    leaves = interface%is_adaptive .and. deck%setup%mesh%cell > 0 .and. &
+             any(interface%zone + 2*abs(interface%zone_at) > deck%setup%mesh%core + &
+                 2*((cells_ahead + cells_at_once)*deck%setup%mesh%cell + &
                     thicknesses_ahead*deck%expected%scales%thickness))
   end function leaves_core
 
@@ -230,7 +230,7 @@ contains
     type(deck_t), intent(in) :: deck
     integer :: i
 
-    have_strengths = any([(any(deck%stringers(i)%failure_strains > 0), i=1, size(deck%stringers))])
+    have_strengths = any([(any(deck%setup%stringers(i)%failure_strains > 0), i=1, size(deck%setup%stringers))])
   end function have_strengths
 
   !> True: the fibres of every ply have failed over an area as large as patch and contact, so that the contact force has
@@ -257,7 +257,7 @@ contains
     integer :: counts(failure_modes)
 
     has_fibre_failure = .false.
-    if (.not. (deck%has_ply_damage .and. any(deck%plate%edges == edge_clamped))) return
+    if (.not. (deck%setup%ply_damage%is_present .and. any(deck%setup%plate%edges == edge_clamped))) return
     counts = failed_counts(model, now%plies)
     has_fibre_failure = counts(fibre_failure) > 0
   end function has_fibre_failure

@@ -42,7 +42,7 @@ contains
     logical, intent(in) :: counts
 
     if (.not. is_slow_motion(deck)) return
-    if (time <= deck%load_start) then
+    if (time <= deck%setup%loading%start) then
       self%before = ledger%external_work
       return
     end if
@@ -56,11 +56,11 @@ contains
     type(deck_t), intent(in) :: deck
 
     is_slow_motion = .false.
-    if (deck%is_static() .or. deck%has_pressure .or. deck%is_impact()) return
-    is_slow_motion = deck%impactor%travel > 0
-    if (allocated(deck%lines)) is_slow_motion = is_slow_motion .or. &
-      any(deck%lines%prescribed .and. (deck%lines%history == line_ramp .or. deck%lines%rise > 0) .and. &
-          abs(deck%lines%value) > 0)
+    if (deck%setup%is_static() .or. deck%setup%pressure%is_present .or. deck%setup%is_impact()) return
+    is_slow_motion = deck%setup%impactor%travel > 0
+    if (allocated(deck%setup%lines)) is_slow_motion = is_slow_motion .or. &
+      any(deck%setup%lines%prescribed .and. (deck%setup%lines%history == line_ramp .or. &
+                                             deck%setup%lines%rise > 0) .and. abs(deck%setup%lines%value) > 0)
   end function is_slow_motion
 
   !> True once a part of the loading has passed, after which kinetic energies are checked.
@@ -69,7 +69,7 @@ contains
     !> The time
     real(wp), intent(in) :: time
 
-    has_developed = time - deck%load_start > slow_start*(deck%stepping%time%end - deck%load_start)
+    has_developed = time - deck%setup%loading%start > slow_start*(deck%stepping%time%end - deck%setup%loading%start)
   end function has_developed
 
   !> Saves or loads.

@@ -53,17 +53,17 @@ contains
     type(json_t) :: json
 
     call json%begin()
-    call json%put('case', deck%name)
-    call json%put('title', deck%title)
+    call json%put('case', deck%case%name)
+    call json%put('title', deck%case%title)
     call json%open_object('exit')
     call json%put('kind', trim(ending%kind))
     call json%put('code', ending%code)
     call json%put('message', ending%message)
     call json%close()
     call results%put(json)
-    if (deck%moves_impactor() .and. record%filter%frequency > 0) call put_filtered(json, record)
-    call record%mapping%put(json, deck%delaminations%below_ply)
-    if (record%compression%strength > 0) call put_collapse(json, record, figures, deck%delaminations%below_ply)
+    if (deck%setup%moves_impactor() .and. record%filter%frequency > 0) call put_filtered(json, record)
+    call record%mapping%put(json, deck%setup%delaminations%below_ply)
+    if (record%compression%strength > 0) call put_collapse(json, record, figures, deck%setup%delaminations%below_ply)
     call put_errors(json, errors)
     if (size(figures%interfaces) > 0) call put_interfaces(json, deck, stepper%now, record, figures)
     call put_plies(json, deck, figures)
@@ -128,23 +128,23 @@ contains
     type(laminate_t) :: list
     integer :: ply
 
-    list = deck%all_plies()
-    call json%put('plate_size', deck%plate%length)
+    list = deck%setup%all_plies()
+    call json%put('plate_size', deck%setup%plate%length)
     call json%open_list('plies')
     do ply = 1, size(list%angle)
       call json%open_object('')
       call json%put('ply', ply)
-      if (deck%zones%doubler_of(ply - size(deck%laminate%angle)) > 0) call json%put('doubler', &
-        deck%zones%doublers(deck%zones%doubler_of(ply - size(deck%laminate%angle)))%name)
-      call json%put('made_of', deck%materials(list%material(ply))%name)
+      if (deck%setup%zones%doubler_of(ply - size(deck%setup%laminate%angle)) > 0) call json%put('doubler', &
+        deck%setup%zones%doublers(deck%setup%zones%doubler_of(ply - size(deck%setup%laminate%angle)))%name)
+      call json%put('made_of', deck%setup%materials(list%material(ply))%name)
       call json%put('angle', list%angle(ply))
       call json%put('thickness', list%thickness(ply))
-      if (deck%has_ply_damage) then
+      if (deck%setup%ply_damage%is_present) then
         call json%put('fibre_failure_area', figures%failed_area(1, ply))
         call json%put('matrix_crack_area', figures%failed_area(2, ply))
         call json%put('matrix_crushing_area', figures%failed_area(3, ply))
-        if (deck%ply_damage%weibull_modulus > 0) call put_strength(json, deck, figures%stressed_volume(ply), &
-                                                                   deck%materials(list%material(ply))%xt)
+        if (deck%setup%ply_damage%weibull_modulus > 0) call put_strength(json, deck, figures%stressed_volume(ply), &
+                                                                   deck%setup%materials(list%material(ply))%xt)
       end if
       call json%close()
     end do
@@ -164,7 +164,7 @@ contains
 
     if (volume > 0) then
       call json%put('stressed_volume', volume)
-      call json%put('fibre_strength', factor_of(deck%ply_damage, volume)*strength)
+      call json%put('fibre_strength', factor_of(deck%setup%ply_damage, volume)*strength)
     else
       call json%put_null('stressed_volume')
       call json%put_null('fibre_strength')

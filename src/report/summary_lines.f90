@@ -39,12 +39,12 @@ contains
     type(line_t), allocatable :: lines(:)
     logical :: struck
 
-    struck = deck%moves_impactor() .and. .not. deck%impactor%travel > 0
-    if (deck%units == '') call append(lines, 'Summary, in the units of the deck:')
-    if (deck%units /= '') call append(lines, 'Summary:')
+    struck = deck%setup%moves_impactor() .and. .not. deck%setup%impactor%travel > 0
+    if (deck%case%units == '') call append(lines, 'Summary, in the units of the deck:')
+    if (deck%case%units /= '') call append(lines, 'Summary:')
     if (struck) then
       call add_impact(lines, deck, results, record, errors)
-    else if (deck%has_impactor) then
+    else if (deck%setup%impactor%is_present) then
       call add_figure(lines, label_of_result('peak_force'), results%shown('peak_force')//' at '// &
                       moment(deck, results%value('peak_force_at')))
     end if
@@ -55,7 +55,7 @@ contains
       call add_figure(lines, label_of_result('residual_strength'), &
                       compression_text(results, moment(deck, results%value('residual_strength_at'))))
       if (record%compression%failed) &
-        call add_figure(lines, 'failure', collapse_text(record, figures, deck%delaminations%below_ply))
+        call add_figure(lines, 'failure', collapse_text(record, figures, deck%setup%delaminations%below_ply))
     end if
     if (struck .and. .not. results%value('in_contact') > 0) call add_dent(lines, deck, results)
     if (struck) call add_impact_energy(lines, results)
@@ -63,7 +63,7 @@ contains
     call add_share('kinetic_share', 'the work')
     call add_share('scaled_kinetic_share', 'the total')
     if (size(figures%interfaces) > 0) call add_interfaces(lines, deck, results, record, figures, errors)
-    if (deck%has_ply_damage) call add_failed_plies(lines, results)
+    if (deck%setup%ply_damage%is_present) call add_failed_plies(lines, results)
     if (len(unknown_because) > 0) call add_figure(lines, 'errors', unknown_because)
     call add_warnings(lines, deck, given)
 
@@ -290,14 +290,14 @@ contains
     integer, intent(in) :: zone
 
     associate (figure => figures%interfaces(zone))
-      call add_figure(lines, '  below ply '//to_text(deck%delaminations(zone)%below_ply), 'area '// &
+      call add_figure(lines, '  below ply '//to_text(deck%setup%delaminations(zone)%below_ply), 'area '// &
                 results%with_unit(figure%area, area_kind)//', x '//range_of(figure%bounds(:, 1))//', y '// &
                 range_of(figure%bounds(:, 2))//', energy '//results%with_unit(figure%energy, energy_kind))
-      if (deck%delaminations(zone)%bonds_doublers()) &
-        call add_figure(lines, '', 'bond of '//names_of_doublers(deck%zones, deck%delaminations(zone)))
+      if (deck%setup%delaminations(zone)%bonds_doublers()) &
+        call add_figure(lines, '', 'bond of '//names_of_doublers(deck%setup%zones, deck%setup%delaminations(zone)))
       call add_event(lines, deck, results, 'onset', record%onset(:, zone))
       call add_event(lines, deck, results, 'first growth', record%growth(:, zone))
-      if (deck%has_impactor) &
+      if (deck%setup%impactor%is_present) &
         call add_figure(lines, '', 'threshold force (closed form) '// &
                         results%with_unit(figures%threshold(zone), force_kind)// &
                         ' for '//counted(to_text(size(figures%interfaces)), 'equal circular delamination')// &
@@ -342,7 +342,7 @@ contains
       call add_figure(lines, '', name//' before this run')
     else if (.not. event(1) > 0) then
       call add_figure(lines, '', 'no '//name)
-    else if (deck%has_impactor) then
+    else if (deck%setup%impactor%is_present) then
       call add_figure(lines, '', name//' at force '//results%with_unit(event(2), force_kind)//', '// &
                       moment(deck, event(1)))
     else

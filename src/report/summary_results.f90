@@ -28,22 +28,22 @@ contains
     !> The list
     type(results_t) :: results
 
-    results = new_results(deck%units, deck%is_static())
-    call results%add(trim(merge('load_factor_reached', 'time_reached       ', deck%is_static())), &
+    results = new_results(deck%case%units, deck%setup%is_static())
+    call results%add(trim(merge('load_factor_reached', 'time_reached       ', deck%setup%is_static())), &
                      shown_time(record%time))
     call results%add('accepted_steps', now%step)
-    if (deck%moves_impactor() .or. deck%presses_impactor()) then
+    if (deck%setup%moves_impactor() .or. deck%setup%presses_impactor()) then
       call results%add('peak_force', record%peak_force)
       call results%add('peak_force_at', shown_time(record%peak_time))
     end if
-    if (deck%moves_impactor()) call add_impact(results, deck, now, record, figures)
+    if (deck%setup%moves_impactor()) call add_impact(results, deck, now, record, figures)
     call results%add('largest_deflection', record%deflection)
     call results%add('largest_deflection_at', shown_time(record%deflection_time))
     if (is_slow_motion(deck)) call results%add('kinetic_share', record%slow_motion%share)
     if (record%scaled_energy > 0) call results%add('scaled_kinetic_share', record%scaled_share())
     call add_energies(results, now%ledger)
     if (size(figures%interfaces) > 0) call add_interfaces(results, deck, record, figures)
-    if (deck%has_ply_damage) then
+    if (deck%setup%ply_damage%is_present) then
       call results%add('fibre_failures', figures%failures(1))
       call results%add('matrix_cracks', figures%failures(2))
       call results%add('matrix_crushings', figures%failures(3))
@@ -62,7 +62,7 @@ contains
     type(run_figures_t), intent(in) :: figures
     real(wp) :: energy
 
-    energy = impactor_energy(deck%impactor, new_impactor(deck%impactor))
+    energy = impactor_energy(deck%setup%impactor, new_impactor(deck%setup%impactor))
     call results%add('contacts', record%contacts)
     call results%add('contact_duration', shown_time(record%contact_duration))
     call results%add('contact_until', shown_time(record%contact_end))
@@ -110,7 +110,7 @@ contains
     call results%add('projected_area', figures%projected_areas(area_dissipated))
     call results%add('projected_area_failed', figures%projected_areas(area_failed))
     call results%add('projected_area_softened', figures%projected_areas(area_softened))
-    if (deck%initial%is_inherited) then
+    if (deck%setup%initial%is_inherited) then
       call results%add('delaminated_area_before', record%area_before(1))
       call results%add('projected_area_before', record%area_before(2))
     end if
@@ -128,7 +128,7 @@ contains
       real(wp), intent(in) :: event(3)
 
       call results%add(name//'_at', event(1), event(1) > 0)
-      if (deck%has_impactor) call results%add(name//'_force', event(2), event(1) > 0)
+      if (deck%setup%impactor%is_present) call results%add(name//'_force', event(2), event(1) > 0)
     end subroutine add_first
   end subroutine add_interfaces
 
@@ -151,7 +151,7 @@ contains
       end if
       call results%add('has_failed', of%failed)
       call results%add('effective_modulus', of%modulus(), of%modulus() > 0)
-      if (.not. all(back_to_back(deck%gauges) > 0)) return
+      if (.not. all(back_to_back(deck%setup%plate%gauges) > 0)) return
       call results%add('percent_bending', of%bending)
       call results%add('buckling_strain', of%buckling, of%buckling > 0)
     end associate

@@ -110,7 +110,7 @@ contains
     call insert('{at}', at)
     call insert('{limit}', to_text(row%limit))
     call insert('{percent}', short_text(100*row%limit))
-    if (zone > 0) call insert('{ply}', to_text(deck%delaminations(zone)%below_ply))
+    if (zone > 0) call insert('{ply}', to_text(deck%setup%delaminations(zone)%below_ply))
     call insert('{method}', stepper%method_name())
     call insert('{remedy}', remedy_of(row%name, deck, stepper))
 
@@ -139,18 +139,19 @@ contains
     remedy = ''
     select case (name)
     case ('created', 'dissipated')
-      remedy = stepper%energy_remedy(deck%setup_t, name == 'created')
+      remedy = stepper%energy_remedy(deck%setup, name == 'created')
     case ('ledger')
       remedy = stepper%ledger_remedy()
     case ('mapping')
       remedy = 'damage may grow by it; give settle of &time and motion=''rest'', with which damage is held until '// &
                'the plate is at rest, or the mesh of the other run.'
-      if (deck%load_start > 0 .and. deck%initial%motion == motion_rest) &
+      if (deck%setup%loading%start > 0 .and. deck%setup%initial%motion == motion_rest) &
         remedy = 'damage is held until the end of settle, which must bring the plate to rest.'
     case ('below_nose')
       remedy = 'the force on the patch presses its middle ahead of the nose; use &impactor '// &
                'contact_area=''sphere'', or a smaller patch.'
-      if (deck%impactor%spreads) remedy = 'the plate bends away from the nose, on failed fibres or on cells too '// &
+      if (deck%setup%impactor%spreads) &
+        remedy = 'the plate bends away from the nose, on failed fibres or on cells too '// &
         'large to follow it; use shorter cells. The largest deflection includes this.'
     end select
   end function remedy_of

@@ -53,7 +53,7 @@ contains
     stiffened = duration
     if (duration < quasi_static*pi*sqrt(setup%impactor%mass*scales%compliance)) return
     ! The compliance of a curved plate includes its membrane forces, and its stiffness decreases at first.
-    if (setup%kinematics == kinematics_von_karman .and. all(abs(setup%plate%curvature_radius) <= 0)) &
+    if (setup%mesh%kinematics == kinematics_von_karman .and. all(abs(setup%plate%curvature_radius) <= 0)) &
       spring%membrane = membrane(merge(1, 2, setup%plate%in_plane == in_plane_fixed .and. &
                                        any(setup%plate%edges /= edge_free)), &
                                  merge(1, 2, all(free_edges(setup) == edge_clamped)))

@@ -111,7 +111,7 @@ contains
     if (cell > 0) call disperse(plate, cell)
     steps = max_steps
     if (end > 0) steps = min(steps, max(1, nint(end/step)))
-    run = run_elastic_impact(plate, self%setup%impactor, self%setup%indentation, step, steps, end > 0)
+    run = run_elastic_impact(plate, self%setup%impactor, self%setup%impactor%indentation, step, steps, end > 0)
     if (end > 0) run%complete = steps >= nint(end/step)
   end function run_of
 

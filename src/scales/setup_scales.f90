@@ -79,7 +79,7 @@ contains
       scales%threshold = growth_threshold(setup, effective_bending_stiffness(struck%stiffness))
     scales%onset = onset_force(setup)
     if (.not. setup%is_impact()) return
-    associate (m => setup%impactor%mass, v => setup%impactor%velocity, k => setup%indentation%k)
+    associate (m => setup%impactor%mass, v => setup%impactor%velocity, k => setup%impactor%indentation%k)
       scales%energy = m*v**2/2
       ! The plate responds to waves like a dashpot of 8 sqrt(D rho h) (Boussinesq; Olsson 1992).
       scales%contact_time = min((8*sqrt(scales%bending*scales%area_mass)*v/k)**(2.0_wp/3)/v, &
@@ -212,7 +212,7 @@ contains
     radius = setup%contact_radius()
     ! If the radius is not given: the radius of a rigid sphere for which Sun's formula gives this k.
     if (.not. radius > 0) &
-      radius = (0.75_wp*setup%indentation%k/setup%materials(local%material(1))%e2)**2
+      radius = (0.75_wp*setup%impactor%indentation%k/setup%materials(local%material(1))%e2)**2
     side = sqrt(pi*radius*indentation) + sum(local%thickness)
   end function contact_side
 

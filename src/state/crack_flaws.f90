@@ -7,7 +7,7 @@ module crack_flaws
   use interface_states, only: interface_state_t
   use kinds, only: wp
   use matrix_exposures, only: matrix_strengths_t, cracks_on_a_plane, shear_across_strength
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use plies, only: elasticity_t
   use ply_blocks, only: block_thickness
   use ply_damage_parameters, only: matrix_cracking, matrix_crushing
@@ -21,7 +21,7 @@ contains
   !> Reduces the strength of interfaces within the thickness of a block from matrix cracks of the ply above or below.
   !> Collective.
   subroutine update_flaws(model, plies, displacement, interfaces)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Displacement in the accepted state, ghosts up to date, (5, points)
@@ -32,7 +32,7 @@ contains
     logical :: beside(size(model%mesh%zones)), cracked(product(model%mesh%cells))
     integer :: zone, ply
 
-    if (.not. (model%map%layered .and. model%setup%has_ply_damage)) return
+    if (.not. (model%map%layered .and. model%setup%ply_damage%is_present)) return
     do ply = 1, model%mesh%plies
       associate (below => model%mesh%zones%below_ply, delaminations => model%setup%delaminations)
         beside = (below == ply .or. below == ply - 1) .and. delaminations%law == law_cohesive .and. &
@@ -56,7 +56,7 @@ contains
   !> Reduces the strengths of the interfaces of a ply beside its cracks by transverse shear: a cracked ply transmits no
   !> more than its own shear strength. Collective.
   subroutine weaken_by_shear(model, plies, strains, ply, interfaces)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of the plies in the accepted state
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
@@ -93,7 +93,7 @@ contains
   !> Cells in which a ply has started to crack or reaches its strength with transverse shear included, on all ranks.
   !> Collective.
   function sheared_cells(model, plies, strains, ply, reachable, strengths) result(cracked)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Strains from element_strains
@@ -126,7 +126,7 @@ contains
 
   !> Cells with matrix cracks in a ply, on all ranks. Collective.
   function cracked_cells(model, plies, ply) result(cracked)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Failures of the plies
     type(ply_failure_t), intent(in) :: plies
     !> Ply of the laminate
@@ -141,7 +141,7 @@ contains
 
   !> Cells of elements, on all ranks. Collective.
   function cells_of(model, elements) result(cells)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> True for elements of this rank, (elements)
     logical, intent(in) :: elements(:)
     !> (cells of the mesh)

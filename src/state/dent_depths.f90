@@ -3,7 +3,7 @@
 module dent_depths
   use exact_sums, only: exact_sum_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use roundings, only: rounding
@@ -26,7 +26,7 @@ contains
   !> Depth of the struck face below the plane of the surface around it; 0 without a nose, or without cells of the mesh
   !> there. The permanent indentation of the law is added separately. Collective.
   real(wp) function dent_depth(model, displacement) result(depth)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: plane(3), place(2)
@@ -34,7 +34,7 @@ contains
     integer :: i, point
 
     depth = 0
-    if (.not. (model%setup%has_impactor .and. model%setup%impactor%radius > 0)) return
+    if (.not. (model%setup%impactor%is_present .and. model%setup%impactor%radius > 0)) return
     call find_plane(model, displacement, plane, is_known)
     if (.not. is_known) return
     associate (mesh => model%mesh, owned => model%distribution%points(:model%distribution%owned))
@@ -52,7 +52,7 @@ contains
   !> Least-squares plane of the surface around the dent, through the centres of cells weighted by area. Slopes are zero
   !> along directions of symmetry. Collective.
   subroutine find_plane(model, displacement, plane, is_known)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Height at the struck point and slopes along x and y

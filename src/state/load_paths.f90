@@ -4,7 +4,7 @@ module load_paths
   use field_mappings, only: motion_field
   use kinds, only: wp
   use archives, only: archive_t
-  use models, only: model_t
+  use discretizations, only: discretization_t
   implicit none
   private
   public :: load_path_t
@@ -29,7 +29,7 @@ contains
   subroutine visit(self, archive, model)
     class(load_path_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    class(discretization_t), intent(in) :: model
 
     call archive%item('path/by_dissipation', self%by_dissipation)
     call archive%item('path/factor_change', self%factor_change)

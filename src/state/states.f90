@@ -103,7 +103,7 @@ contains
     self%impactor = new_impactor(model%setup%impactor)
     self%ledger%impactor = impactor_energy(model%setup%impactor, self%impactor)
     self%ledger%initial = self%ledger%impactor
-    self%ledger%largest = energy_of_weight(model%setup%impactor, model%setup%indentation)
+    self%ledger%largest = energy_of_weight(model%setup%impactor, model%setup%impactor%indentation)
   end function new_state
 
   !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
@@ -132,7 +132,7 @@ contains
     self%contact_iterations = 0
     self%motion%displacement = old%motion%displacement
     ! They change only by damage.
-    if (model%setup%has_ply_damage) self%plies = old%plies
+    if (model%setup%ply_damage%is_present) self%plies = old%plies
   end subroutine start_from
 
   !> Internal forces of layers and cohesive interfaces, and their stored energy on this rank.

@@ -4,7 +4,7 @@ module struck_stresses
   use kinds, only: wp
   use element_batches, only: lanes, batch_of, lane_of
   use strain_recovery, only: mean_strains
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use rank_totals, only: totals_of
   implicit none
   private
@@ -14,7 +14,7 @@ contains
 
   !> Magnitude of the surface stress 6 M / h**2 around the struck point, the same on every rank.
   real(wp) function struck_stress(model, displacement) result(stress)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     real(wp) :: curvature(3), moment(3), strains(lanes, 8)
@@ -25,7 +25,7 @@ contains
     if (size(model%struck_elements) > 0) motion = model%motion_of(displacement)
     do i = 1, size(model%struck_elements)
       associate (element => model%struck_elements(i))
-        call mean_strains(model%elements, batch_of(element), model%setup%kinematics, motion, strains)
+        call mean_strains(model%elements, batch_of(element), model%setup%mesh%kinematics, motion, strains)
         do k = 1, 3
           call sums(k)%add(strains(lane_of(element), 3 + k))
         end do

@@ -85,7 +85,7 @@ contains
     type(newton_iteration_t), intent(inout) :: at
 
     associate (model => at%model, new => at%new)
-      if (model%setup%has_impactor) then
+      if (model%setup%impactor%is_present) then
         ! The impactor's travel follows from its force.
         if (new%force < 0) then
           residual_norm = huge(residual_norm)
@@ -116,7 +116,7 @@ contains
       response = 0
       slopes = 0
       loads = 0
-      if (model%setup%has_impactor) then
+      if (model%setup%impactor%is_present) then
         call add_impactor_force(model, new, 1.0_wp, loads)
       else
         call model%load_slopes(loads)
@@ -130,7 +130,7 @@ contains
       sums = sums*model%mesh%multiplicity
       change = 0
       if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
-      if (model%setup%has_impactor) then
+      if (model%setup%impactor%is_present) then
         new%force = new%force + self%correction_factor(new%iterations)*change
       else
         ! Near a limit point a correction may be so large that the iteration diverges.

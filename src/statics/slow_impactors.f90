@@ -25,7 +25,7 @@ contains
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
 
-    if (model%setup%has_impactor) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*state%contact%weights
+    if (model%setup%impactor%is_present) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*state%contact%weights
   end subroutine add_impactor_force
 
   !> Finds the impactor's force for the travel and the deflection of the plate, and adds the unit-load solution times
@@ -65,7 +65,7 @@ contains
       end if
     end if
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
-    step = contact_step_t(model%setup%indentation, new%indentation, start=new%indentation%alpha, &
+    step = contact_step_t(model%setup%impactor%indentation, new%indentation, start=new%indentation%alpha, &
                           free=new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, &
                           compliance=compliance, is_mean=.false.)
     call solve_impact_force(step, force, alpha, force_end, iterations, error)
@@ -90,7 +90,7 @@ contains
 
     force = -1
     if (.not. new%force > 0) return
-    associate (law => model%setup%indentation)
+    associate (law => model%setup%impactor%indentation)
       alpha = indentation_of(law, new%indentation, new%force)
       flexibility = compliance + 1/indentation_stiffness(law, new%indentation, alpha)
     end associate
@@ -105,8 +105,8 @@ contains
     type(state_t), intent(in) :: new
     real(wp) :: force
 
-    force = indentation_force(model%setup%indentation, new%indentation, new%load_factor*model%setup%impactor%travel - &
-                              new%contact_deflection(model))
+    force = indentation_force(model%setup%impactor%indentation, new%indentation, &
+                              new%load_factor*model%setup%impactor%travel - new%contact_deflection(model))
     mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
   end function force_mismatch
 
@@ -116,7 +116,7 @@ contains
     !> The state
     type(state_t), intent(in) :: new
 
-    travel = indentation_of(model%setup%indentation, new%indentation, new%force) + &
+    travel = indentation_of(model%setup%impactor%indentation, new%indentation, new%force) + &
              new%contact_deflection(model)
   end function travel_for
 
@@ -129,7 +129,8 @@ contains
     type(state_t), intent(inout) :: new
 
     new%impactor%displacement = new%load_factor*model%setup%impactor%travel
-    call commit_indentation(model%setup%indentation, new%indentation, new%impactor%displacement - new%patch_mean)
+    call commit_indentation(model%setup%impactor%indentation, new%indentation, &
+                            new%impactor%displacement - new%patch_mean)
     new%ledger%indentation = new%indentation%work
     new%ledger%external_work = new%ledger%external_work + new%indentation%work - old%indentation%work + &
                                (old%force + new%force)/2*(new%patch_mean - old%patch_mean)

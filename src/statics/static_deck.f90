@@ -2,7 +2,7 @@
 module static_deck
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use load_step_parameters, only: load_stepping_t
+  use loading_parameters, only: loading_t
   implicit none
   private
   public :: fill_static
@@ -23,12 +23,12 @@ module static_deck
 contains
 
   !> Fills in the load steps.
-  subroutine fill_static(settings, static)
+  subroutine fill_static(settings, loading)
     type(settings_t), intent(in) :: settings
     !> Receives them
-    type(load_stepping_t), intent(inout) :: static
+    type(loading_t), intent(inout) :: loading
 
-    static%steps = settings%integer_of(static_group, 'steps')
-    static%dissipation = settings%real_of(static_group, key_dissipation)
+    loading%steps = settings%integer_of(static_group, 'steps')
+    loading%dissipation = settings%real_of(static_group, key_dissipation)
   end subroutine fill_static
 end module static_deck

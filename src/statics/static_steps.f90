@@ -45,7 +45,7 @@ contains
     real(wp), intent(in) :: load_factor
     type(static_step_t) :: self
 
-    self%may_be_shortened = model%setup%kinematics /= kinematics_linear .or. model%setup%is_bimodular()
+    self%may_be_shortened = model%setup%mesh%kinematics /= kinematics_linear .or. model%setup%is_bimodular()
     self%time = time
     self%load_factor = load_factor
   end function new_static_step
@@ -93,7 +93,7 @@ contains
       ! A second iteration removes the round-off of the first, so it is required.
       residual_norm = relative_residual(model, operator, at%equilibrium, at%residual, references, &
                                         new%motion%displacement, new%iterations > 1, new%largest_forces)
-      if (model%setup%has_impactor) residual_norm = max(residual_norm, force_mismatch(model, new))
+      if (model%setup%impactor%is_present) residual_norm = max(residual_norm, force_mismatch(model, new))
     end associate
   end function residual_norm
 
@@ -136,7 +136,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
 
     associate (model => at%model, operator => at%operator, new => at%new, correction => at%correction)
-      if (model%setup%has_impactor) &
+      if (model%setup%impactor%is_present) &
         call find_force_change(model, operator, self%correction_factor(new%iterations), new, correction, error)
       if (allocated(error)) error%code = exit_convergence
       correction = self%correction_factor(new%iterations)*correction
@@ -149,10 +149,10 @@ contains
     !> Iterations of this step so far
     integer, intent(in) :: iterations
 
-    tangent_changes = model%setup%kinematics /= kinematics_linear .or. model%rig%unilateral
+    tangent_changes = model%setup%mesh%kinematics /= kinematics_linear .or. model%rig%unilateral
     if (model%map%layered) tangent_changes = tangent_changes .or. any(model%setup%delaminations%law == law_cohesive)
     ! Plies may have failed since the step before; later only contacts change.
-    if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%setup%has_ply_damage &
+    if (.not. tangent_changes) tangent_changes = iterations == 0 .and. (model%setup%ply_damage%is_present &
                                                                         .or. model%map%layered)
     tangent_changes = tangent_changes .or. model%setup%has_crack_bands() .or. model%setup%is_bimodular()
     if (tangent_changes .or. .not. model%map%layered) return
@@ -204,7 +204,7 @@ contains
       ! released would become kinetic energy.
       call add_impactor_force(model, old, old%force, loads_before)
       sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
-      if (.not. (model%setup%has_ply_damage .or. allocated(model%nose))) sums(5) = 0
+      if (.not. (model%setup%ply_damage%is_present .or. allocated(model%nose))) sums(5) = 0
       call model%communicator%sum(sums)
       sums = sums*model%mesh%multiplicity
       call new%count_step(old)
@@ -216,7 +216,7 @@ contains
       fracture = new%interfaces%cohesive%dissipation(model, old%interfaces%cohesive)
       heat = new%interfaces%friction_heat(model, old%interfaces)
       new%ledger%friction = old%ledger%friction + heat
-      if (model%setup%has_impactor) call move_slow_impactor(model, old, new)
+      if (model%setup%impactor%is_present) call move_slow_impactor(model, old, new)
       sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
       call new%plies%record(model, damage)
       new%ledger%ply_damage = old%ledger%ply_damage + damage

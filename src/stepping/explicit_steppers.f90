@@ -163,7 +163,7 @@ contains
       call method%renew_forces(model, now)
       now%deflection = model%deflection(now%motion%displacement)
       now%patch_mean = now%contact_deflection(model)
-      if (model%setup%has_impactor) call method%impact%place(model, now)
+      if (model%setup%impactor%is_present) call method%impact%place(model, now)
       call record_energies(method, model, now)
       now%ledger%initial = now%ledger%initial + now%ledger%error()
       call self%complete_state(model, error)

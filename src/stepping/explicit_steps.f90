@@ -29,11 +29,11 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: kept
 
-    if (now%holds_damage .and. .not. now%time < model%setup%load_start) call release_damage(method, model, now)
+    if (now%holds_damage .and. .not. now%time < model%setup%loading%start) call release_damage(method, model, now)
     kept = 1
     if (is_damped(method, model, now)) call damp_motion(method, model, now, method%parameters%settle, kept)
     call method%advance(model, event, kept, now)
-    if (model%setup%has_ply_damage .and. .not. (allocated(now%plies%bands) .or. now%holds_damage)) then
+    if (model%setup%ply_damage%is_present .and. .not. (allocated(now%plies%bands) .or. now%holds_damage)) then
       call model%profile%enter('ply criteria')
       call now%plies%grow(model, now%motion%displacement)
       call model%profile%leave()
@@ -65,8 +65,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
 
-    is_damped = now%time < model%setup%load_start
-    if (.not. (model%setup%has_impactor .and. method%parameters%settle > 0)) return
+    is_damped = now%time < model%setup%loading%start
+    if (.not. (model%setup%impactor%is_present .and. method%parameters%settle > 0)) return
     is_damped = is_damped .or. now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
   end function is_damped
 

@@ -65,7 +65,7 @@ contains
     else
       allocate (motion_steps_t :: self%kind)
     end if
-    if (model%setup%static%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
+    if (model%setup%loading%dissipation > 0) allocate (self%now%path%change, source=self%now%motion%displacement)
     call self%operator%create(model, linear_solver%factorization, error)
     self%unknowns = self%operator%numbering%total
     if (.not. allocated(error)) call find_initial_equilibrium(model, self%operator, self%now, error)

@@ -142,7 +142,7 @@ contains
     class(implicit_steps_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
-    energy_rate = max(0.0_wp, model%setup%static%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
+    energy_rate = max(0.0_wp, model%setup%loading%dissipation - self%now%ledger%delamination)/(1 - self%now%time)
   end function energy_rate
 
   !> Pseudo-time of a step under control of dissipation over that of a step under load control; 1 for the latter.
@@ -151,6 +151,6 @@ contains
     type(model_t), intent(in) :: model
 
     step_scale = 1
-    if (self%now%path%by_dissipation) step_scale = model%setup%static%dissipation/self%energy_rate(model)
+    if (self%now%path%by_dissipation) step_scale = model%setup%loading%dissipation/self%energy_rate(model)
   end function step_scale
 end module implicit_steps

@@ -3,7 +3,7 @@ module line_columns
   use kinds, only: wp
   use line_loads, only: line_load_t
   use mesh_parameters, only: is_halved, plate_t
-  use models, only: model_t
+  use plate_loads, only: loaded_plate_t
   use rank_totals, only: totals_of
   use result_tables, only: result_row_length
   use states, only: state_t
@@ -31,7 +31,7 @@ contains
 
   !> Load factor, then force and displacement of every line. Collective.
   function line_values(model, now) result(values)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     type(state_t), intent(in) :: now
     !> One value per column, the same on every rank; none without lines
     real(wp), allocatable :: values(:)
@@ -83,7 +83,7 @@ contains
 
   !> Axis along which lines displace ends of the plate; 0: none do.
   pure integer function pressed_axis(model) result(along)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     logical :: on(size(model%lines))
 
     along = 0
@@ -93,7 +93,7 @@ contains
 
   !> Far-field stress and shortening, from forces and displacements of the lines.
   pure function end_values(model, values) result(ends)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> Load factor, then force and displacement of every line
     real(wp), intent(in) :: values(:)
     !> One value per column; none without such lines

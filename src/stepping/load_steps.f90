@@ -36,7 +36,7 @@ contains
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(inout) :: error
 
-    stepper%controller%target = 1.0_wp/model%setup%static%steps
+    stepper%controller%target = 1.0_wp/model%setup%loading%steps
     stepper%smallest_step = stepper%controller%target/stepper%stepping%controls%load_step_parts
   end subroutine start
 
@@ -84,7 +84,7 @@ contains
 
     associate (now => stepper%now)
       by_dissipation = new_dissipation_step(model, now%time + step, stepper%energy_rate(model)*step, &
-                                            1.0_wp/model%setup%static%steps)
+                                            1.0_wp/model%setup%loading%steps)
       call solve_step(by_dissipation, model, stepper%stepping%equilibrium, stepper%operator, now, stepper%trial, &
                       converged, error)
       ! With a larger change of the load another branch of equilibrium might be found that is not connected with the
@@ -118,7 +118,7 @@ contains
     !> True: delaminations have grown
     logical, intent(in) :: extended
 
-    stepper%controller%target = 1.0_wp/model%setup%static%steps
+    stepper%controller%target = 1.0_wp/model%setup%loading%steps
   end subroutine choose_next
 
   !> Restores equilibrium at constant load after failures of plies, until no more plies fail.

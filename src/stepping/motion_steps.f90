@@ -100,7 +100,7 @@ contains
       stepper%solves_at_start = operator%solves
       factor_is_due = operator%ready
       if (factor_is_due) then
-        factor_is_due = stepper%controller%renewal_due(stepper%stepping, model%setup%kinematics == &
+        factor_is_due = stepper%controller%renewal_due(stepper%stepping, model%setup%mesh%kinematics == &
           kinematics_von_karman, mass_factor/operator%mass_factor, now%deflection - operator%deflection, &
           model%thickness)
       else
@@ -117,7 +117,7 @@ contains
     type(model_t), intent(in) :: model
 
     associate (trial => stepper%trial)
-      trial%interfaces%contact%glued = trial%interfaces%contact%glued .or. model%setup%has_impactor &
+      trial%interfaces%contact%glued = trial%interfaces%contact%glued .or. model%setup%impactor%is_present &
         .and. trial%impactor%velocity <= 0 .and. trial%force < stepper%now%force
     end associate
   end subroutine complete_trial
@@ -144,7 +144,7 @@ contains
       if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
       if (stepper%is_error_controlled) &
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &
-          .not. model%setup%has_impactor .or. stepper%step_error%impact_is_over(stepping%expected, now), &
+          .not. model%setup%impactor%is_present .or. stepper%step_error%impact_is_over(stepping%expected, now), &
                                        has_gear(model), now%has_failures())
       if (grows_by_steps(model)) call controller%limit_by_fronts(stepping, now%interfaces%growth_ratio, extended)
     end associate

@@ -25,8 +25,8 @@ contains
     real(wp) :: change
     logical :: extended
 
-    if (model%setup%static%dissipation > 0 .and. step > 0) &
-      call self%trial%record_path(self%now, model%setup%static%dissipation)
+    if (model%setup%loading%dissipation > 0 .and. step > 0) &
+      call self%trial%record_path(self%now, model%setup%loading%dissipation)
     self%trial%stress = struck_stress(model, self%trial%motion%displacement)
     self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
@@ -98,6 +98,6 @@ contains
                 rounded_text(self%now%time)//' on with the smallest step, '// &
                 trim(rounded_text(step)//'. '//self%operator%solver%fault))
     self%operator%ready = .false.
-    if (model%setup%static%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
+    if (model%setup%loading%dissipation > 0) self%now%path%by_dissipation = self%now%path%dissipated > 0
   end subroutine reject_step
 end module step_acceptance

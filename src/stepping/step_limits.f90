@@ -23,9 +23,9 @@ contains
     real(wp), intent(in) :: target
 
     limit = huge(limit)
-    if (.not. model%setup%has_impactor) return
-    limit = largest_safe_step(model%setup%impactor, model%setup%indentation, now%indentation, now%indentation%alpha, &
-                              now%impactor%velocity)
+    if (.not. model%setup%impactor%is_present) return
+    limit = largest_safe_step(model%setup%impactor, model%setup%impactor%indentation, now%indentation, &
+                              now%indentation%alpha, now%impactor%velocity)
     if (limit < target) limit = target*2.0_wp**floor(log(limit/target)/log(2.0_wp))
   end function impactor_limit
 
@@ -47,6 +47,6 @@ contains
   pure logical function has_gear(model)
     type(model_t), intent(in) :: model
 
-    has_gear = model%setup%has_impactor .and. model%setup%impactor%integrator == integrator_gear4
+    has_gear = model%setup%impactor%is_present .and. model%setup%impactor%integrator == integrator_gear4
   end function has_gear
 end module step_limits

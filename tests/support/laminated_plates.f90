@@ -36,7 +36,7 @@ contains
     material%g13 = 4.5e9_wp
     material%g23 = 2.98e9_wp
     material%nu12 = 0.309_wp
-    setup%kinematics = kinematics_linear
+    setup%mesh%kinematics = kinematics_linear
     setup%plate%length = [0.04_wp, 0.03_wp]
     setup%plate%edges = edge_free
     setup%plate%in_plane = in_plane_free

@@ -3,7 +3,6 @@ module layered_plates
   use kinds, only: wp
   use contact_and_ties, only: contact_and_ties_t
   use delamination_parameters, only: contact_none
-  use load_cases, only: analysis_by_load_steps
   use material_parameters, only: material_t
   use mesh_parameters, only: edge_free, edge_clamped, symmetry_none, symmetry_quarter
   use models, only: model_t
@@ -72,13 +71,13 @@ contains
     !> The setup, without plate and mesh
     type(setup_t) :: setup
 
-    setup%kinematics = kinematics_linear
+    setup%mesh%kinematics = kinematics_linear
     allocate (setup%materials, source=materials)
     allocate (setup%laminate%material(size(angles)), source=1)
     allocate (setup%laminate%angle, source=angles)
     allocate (setup%laminate%thickness, source=thickness)
-    setup%analysis = analysis_by_load_steps
-    setup%has_pressure = .true.
+    setup%loading%by_steps = .true.
+    setup%pressure%is_present = .true.
     allocate (setup%delaminations(1))
     setup%delaminations%below_ply = below_ply
     setup%delaminations%toughness = 1

@@ -63,7 +63,7 @@ contains
     integer :: plies
 
     plies = size(angles)
-    setup%kinematics = kinematics_linear
+    setup%mesh%kinematics = kinematics_linear
     setup%plate%length = 1
     setup%plate%edges = edge_simple
     setup%plate%symmetry = merge(symmetry_quarter, symmetry_none, quarter)
@@ -81,7 +81,7 @@ contains
     !> Largest pressure
     real(wp), intent(in) :: value
 
-    setup%has_pressure = .true.
+    setup%pressure%is_present = .true.
     setup%pressure%value = value
     setup%pressure%distribution = distribution_sine
   end subroutine press
@@ -93,13 +93,13 @@ contains
     !> Mass and velocity of the impactor, contact stiffness
     real(wp), intent(in) :: mass, velocity, k
 
-    setup%has_impactor = .true.
+    setup%impactor%is_present = .true.
     setup%mesh%patch = 0.2_wp
     setup%impactor%mass = mass
     setup%impactor%velocity = velocity
     setup%impactor%integrator = integrator_conserving
-    setup%indentation%law = law_hertz
-    setup%indentation%k = k
+    setup%impactor%indentation%law = law_hertz
+    setup%impactor%indentation%k = k
   end subroutine coupling
 
   !> Deflection of m half-waves along x and n along y of a simply supported plate.

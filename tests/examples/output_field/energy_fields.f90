@@ -54,7 +54,7 @@ contains
     allocate (density(1, model%elements%elements), source=0.0_wp)
     motion = model%motion_of(displacement)
     do b = 1, model%elements%batches
-      call gauss_strains(model%elements, b, model%setup%kinematics, motion, strains)
+      call gauss_strains(model%elements, b, model%setup%mesh%kinematics, motion, strains)
       do lane = 1, model%elements%lanes_used(b)
         energy = 0
         do point = 1, 9

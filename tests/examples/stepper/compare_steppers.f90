@@ -55,7 +55,7 @@ contains
 
     call read_deck_text(plate//steps//nl, 'deck', deck, problems)
     if (problems%errors() > 0) stop 2
-    call create_model(deck%setup_t, communicator, model, error)
+    call create_model(deck%setup, communicator, model, error)
     if (allocated(error)) stop 3
     if (by_verlet) then
       if (allocated(stepper)) deallocate (stepper)

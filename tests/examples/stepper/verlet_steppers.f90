@@ -53,7 +53,7 @@ contains
     self%smallest_step = stepping%time%step_min
     self%unknowns = count(.not. model%fixed)
     if (.not. allocated(model%lumped) .or. model%map%layered .or. size(model%lines) > 0 .or. &
-        model%setup%has_impactor .or. model%setup%has_variable_sections()) then
+        model%setup%impactor%is_present .or. model%setup%has_variable_sections()) then
       call fail(error, exit_deck, 'Verlet steps require &mesh mass=''lumped'' and a plate under pressure alone.')
       return
     end if
