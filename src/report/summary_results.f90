@@ -47,6 +47,8 @@ contains
       call results%add('fibre_failures', figures%failures(1))
       call results%add('matrix_cracks', figures%failures(2))
       call results%add('matrix_crushings', figures%failures(3))
+      if (deck%has_rates()) &
+        call results%add('matrix_strengthening', figures%strengthening, figures%strengthening > 0)
     end if
     if (record%compression%strength > 0) call add_compression(results, deck, record)
   end function results_of
