@@ -205,8 +205,8 @@ contains
     !> Along x and y
     real(wp) :: distance(2)
 
-    distance = old%mesh%struck + old%delaminations(zone)%zone_at &
-               - deck%initial%cut_at - deck%mesh%struck - deck%delaminations(zone)%zone_at
+    distance = old%setup%mesh%struck + old%setup%delaminations(zone)%zone_at &
+               - deck%setup%initial%cut_at - deck%setup%mesh%struck - deck%setup%delaminations(zone)%zone_at
   end function centre_distance
 
   !> Opens a checkpoint and reads its deck, with the zones at its end. Collective.

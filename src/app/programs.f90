@@ -9,7 +9,8 @@ module programs
   use deck_contents, only: deck_t
   use deck_problems, only: problems_t
   use ply_zone_tables, only: ply_zone_lines
-  use scale_tables, only: scale_lines, strength_lines, volume_lines, toughness_lines
+  use scale_tables, only: scale_lines
+  use strength_tables, only: strength_lines
   use zone_tables, only: zone_lines
   use deck_sizes, only: size_of_deck
   use deck_table, only: load_deck_table
@@ -243,8 +244,7 @@ contains
     if (lacks) call print_lines(communicator, [line_t(missing_start(deck))])
     call print_lines(communicator, [line_t(command%target//': no errors.')])
     if (symmetry_sentence(deck) /= '') call print_lines(communicator, [line_t(symmetry_sentence(deck))])
-    call print_lines(communicator, [scale_lines(deck), ply_zone_lines(deck), zone_lines(deck), strength_lines(deck), &
-                                    volume_lines(deck), toughness_lines(deck)])
+    call print_lines(communicator, [scale_lines(deck), ply_zone_lines(deck), zone_lines(deck), strength_lines(deck)])
     model_size = size_of_deck(deck)
     call print_lines(communicator, [line_t(model_size%sentence()), cost_lines(deck, model_size)])
   end subroutine check

@@ -9,7 +9,8 @@ module run_reports
   use deck_echo, only: echo
   use deck_extents, only: extent_lines
   use ply_zone_tables, only: ply_zone_lines
-  use scale_tables, only: scale_lines, strength_lines, volume_lines, toughness_lines
+  use scale_tables, only: scale_lines
+  use strength_tables, only: strength_lines
   use zone_tables, only: zone_lines
   use deck_table, only: load_deck_table
   use deck_vocabulary, only: vocabulary_t
@@ -37,7 +38,7 @@ contains
     if (deck%setup%impactor%is_present .and. .not. deck%setup%impactor%indentation%is_given) &
       call echo_without_group(deck%setup%impactor%indentation, lines)
     lines = [lines, extent_lines(deck), scale_lines(deck), ply_zone_lines(deck), zone_lines(deck), &
-             strength_lines(deck), volume_lines(deck), toughness_lines(deck)]
+             strength_lines(deck)]
     if (allocated(deck%reasons)) lines = [lines, deck%reasons]
     do i = 1, size(lines)
       call log%detail(lines(i)%text)

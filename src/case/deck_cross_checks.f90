@@ -164,7 +164,7 @@ contains
     if (.not. deck%has_time) return
     if (.not. problems%concern(time_group)) &
       call check_intervals(deck%settings, deck%stepping%time%step, deck%stepping%time%end, problems)
-    if (deck%stepping%time%ends_at_failure .and. .not. (has_ends(deck%plate, deck%lines) .or. &
+    if (deck%stepping%time%ends_at_failure .and. .not. (has_ends(deck%setup%plate, deck%setup%lines) .or. &
                                                         problems%concern(line_group))) &
       call report(deck%settings, problems, time_group, key_until, &
                   'failure is that of a plate whose ends lines displace; give such a &line, or leave it out.')

@@ -1,4 +1,5 @@
-!> Tensile strength of fibres by their stressed volume: bounds of it in the plate of the deck, and checks of its keys.
+!> Tensile strength of fibres by their stressed volume or drawn by position: bounds of it in the plate of the deck, and
+!> checks of its keys.
 module deck_fibre_strengths
   use cell_grids, only: cells_along
   use cell_lines, only: cell_line_t
@@ -9,17 +10,20 @@ module deck_fibre_strengths
   use mesh_parameters, only: parts_of
   use plies, only: ply_t
   use ply_blocks, only: block_thickness
-  use ply_damage_deck, only: key_volume, key_weibull, ply_damage_group
+  use ply_damage_deck, only: key_seed, key_square, key_volume, key_weibull, ply_damage_group
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
   use stressed_volumes, only: factor_of
+  use text, only: to_text
   implicit none
   private
-  public :: check_fibre_strengths, fibre_factors, block_volumes
+  public :: check_fibre_strengths, fibre_factors, block_volumes, scatter_of
 
   !> Ratios of the reference volume to that of the plate beyond which it is probably in another unit: specimens have 1
   !> to 1e5 mm3, plates 1e3 to 1e8 mm3, and metres in place of millimetres change the ratio by 1e9.
   real(wp), parameter :: usual_ratios(2) = [1.0e-8_wp, 1.0e3_wp]
+  !> Most squares of all plies: a small part of the 2^32 random numbers of a seed, drawn within seconds.
+  real(wp), parameter :: max_squares = 1.0e8_wp
 
 contains
 
@@ -49,10 +53,31 @@ contains
         end associate
       end if
     end associate
+    if (softens .and. deck%setup%ply_damage%scatters()) call check_squares(deck, problems)
   end subroutine check_fibre_strengths
 
+  !> Checks the squares of strengths drawn by position.
+  subroutine check_squares(deck, problems)
+    type(deck_t), intent(in) :: deck
+    type(problems_t), intent(inout) :: problems
+    real(wp) :: squares
+
+    associate (s => deck%settings, side => deck%setup%ply_damage%strength_length)
+      if (.not. are_clear(s, problems, ply_damage_group, key_square)) return
+      if (.not. side > 0) then
+        call report(s, problems, ply_damage_group, key_seed, 'needs '//key_square//', the side of the squares of a '// &
+                    'ply within which its strength is uniform; give it, or units of &case for its default of 1 mm.')
+      else if (allocated(deck%setup%laminate%thickness)) then
+        squares = product(deck%setup%plate%length/side)*deck%setup%plies()
+        if (squares > max_squares) call report(s, problems, ply_damage_group, key_square, 'makes '// &
+          short_text(squares)//' squares of all plies; allowed: at most '//to_text(max_squares)//'.')
+      end if
+    end associate
+  end subroutine check_squares
+
   !> Bounds of the stressed volume of the blocks of a material: that of its thinnest block in the smallest cell, and
-  !> that of its thickest block in the plate.
+  !> that of its thickest block in the plate. Strengths drawn by position are those of plies instead of blocks, and of
+  !> squares at least.
   pure function block_volumes(deck, place) result(volumes)
     type(deck_t), intent(in) :: deck
     !> Index of the material, the first of equal ones
@@ -66,12 +91,14 @@ contains
 
     plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
     thicknesses = [(block_thickness(plies, ply), ply=1, size(plies))]
+    if (deck%setup%ply_damage%scatters()) thicknesses = plies%z_bottom - plies%z_top
     thicknesses = pack(thicknesses, plies%material == place)
     volumes = 0
     if (size(thicknesses) == 0) return
     columns = cells_along(deck%setup%plate, deck%setup%mesh, 1)
     rows = cells_along(deck%setup%plate, deck%setup%mesh, 2)
-    volumes(1) = minval(thicknesses)*minval(columns%sides())*minval(rows%sides())*parts_of(deck%setup%plate%symmetry)
+    volumes(1) = minval(thicknesses)*max(deck%setup%ply_damage%strength_length**2, &
+      minval(columns%sides())*minval(rows%sides())*parts_of(deck%setup%plate%symmetry))
     volumes(2) = maxval(thicknesses)*product(deck%setup%plate%length)
   end function block_volumes
 
@@ -89,4 +116,13 @@ contains
     if (.not. deck%setup%ply_damage%weibull_modulus > 0 .or. .not. all(volumes > 0)) return
     factors = [factor_of(deck%setup%ply_damage, volumes(1)), factor_of(deck%setup%ply_damage, volumes(2))]
   end function fibre_factors
+
+  !> Coefficient of variation of strengths drawn by position, of squares and of larger volumes alike: that of Weibull's
+  !> distribution, about 1.2/m.
+  pure real(wp) function scatter_of(modulus) result(scatter)
+    !> Weibull modulus m
+    real(wp), intent(in) :: modulus
+
+    scatter = sqrt(gamma(1 + 2/modulus)/gamma(1 + 1/modulus)**2 - 1)
+  end function scatter_of
 end module deck_fibre_strengths

@@ -18,7 +18,7 @@ module deck_initial_states
   use mesh_parameters, only: is_halved, symmetry_none, symmetry_point
   use plate_deck, only: key_symmetry
   use plate_options, only: kinematics_linear
-  use ply_damage_deck, only: ply_damage_group
+  use ply_damage_deck, only: key_seed, ply_damage_group
   use ply_damage_parameters, only: damage_names, numbers_of
   use roundings, only: rounding
   use static_deck, only: static_group
@@ -101,6 +101,9 @@ contains
     if (objection == '') objection = zones_objection(deck, old)
     if (objection == '') objection = stringer_objection(deck, old)
     if (objection == '') objection = damage_objection(deck, old)
+    if (objection == '' .and. deck%setup%ply_damage%scatters() .and. any(abs(old%setup%initial%cut_at) > 0)) &
+      objection = 'its plate was cut from another one off the centre, so that the places of strengths that scatter '// &
+                  '(&ply_damage '//key_seed//') are not known'
     if (objection == '') objection = interface_objection(deck, old)
     if (objection == '' .and. is_mapped(deck, old)) objection = mapping_objection(deck, old)
   end function inheritance_objection

@@ -17,6 +17,7 @@ module deck_symmetries
                              symmetry_quarter
   use plate_deck, only: plate_group, key_symmetry
   use plies, only: ply_t, material_objection
+  use ply_damage_deck, only: key_seed, ply_damage_group
   use ply_stacks, only: ply_stack_t
   use stacking, only: stacked_plies, section_stiffness
   use support_deck, only: support_group, key_clamps
@@ -54,6 +55,8 @@ contains
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
+      if (deck%setup%ply_damage%scatters()) call report(s, problems, ply_damage_group, key_seed, 'strengths that scatter '// &
+        'from place to place have no image under symmetry = '//name//'; use ''none''.')
       call check_starters(deck, name, problems)
       if (.not. supports_are_symmetric(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &
@@ -146,6 +149,7 @@ contains
     integer :: i
 
     part = deck%setup%plate%symmetry
+    if (deck%setup%ply_damage%scatters()) return
     do i = 1, size(parts)
       if (part == symmetry_quarter .or. part /= symmetry_none .and. i > 1) return
       if (suits(deck, parts(i))) part = parts(i)

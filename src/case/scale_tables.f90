@@ -1,25 +1,18 @@
-!> The table of `implam check` and of the log: scales of the setup, expected results, and in-situ strengths. If &case
-!> gives units, values are in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
+!> The table of `implam check` and of the log: scales of the setup and expected results. If &case gives units, values are
+!> in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
 module scale_tables
   use deck_contents, only: deck_t
-  use deck_fibre_strengths, only: block_volumes, fibre_factors
-  use fibre_toughnesses, only: measured_toughness, thick_block
-  use in_situ_strengths, only: material_in_place
   use kinds, only: wp
-  use material_parameters, only: first_alike, material_t
   use mean_stiffnesses, only: bending_error_of
   use plies, only: is_bimodular, ply_t
-  use ply_blocks, only: block_of, block_thickness
-  use roundings, only: rounding
   use short_numbers, only: short_text
   use stacking, only: stacked_plies
   use stringers, only: mass_of
-  use text, only: line_t, append, to_text
+  use text, only: line_t, append
   use unit_systems, only: base_units, system_named
   implicit none
   private
-  public :: scale_lines, strength_lines, volume_lines, toughness_lines, length_unit, length_unit_size, length_text, &
-            table_line
+  public :: dimension_t, scale_lines, length_unit, length_unit_size, length_text, read_as, table_line, unit_of
 
   !> Characters before the values, and characters of a value.
   integer, parameter :: name_width = 56, value_width = 12
@@ -35,12 +28,13 @@ module scale_tables
   end type dimension_t
 
   !> The dimensions of the table; the first is for bare numbers.
-  type(dimension_t), parameter :: &
+  type(dimension_t), parameter, public :: &
     bare = dimension_t('', '', [0.0_wp, 0.0_wp, 0.0_wp], 1.0_wp), &
     percent = dimension_t('%', '%', [0.0_wp, 0.0_wp, 0.0_wp], 1.0_wp), &
     length = dimension_t('length', 'mm', [1.0_wp, 0.0_wp, 0.0_wp], 1.0e-3_wp), &
     mass = dimension_t('mass', 'kg', [0.0_wp, 1.0_wp, 0.0_wp], 1.0_wp), &
     time = dimension_t('time', 'ms', [0.0_wp, 0.0_wp, 1.0_wp], 1.0e-3_wp), &
+    rate = dimension_t('1/time', '1/s', [0.0_wp, 0.0_wp, -1.0_wp], 1.0_wp), &
     force = dimension_t('force', 'N', [1.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
     energy = dimension_t('energy', 'J', [2.0_wp, 1.0_wp, -2.0_wp], 1.0_wp), &
     toughness = dimension_t('energy/area', 'N/mm', [0.0_wp, 1.0_wp, -2.0_wp], 1.0e3_wp), &
@@ -140,120 +134,6 @@ contains
     call put_scale(lines, deck, 'error of the bending stiffness by their thickness', &
              100*maxval(bending_error_of(plies, deck%expected%scales%thickness)), percent)
   end subroutine put_sub_plies
-
-  !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a
-  !> line.
-  function strength_lines(deck) result(lines)
-    type(deck_t), intent(in) :: deck
-    !> The lines; none unless the deck requests these strengths
-    type(line_t), allocatable :: lines(:)
-    type(ply_t), allocatable :: plies(:)
-    type(material_t) :: material
-    character(len=:), allocatable :: values, last
-    integer :: range(2), first
-
-    allocate (lines(0))
-    if (.not. deck%setup%ply_damage%in_situ) return
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
-    range = 0
-    first = 1
-    last = ''
-    do while (range(2) < size(plies))
-      range = block_of(plies, range(2) + 1)
-      material = material_in_place(plies, range(1), deck%setup%materials, deck%setup%ply_damage)
-      values = read_as(deck, material%yt, pressure)//', '//read_as(deck, material%s12, pressure)
-      if (values /= last .and. last /= '') then
-        call append(lines, strength_line(first, range(1) - 1, last))
-        first = range(1)
-      end if
-      last = values
-    end do
-    call append(lines, strength_line(first, size(plies), last))
-
-  contains
-
-    !> The line of a range of plies.
-    function strength_line(from, to, strengths) result(line)
-      !> First and last ply
-      integer, intent(in) :: from, to
-      !> Their strengths
-      character(len=*), intent(in) :: strengths
-      !> The line
-      character(len=:), allocatable :: line
-
-      line = 'in-situ YT and S12, ply '//to_text(from)
-      if (to > from) line = 'in-situ YT and S12, plies '//to_text(from)//' to '//to_text(to)
-      line = table_line(line, strengths, unit_of(deck, pressure))
-    end function strength_line
-  end function strength_lines
-
-  !> Tensile strength of the fibres of each material where the smallest and where the largest volume is stressed.
-  function volume_lines(deck) result(lines)
-    type(deck_t), intent(in) :: deck
-    !> The lines; none unless the deck requests it
-    type(line_t), allocatable :: lines(:)
-    character(len=*), parameter :: names(2) = [character(len=32) :: 'XT in one cell of a block', &
-                                               'XT in a block stressed all over']
-    real(wp) :: volumes(2), factors(2)
-    integer :: place, i
-
-    allocate (lines(0))
-    if (.not. (deck%setup%ply_damage%is_present .and. deck%setup%ply_damage%weibull_modulus > 0)) return
-    do place = 1, size(deck%setup%materials)
-      volumes = block_volumes(deck, place)
-      factors = fibre_factors(deck, place)
-      if (first_alike(deck%setup%materials, place) /= place .or. .not. all(volumes > 0)) cycle
-      do i = 1, size(names)
-        call append(lines, table_line(trim(names(i))//', '//read_as(deck, volumes(i), volume)//' '// &
-                                      unit_of(deck, volume), read_as(deck, factors(i)*deck%setup%materials(place)%xt, &
-                                                                     pressure), unit_of(deck, pressure)))
-      end do
-    end do
-  end function volume_lines
-
-  !> Fracture energy of fibres in tension of each material, in thick blocks of plies and in thin ones, with the energy
-  !> measured in such blocks; none without units or without softening plies.
-  function toughness_lines(deck) result(lines)
-    type(deck_t), intent(in) :: deck
-    type(line_t), allocatable :: lines(:)
-    type(ply_t), allocatable :: plies(:)
-    real(wp), allocatable :: blocks(:)
-    logical, allocatable :: is_thick(:)
-    integer :: place, ply
-
-    allocate (lines(0))
-    if (system_named(deck%case%units) == 0 .or. .not. deck%setup%ply_damage%is_present) return
-    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
-    do place = 1, size(deck%setup%materials)
-      if (.not. deck%setup%materials(place)%toughness(1) > 0 .or. first_alike(deck%setup%materials, place) /= place) &
-        cycle
-      blocks = [(block_thickness(plies, ply), ply=1, size(plies))]
-      blocks = pack(blocks, plies%material == place)
-      is_thick = blocks*product(base_units(system_named(deck%case%units))**length%exponents) &
-                 >= thick_block*(1 - rounding)
-      call append_line(pack(blocks, .not. is_thick), .false.)
-      call append_line(pack(blocks, is_thick), .true.)
-    end do
-
-  contains
-
-    !> Adds the line of some blocks.
-    subroutine append_line(thicknesses, are_thick)
-      !> Their thicknesses; none: no line
-      real(wp), intent(in) :: thicknesses(:)
-      !> True: they count as thick
-      logical, intent(in) :: are_thick
-      character(len=:), allocatable :: name
-
-      if (size(thicknesses) == 0) return
-      name = read_as(deck, minval(thicknesses), length)
-      if (maxval(thicknesses) > minval(thicknesses)*(1 + rounding)) name = name//' to '// &
-                                                                        read_as(deck, maxval(thicknesses), length)
-      name = 'G_ft, blocks of '//name//' mm (T300/920: '//measured_toughness(are_thick)//')'
-      call append(lines, table_line(name, read_as(deck, deck%setup%materials(place)%toughness(1), toughness), &
-                                    unit_of(deck, toughness)))
-    end subroutine append_line
-  end function toughness_lines
 
   !> A line of the table.
   pure function table_line(name, value, unit) result(line)

@@ -16,7 +16,8 @@ module ply_damage_deck
   character(len=*), parameter, public :: ply_damage_group = 'ply_damage', key_in_situ = 'in_situ', &
                                          key_permanent = 'permanent_shear', key_closure = 'crack_closure', &
                                          key_compression = 'fibre_compression', &
-                                         key_weibull = 'weibull_modulus', key_volume = 'reference_volume'
+                                         key_weibull = 'weibull_modulus', key_volume = 'reference_volume', &
+                                         key_seed = 'strength_seed', key_square = 'strength_length'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
   !> Row of the group.
@@ -45,9 +46,17 @@ module ply_damage_deck
       &Weibull modulus of the fibres in tension: in small stressed volumes XT is larger; left out: XT is constant.', &
     'ply_damage | reference_volume | real | 1 | volume | = 3750 mm3 | > 0 | &
       &Stressed volume of the specimens that XT was measured on; 3750 mm3 is 250 mm by 15 mm by 1 mm. | &
-      &weibull_modulus']
+      &weibull_modulus', &
+    'ply_damage | strength_seed | integer | 1 | - | none | >= 1 | &
+      &Seed of tensile strengths of fibres that scatter from place to place; left out: they do not scatter. | &
+      &weibull_modulus', &
+    'ply_damage | strength_length | real | 1 | length | = 1 mm | > 0 | &
+      &Side of the squares of a ply within which a strength that scatters is uniform. | strength_seed']
   !> Its default in cubic metres: the gauge length of a tension specimen after ASTM D3039, 250 x 15 x 1 mm.
   real(wp), parameter :: usual_volume = 3.75e-6_wp
+  !> Default of the side of squares in metres: shorter than the cells in which fibres fail, whose strengths then have a
+  !> distribution that does not depend on it.
+  real(wp), parameter :: usual_square = 1.0e-3_wp
 
 contains
 
@@ -75,5 +84,10 @@ contains
     if (.not. settings%is_given(ply_damage_group, key_volume) .and. units_in_metre > 0) &
       call settings%derive(ply_damage_group, key_volume, to_text(usual_volume*units_in_metre**3), .false.)
     damage%reference_volume = settings%real_of(ply_damage_group, key_volume)
+    damage%strength_seed = settings%integer_of(ply_damage_group, key_seed)
+    if (.not. damage%scatters()) return
+    if (.not. settings%is_given(ply_damage_group, key_square) .and. units_in_metre > 0) &
+      call settings%derive(ply_damage_group, key_square, to_text(usual_square*units_in_metre), .false.)
+    damage%strength_length = settings%real_of(ply_damage_group, key_square)
   end subroutine fill_ply_damage
 end module ply_damage_deck

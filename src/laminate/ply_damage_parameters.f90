@@ -23,7 +23,8 @@ module ply_damage_parameters
   !> Properties that must be equal in two runs for one to start with the damage of the other, by their names in the
   !> deck.
   character(len=*), parameter, public :: damage_names(*) = [character(len=17) :: 'd', 'e', 'criteria', 'stress', &
-    'in_situ', 'permanent_shear', 'crack_closure', 'fibre_compression', 'weibull_modulus', 'reference_volume']
+    'in_situ', 'permanent_shear', 'crack_closure', 'fibre_compression', 'weibull_modulus', 'reference_volume', &
+    'strength_seed', 'strength_length']
 
   !> When plies fail, and how a failed ply loses its stiffness (Table 2 of the paper).
   type :: ply_damage_t
@@ -49,9 +50,22 @@ module ply_damage_parameters
     real(wp) :: weibull_modulus = 0
     !> Stressed volume for which XT holds
     real(wp) :: reference_volume = 0
+    !> Seed of the strengths of fibres drawn by position; 0: strengths do not scatter
+    integer :: strength_seed = 0
+    !> Side of the squares of a ply within which its strength is uniform
+    real(wp) :: strength_length = 0
+  contains
+    procedure :: scatters
   end type ply_damage_t
 
 contains
+
+  !> True: strengths of fibres are drawn by position, instead of that of the stressed volume of each block.
+  pure logical function scatters(self)
+    class(ply_damage_t), intent(in) :: self
+
+    scatters = self%weibull_modulus > 0 .and. self%strength_seed > 0
+  end function scatters
 
   !> Numbers of the damage in the order of their names; choices by their number in the list of the deck.
   pure function numbers_of(damage) result(numbers)
@@ -62,6 +76,6 @@ contains
     numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, &
                                          merge(1, 0, [damage%in_situ, damage%permanent_shear, damage%crack_closure, &
                                                       damage%kinking])], wp), damage%weibull_modulus, &
-               damage%reference_volume]
+               damage%reference_volume, real(damage%strength_seed, wp), damage%strength_length]
   end function numbers_of
 end module ply_damage_parameters

@@ -12,7 +12,7 @@ module band_energies
   use ply_damage_parameters, only: energy_modes
   implicit none
   private
-  public :: dissipated_in_trial, dissipated_so_far, changed_by_signs, resultants_without_strain
+  public :: dissipated_in_trial, dissipated_so_far, strengthened_so_far, changed_by_signs, resultants_without_strain
 
 contains
 
@@ -74,6 +74,30 @@ contains
       end do
     end do
   end function dissipated_so_far
+
+  !> Volume of plies with a cracked matrix, and its integral of the factor of their strengths by the strain rate, as exact
+  !> sums.
+  pure function strengthened_so_far(states, plies, area) result(sums)
+    !> States of the plies
+    type(band_states_t), intent(in) :: states
+    !> Plies of the laminate
+    type(ply_t), intent(in) :: plies(:)
+    !> Area of each element
+    real(wp), intent(in) :: area(:)
+    type(exact_sum_t) :: sums(2)
+    integer :: element, ply
+
+    do element = 1, size(area)
+      do ply = states%range(1, element), states%range(2, element)
+        associate (volume => area(element)*(plies(ply)%z_bottom - plies(ply)%z_top), &
+                   factor => states%accepted(states%offset(element) + ply)%strengthened)
+          if (.not. factor > 0) cycle
+          call sums(1)%add(volume)
+          call sums(2)%add(volume*factor)
+        end associate
+      end do
+    end do
+  end function strengthened_so_far
 
   !> Change of the section of a damaged element against its mean strains.
   pure function changed_by_signs(plies, bands, states, element, means) result(change)

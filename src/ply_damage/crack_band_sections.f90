@@ -4,11 +4,12 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
-  use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain
+  use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain, strengthened_so_far
   use band_states, only: band_states_t, new_band_states
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, create_crack_band, soften_band, &
                          degraded_elasticity, is_damaged, stiffness_lost, tensile_stress
   use crack_band_limits, only: may_soften, onset_strain
+  use drawn_strengths, only: drawn_strengths_t, new_drawn_strengths
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
   use in_situ_strengths, only: material_in_place
@@ -42,6 +43,8 @@ module crack_band_sections
     type(mean_sections_t), allocatable :: signs
     !> Stressed volumes that the strengths of fibres depend on; unallocated: they do not
     type(stressed_volumes_t), allocatable :: volumes
+    !> Strengths of fibres that scatter from place to place; unallocated: they do not
+    type(drawn_strengths_t), allocatable :: drawn
     !> Strain rates that the strengths of the matrix depend on; unallocated: they do not
     type(loading_rates_t), allocatable :: rates
     !> True while plies keep their damage, during the transfer of a state to other layers
@@ -74,7 +77,9 @@ module crack_band_sections
     procedure :: update_strengths
     procedure :: dissipation_sums
     procedure :: dissipated
+    procedure :: strengthened
     procedure :: elasticity
+    procedure :: fibre_strength
     procedure :: visit
   end type crack_band_sections_t
 
@@ -105,10 +110,13 @@ contains
       self%signs = new_mean_sections(model)
       self%tensile = self%free
     end if
-    self%onset = [(onset_strain(self%bands(i)), i=1, size(self%bands))]
-    self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
     self%states = new_band_states(model)
-    if (model%setup%ply_damage%weibull_modulus > 0) then
+    self%joined = find_joined_elements(model)
+    if (model%setup%ply_damage%scatters()) &
+      self%drawn = new_drawn_strengths(model, self%plies, self%states, self%joined%joined)
+    self%onset = [(onset_strain(weakest_law(self, i)), i=1, size(self%bands))]
+    self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
+    if (model%setup%ply_damage%weibull_modulus > 0 .and. .not. allocated(self%drawn)) then
       self%volumes = new_stressed_volumes(model, self%bands, self%states)
       self%onset = min(self%onset, self%volumes%smallest_strain(self%bands))
     end if
@@ -119,7 +127,6 @@ contains
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
     allocate (self%touched(model%elements%elements), source=.false.)
     allocate (self%limits(2, model%elements%elements))
-    self%joined = find_joined_elements(model)
     do i = 1, model%elements%elements
       associate (place => model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
         self%area(i) = model%mesh%cell_area(place)
@@ -130,6 +137,25 @@ contains
       end associate
     end do
   end function new_crack_band_sections
+
+  !> Law of a ply in an element, with the strength of its fibres there.
+  pure type(crack_band_t) function law_of(self, ply, at) result(band)
+    class(crack_band_sections_t), intent(in) :: self
+    !> The ply, and the place of its state
+    integer, intent(in) :: ply, at
+
+    band = self%bands(ply)
+    if (allocated(self%drawn)) band%along(1) = band%along(1)*self%drawn%factor(at)
+  end function law_of
+
+  !> Law of a ply with the smallest strength of its fibres on this rank.
+  pure type(crack_band_t) function weakest_law(self, ply) result(band)
+    class(crack_band_sections_t), intent(in) :: self
+    integer, intent(in) :: ply
+
+    band = self%bands(ply)
+    if (allocated(self%drawn)) band%along(1) = band%along(1)*self%drawn%smallest(self%states, ply)
+  end function weakest_law
 
   !> True for a batch with elements that share their state.
   pure logical function needs_joined_strains(self, b)
@@ -254,7 +280,8 @@ contains
           ! The bound of `strain_sizes` for one ply.
           if (is_damaged(old) .or. .not. membrane + self%height(ply)*curvature < self%onset(ply)) then
             call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
-            if (allocated(self%rates) .or. allocated(self%volumes) .or. may_soften(self%bands(ply), strains, old)) &
+            if (allocated(self%rates) .or. allocated(self%volumes) .or. allocated(self%drawn) .or. &
+                may_soften(self%bands(ply), strains, old)) &
               call soften_ply(self, element, ply, joined, strains, new)
           end if
           loses = loses .or. any(abs(stiffness_lost(new) - before) > 0)
@@ -285,7 +312,7 @@ contains
       if (allocated(self%rates)) call self%rates%find_factor(at, self%plies(ply), self%bands(ply), moments, factor)
       ! Mean width of the elements normal to a straight crack.
       normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
-      call soften_band(self%bands(ply), [dot_product(normal, sides), dot_product(normal, sides([2, 1]))], strains, &
+      call soften_band(law_of(self, ply, at), [dot_product(normal, sides), dot_product(normal, sides([2, 1]))], strains, &
                        self%states%accepted(at), new, factor)
       if (allocated(self%volumes)) self%volumes%stress(at) = tensile_stress(self%bands(ply), strains, new)
     end associate
@@ -349,6 +376,15 @@ contains
     energies = dissipated_so_far(self%states, self%plies, self%bands, self%area, self%touched)
   end function dissipated
 
+  !> Volume of this rank's plies with a cracked matrix, and its integral of the factor of their strengths by the strain
+  !> rate, as exact sums.
+  pure function strengthened(self) result(sums)
+    class(crack_band_sections_t), intent(in) :: self
+    type(exact_sum_t) :: sums(2)
+
+    sums = strengthened_so_far(self%states, self%plies, self%area)
+  end function strengthened
+
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)
     class(crack_band_sections_t), intent(in) :: self
@@ -363,6 +399,19 @@ contains
       if (self%touched(element)) elasticity = degraded_elasticity(band, self%states%trial(at))
     end associate
   end function elasticity
+
+  !> Tensile strength of the fibres of a ply of an element.
+  pure real(wp) function fibre_strength(self, ply, element) result(strength)
+    class(crack_band_sections_t), intent(in) :: self
+    !> Number of the ply, and element of this rank whose cell has it
+    integer, intent(in) :: ply, element
+    type(crack_band_t) :: law
+    integer :: at
+
+    at = self%states%at(ply, element)
+    law = law_of(self, at - self%states%offset(element), at)
+    strength = law%along(1)
+  end function fibre_strength
 
   !> Saves or loads the accepted state.
   subroutine visit(self, archive, model)

@@ -13,7 +13,7 @@ module loading_rates
   use plies, only: ply_t
   implicit none
   private
-  public :: loading_rates_t, new_loading_rates
+  public :: loading_rates_t, new_loading_rates, strengthened_at
 
   !> Values of a ply in an element.
   integer, parameter :: values = 3, largest = 1, growth = 2, duration = 3
@@ -77,9 +77,18 @@ contains
       end if
       if (.not. new(duration) > 0) return
       rate = new(growth)/new(duration)
-      if (rate > band%reference_rate) factor = 1 + band%rate_gain*log10(rate/band%reference_rate)
+      factor = strengthened_at(band%rate_gain, band%reference_rate, rate)
     end associate
   end subroutine find_factor
+
+  !> Factor of matrix strengths at a strain rate, at least 1.
+  elemental real(wp) function strengthened_at(gain, reference, rate) result(factor)
+    !> Gain per decade, rate at which the strengths hold, and the rate
+    real(wp), intent(in) :: gain, reference, rate
+
+    factor = 1
+    if (rate > reference) factor = 1 + gain*log10(rate/reference)
+  end function strengthened_at
 
   !> Accepts the trial.
   pure subroutine accept(self)

@@ -28,6 +28,8 @@ module ply_fields
       &than in tension, else 0; only where plies soften.', &
     'ply_N_damage_fibre'//damaged//'Relative loss of E1 of ply N, 0 to 1.', &
     'ply_N_damage_matrix'//damaged//'Relative loss of E2 of ply N, 0 to 1.', &
+    'ply_N_fibre_strength | cells | pressure | '//field_ply_damage//' | &ply_damage | Tensile strength of the fibres of &
+      &ply N that scatters from place to place; only with strength_seed.', &
     'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
     'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
     'ply_N_tau12'//middle//'In-plane shear stress, in the mid-plane of ply N.', &
@@ -68,6 +70,8 @@ contains
           call fields%write_cell_field(name//'failure', failure_code(plies%failed_in_elements(model, ply)), error)
           if (allocated(plies%bands)) &
             call fields%write_cell_field(name//'fibres_crushed', crushed_in(model, plies%bands, ply), error)
+          if (model%setup%ply_damage%scatters()) &
+            call fields%write_cell_field(name//'fibre_strength', strengths_in(model, plies%bands, ply), error)
           lost = stiffness_lost(model, plies, ply)
           call fields%write_cell_field(name//'damage_fibre', lost(1:1, :), error)
           call fields%write_cell_field(name//'damage_matrix', lost(2:2, :), error)
@@ -100,6 +104,23 @@ contains
       if (bands%states%fibres_crushed(ply, element)) crushed(1, element) = 1
     end do
   end function crushed_in
+
+  !> Tensile strength of the fibres of a ply in each element.
+  pure function strengths_in(model, bands, ply) result(strengths)
+    type(model_t), intent(in) :: model
+    !> Softening plies
+    type(crack_band_sections_t), intent(in) :: bands
+    !> Ply of the laminate
+    integer, intent(in) :: ply
+    !> (1, elements)
+    real(wp) :: strengths(1, model%elements%elements)
+    integer :: element
+
+    strengths = 0
+    do element = 1, size(strengths, 2)
+      if (model%stacks(model%stack(element))%has(ply)) strengths(1, element) = bands%fibre_strength(ply, element)
+    end do
+  end function strengths_in
 
   !> Lost fractions of E1 and E2 of a ply.
   pure function stiffness_lost(model, plies, ply) result(lost)

@@ -42,6 +42,8 @@ module run_figures
     real(wp), allocatable :: failed_area(:, :)
     !> Stressed volume of the fibres of each ply at their first failure in tension; 0: they have not failed
     real(wp), allocatable :: stressed_volume(:)
+    !> Mean factor of the strengths of cracked matrix by the strain rate; 0: none
+    real(wp) :: strengthening = 0
     !> Closed form of the delamination threshold force of each interface, for equal delaminations in all interfaces,
     !> (zones)
     real(wp), allocatable :: threshold(:)
@@ -72,6 +74,7 @@ contains
     figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)
     figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plies)]
+    figures%strengthening = now%plies%mean_strengthening(model)
     along = pressed_axis(model)
     if (along > 0) then
       figures%compressed = damage_of(model, now, along)

@@ -143,8 +143,8 @@ contains
         call json%put('fibre_failure_area', figures%failed_area(1, ply))
         call json%put('matrix_crack_area', figures%failed_area(2, ply))
         call json%put('matrix_crushing_area', figures%failed_area(3, ply))
-        if (deck%setup%ply_damage%weibull_modulus > 0) call put_strength(json, deck, figures%stressed_volume(ply), &
-                                                                   deck%setup%materials(list%material(ply))%xt)
+        if (deck%setup%ply_damage%weibull_modulus > 0 .and. .not. deck%setup%ply_damage%scatters()) &
+          call put_strength(json, deck, figures%stressed_volume(ply), deck%setup%materials(list%material(ply))%xt)
       end if
       call json%close()
     end do

@@ -47,6 +47,8 @@ contains
       call results%add('fibre_failures', figures%failures(1))
       call results%add('matrix_cracks', figures%failures(2))
       call results%add('matrix_crushings', figures%failures(3))
+      if (deck%setup%has_rates()) &
+        call results%add('matrix_strengthening', figures%strengthening, figures%strengthening > 0)
     end if
     if (record%compression%strength > 0) call add_compression(results, deck, record, figures)
   end function results_of
@@ -145,7 +147,7 @@ contains
       call results%add('residual_strength', of%strength)
       call results%add('residual_strength_at', of%at)
       call results%add('shortening_at_strength', of%shortening)
-      if (size(deck%stringers) > 0 .or. .not. deck%zones%is_empty()) then
+      if (size(deck%setup%stringers) > 0 .or. .not. deck%setup%zones%is_empty()) then
         call results%add('failure_load', of%strength*figures%skin_area)
         call results%add('skin_stress_at_strength', of%strength*figures%skin_share)
       end if

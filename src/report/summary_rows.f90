@@ -72,6 +72,8 @@ module summary_rows
     'fibre_failures | integer | - | fibres | Failed plies, counted in each element: fibres.', &
     'matrix_cracks | integer | - | matrix cracked | Plies with matrix cracks, counted in each element.', &
     'matrix_crushings | integer | - | crushed | Plies crushed, counted in each element.', &
+    'matrix_strengthening | real | - | matrix strengthening | With rate_strengthening: factor of YT, YC and S12 at the &
+      &onset of matrix cracks, mean over the volume of cracked plies.', &
     'residual_strength | real | pressure | residual strength | Under compression by lines: largest far_field_stress.', &
     'residual_strength_at | real | time | time of strength | Its time.', &
     'shortening_at_strength | real | length | shortening | Shortening then.', &

@@ -43,9 +43,9 @@ from solver_runs import checkpoint_of, history_of, read_history, require, run_de
 
 EXPLICIT = "time%integrator='central_difference'"
 # Failing plies and an interface, adaptive layers, turned halves on a unilateral frame, plies that soften and fail in
-# the fibres, with strengths by their stressed volume and by the strain rate, curved plates, prescribed and loaded
-# lines, residual stresses that deflect the plate before the impact, and interfaces that grow by their energy release
-# rate on long cells.
+# the fibres, with strengths by their stressed volume and by the strain rate or drawn by position, curved plates,
+# prescribed and loaded lines, residual stresses that deflect the plate before the impact, and interfaces that grow by
+# their energy release rate on long cells.
 MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("../small/layers.nml", [EXPLICIT]),
           "turned": ("../small/turned.nml", [EXPLICIT, "time%end=150e-6"]),
           "softening": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6"]),
@@ -55,6 +55,13 @@ MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
                                                      "material%reference_rate=1e-3",
                                                      "ply_damage%weibull_modulus=41",
                                                      "ply_damage%reference_volume=3750e-9", "material%XT=1000e6"]),
+          # Two moduli along the fibres, and strengths of fibres that scatter.
+          "scattered": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "plate%symmetry='none'",
+                                                     "mesh%elements=16, 12", "material%E1c=100e9",
+                                                     "material%XT=800e6", "ply_damage%weibull_modulus=10",
+                                                     "ply_damage%reference_volume=3750e-9",
+                                                     "ply_damage%strength_seed=3",
+                                                     "ply_damage%strength_length=1e-3"]),
           "long_cells": ("../which_interfaces.nml", [EXPLICIT, "time%end=800e-6", "mesh%elements=10,20",
                                                      "mesh%cell=4e-3"]),
           "curved": ("../small/breaking_rounds.nml", [EXPLICIT, "plate%curvature_radius=0.2,0.15",

@@ -1,0 +1,171 @@
+!> The part of the table of `implam check` and of the log on strengths: in place, by the stressed volume or by position, by
+!> the strain rate, and the fracture energy of fibres.
+module strength_tables
+  use deck_contents, only: deck_t
+  use deck_fibre_strengths, only: block_volumes, fibre_factors, scatter_of
+  use deck_strain_rates, only: expected_rate
+  use fibre_toughnesses, only: measured_toughness, thick_block
+  use in_situ_strengths, only: material_in_place
+  use kinds, only: wp
+  use loading_rates, only: strengthened_at
+  use material_parameters, only: first_alike, material_t
+  use plies, only: ply_t
+  use ply_blocks, only: block_of, block_thickness
+  use roundings, only: rounding
+  use scale_tables, only: bare, length, percent, pressure, rate, read_as, table_line, toughness, unit_of, volume
+  use stacking, only: stacked_plies
+  use text, only: line_t, append, to_text
+  use unit_systems, only: base_units, system_named
+  implicit none
+  private
+  public :: strength_lines
+
+contains
+
+  !> All lines.
+  function strength_lines(deck) result(lines)
+    type(deck_t), intent(in) :: deck
+    type(line_t), allocatable :: lines(:)
+
+    lines = [in_situ_lines(deck), volume_lines(deck), rate_lines(deck), toughness_lines(deck)]
+  end function strength_lines
+
+  !> In-situ strengths of all blocks of plies, from the struck face; consecutive blocks with equal strengths share a
+  !> line.
+  function in_situ_lines(deck) result(lines)
+    type(deck_t), intent(in) :: deck
+    !> The lines; none unless the deck requests these strengths
+    type(line_t), allocatable :: lines(:)
+    type(ply_t), allocatable :: plies(:)
+    type(material_t) :: material
+    character(len=:), allocatable :: values, last
+    integer :: range(2), first
+
+    allocate (lines(0))
+    if (.not. deck%setup%ply_damage%in_situ) return
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    range = 0
+    first = 1
+    last = ''
+    do while (range(2) < size(plies))
+      range = block_of(plies, range(2) + 1)
+      material = material_in_place(plies, range(1), deck%setup%materials, deck%setup%ply_damage)
+      values = read_as(deck, material%yt, pressure)//', '//read_as(deck, material%s12, pressure)
+      if (values /= last .and. last /= '') then
+        call append(lines, strength_line(first, range(1) - 1, last))
+        first = range(1)
+      end if
+      last = values
+    end do
+    call append(lines, strength_line(first, size(plies), last))
+
+  contains
+
+    !> The line of a range of plies.
+    function strength_line(from, to, strengths) result(line)
+      !> First and last ply
+      integer, intent(in) :: from, to
+      !> Their strengths
+      character(len=*), intent(in) :: strengths
+      !> The line
+      character(len=:), allocatable :: line
+
+      line = 'in-situ YT and S12, ply '//to_text(from)
+      if (to > from) line = 'in-situ YT and S12, plies '//to_text(from)//' to '//to_text(to)
+      line = table_line(line, strengths, unit_of(deck, pressure))
+    end function strength_line
+  end function in_situ_lines
+
+  !> Tensile strength of the fibres of each material where the smallest and where the largest volume is stressed; means
+  !> and their scatter if strengths are drawn by position.
+  function volume_lines(deck) result(lines)
+    type(deck_t), intent(in) :: deck
+    !> The lines; none unless the deck requests it
+    type(line_t), allocatable :: lines(:)
+    character(len=34) :: names(2)
+    real(wp) :: volumes(2), factors(2)
+    integer :: place, i
+
+    allocate (lines(0))
+    if (.not. (deck%setup%ply_damage%is_present .and. deck%setup%ply_damage%weibull_modulus > 0)) return
+    names = [character(len=34) :: 'XT in one cell of a block', 'XT in a block stressed all over']
+    if (deck%setup%ply_damage%scatters()) names = [character(len=34) :: 'mean XT in one cell of a ply', &
+                                             'mean XT of a ply stressed all over']
+    do place = 1, size(deck%setup%materials)
+      volumes = block_volumes(deck, place)
+      factors = fibre_factors(deck, place)
+      if (first_alike(deck%setup%materials, place) /= place .or. .not. all(volumes > 0)) cycle
+      do i = 1, size(names)
+        call append(lines, table_line(trim(names(i))//', '//read_as(deck, volumes(i), volume)//' '// &
+                                      unit_of(deck, volume), read_as(deck, factors(i)*deck%setup%materials(place)%xt, &
+                                                                     pressure), unit_of(deck, pressure)))
+      end do
+    end do
+    if (deck%setup%ply_damage%scatters()) call append(lines, table_line( &
+      'coefficient of variation of XT in squares of '//read_as(deck, deck%setup%ply_damage%strength_length, length)//' '// &
+      unit_of(deck, length), read_as(deck, 100*scatter_of(deck%setup%ply_damage%weibull_modulus), percent), '%'))
+  end function volume_lines
+
+  !> Strain rate that the impact is expected to have, and the factor of the matrix strengths of each material at that
+  !> rate; none for materials without strengthening.
+  function rate_lines(deck) result(lines)
+    type(deck_t), intent(in) :: deck
+    type(line_t), allocatable :: lines(:)
+    real(wp) :: expected
+    integer :: place
+
+    allocate (lines(0))
+    expected = expected_rate(deck)
+    if (.not. expected > 0) return
+    call append(lines, table_line('expected strain rate of the outer plies', read_as(deck, expected, rate), &
+                                  unit_of(deck, rate)))
+    do place = 1, size(deck%setup%materials)
+      associate (m => deck%setup%materials(place))
+        if (m%rate_gain > 0) call append(lines, table_line('factor of YT, YC and S12 at this rate, '//m%name, &
+          read_as(deck, strengthened_at(m%rate_gain, m%reference_rate, expected), bare), ''))
+      end associate
+    end do
+  end function rate_lines
+
+  !> Fracture energy of fibres in tension of each material, in thick blocks of plies and in thin ones, with the energy
+  !> measured in such blocks; none without units or without softening plies.
+  function toughness_lines(deck) result(lines)
+    type(deck_t), intent(in) :: deck
+    type(line_t), allocatable :: lines(:)
+    type(ply_t), allocatable :: plies(:)
+    real(wp), allocatable :: blocks(:)
+    logical, allocatable :: is_thick(:)
+    integer :: place, ply
+
+    allocate (lines(0))
+    if (system_named(deck%case%units) == 0 .or. .not. deck%setup%ply_damage%is_present) return
+    plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    do place = 1, size(deck%setup%materials)
+      if (.not. deck%setup%materials(place)%toughness(1) > 0 .or. first_alike(deck%setup%materials, place) /= place) cycle
+      blocks = [(block_thickness(plies, ply), ply=1, size(plies))]
+      blocks = pack(blocks, plies%material == place)
+      is_thick = blocks*product(base_units(system_named(deck%case%units))**length%exponents) >= thick_block*(1 - rounding)
+      call append_line(pack(blocks, .not. is_thick), .false.)
+      call append_line(pack(blocks, is_thick), .true.)
+    end do
+
+  contains
+
+    !> Adds the line of some blocks.
+    subroutine append_line(thicknesses, are_thick)
+      !> Their thicknesses; none: no line
+      real(wp), intent(in) :: thicknesses(:)
+      !> True: they count as thick
+      logical, intent(in) :: are_thick
+      character(len=:), allocatable :: name
+
+      if (size(thicknesses) == 0) return
+      name = read_as(deck, minval(thicknesses), length)
+      if (maxval(thicknesses) > minval(thicknesses)*(1 + rounding)) name = name//' to '// &
+                                                                        read_as(deck, maxval(thicknesses), length)
+      name = 'G_ft, blocks of '//name//' mm (T300/920: '//measured_toughness(are_thick)//')'
+      call append(lines, table_line(name, read_as(deck, deck%setup%materials(place)%toughness(1), toughness), &
+                                    unit_of(deck, toughness)))
+    end subroutine append_line
+  end function toughness_lines
+end module strength_tables
