@@ -60,7 +60,6 @@ contains
 
   !> Parses the arguments of the program.
   subroutine read_command_line(command, error)
-    !> The parsed command line
     type(command_t), intent(out) :: command
     !> Set (usage) if an argument is not understood
     type(error_t), allocatable, intent(out) :: error
@@ -114,7 +113,6 @@ contains
 
   !> Turns the command into help or version, whatever else is given: the first option of these decides.
   subroutine inform(command, verb_given)
-    !> The parsed command line
     type(command_t), intent(inout) :: command
     !> True: a command was given; the topic of help is then not its file
     logical, intent(in) :: verb_given
@@ -129,7 +127,6 @@ contains
 
   !> Reads an option that begins with two dashes.
   subroutine read_option(command, word, i, error)
-    !> Receives the option
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
@@ -156,7 +153,6 @@ contains
 
   !> Reads an option without a value.
   subroutine read_switch(command, word, error)
-    !> Receives the option
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
@@ -181,7 +177,6 @@ contains
 
   !> Reads an option with its value, the next word or the text after an equals sign.
   subroutine read_value(command, word, value, error)
-    !> Receives the option
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
@@ -316,7 +311,6 @@ contains
 
   !> Checks that the verbs that need a file have one.
   subroutine require_target(command, error)
-    !> The parsed command line
     type(command_t), intent(inout) :: command
     !> Set (usage) if no file is given, (files) if restart is given a deck
     type(error_t), allocatable, intent(inout) :: error

@@ -92,7 +92,6 @@ contains
 
   !> Name, results, ranks and memory of a deck.
   subroutine size_deck(job, error)
-    !> Receives them
     type(queue_job_t), intent(inout) :: job
     !> Raised if the deck has faults
     type(error_t), allocatable, intent(inout) :: error
@@ -111,7 +110,6 @@ contains
 
   !> Number of commands of a sweep's list, and the largest of its decks, listed in decks.txt.
   subroutine size_array(job, error)
-    !> Receives them
     type(queue_job_t), intent(inout) :: job
     !> Raised if a list cannot be read, is empty, or a deck has faults
     type(error_t), allocatable, intent(inout) :: error
@@ -158,7 +156,6 @@ contains
 
   !> Resources requested from Slurm. It may send the signal up to a minute early.
   subroutine head_of_slurm(job, script)
-    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -182,7 +179,6 @@ contains
 
   !> Resources requested from PBS. It sends no signal before the limit; `timeout` in the script does.
   subroutine head_of_pbs(job, script)
-    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -205,7 +201,6 @@ contains
 
   !> Commands for both queues.
   subroutine append_body(job, script)
-    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)

@@ -13,10 +13,8 @@ module case_deck
                                          key_accuracy = 'accuracy', key_refine = 'refine', &
                                          key_error_estimate = 'error_estimate', key_units = 'units'
   character(len=*), parameter :: group = case_group
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
     'case | settings | Name and title of the case, units, accuracy and kinematics.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: case_rows(*) = [character(len=key_row_length) :: &
     'case | name | name | 1 | - | = the deck''s file name | letters, digits, . _ - | &
       &Names the output files.', &

@@ -42,7 +42,6 @@ contains
   !> All checks of combinations of groups except for those of sizes.
   subroutine check_across_groups(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     call check_loads(deck, problems)
@@ -90,7 +89,6 @@ contains
   !> Checks the travel of an impactor in load steps, which must be the only load.
   subroutine check_travel(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%settings%is_given(impactor_group, key_travel)) then
@@ -107,7 +105,6 @@ contains
   !> Checks an impactor with a travel prescribed in time.
   subroutine check_travel_in_time(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. is_explicit(deck%stepping)) then
@@ -127,7 +124,6 @@ contains
   !> Keys that a static analysis needs, and keys without effect in it.
   subroutine check_static(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (size(deck%setup%supports) > 0) then
@@ -153,7 +149,6 @@ contains
   !> Keys that a run in time needs, and keys without effect in it.
   subroutine check_transient(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (problems%concern(static_group)) return
@@ -181,7 +176,6 @@ contains
   !> Impactor, its patch and its contact stiffness.
   subroutine check_impact(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 

@@ -138,7 +138,6 @@ contains
   !> that depend on them.
   subroutine fill_loads(deck, problems)
     type(deck_t), intent(inout) :: deck
-    !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
 
     call fill_impactor(deck%settings, deck%setup%impactor, problems)

@@ -36,7 +36,6 @@ contains
   !> Refuses features that are not possible in a run from the end of another run.
   subroutine check_initial_state(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: place
 
@@ -296,7 +295,6 @@ contains
 
   !> Size of a starter, its centre, and its strip.
   pure function starter_of(delamination) result(numbers)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Side or diameter, centre along x and y, first and last x of a strip
     real(wp) :: numbers(5)
@@ -306,7 +304,6 @@ contains
 
   !> A starter as text.
   pure function starter_list(delamination) result(list)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Its numbers and shape, or none
     character(len=:), allocatable :: list

@@ -104,7 +104,6 @@ contains
 
   !> True if a starter across the width of its zone has an image beside it.
   pure logical function strip_is_eccentric(delamination, symmetry) result(eccentric)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> The symmetry
     integer, intent(in) :: symmetry

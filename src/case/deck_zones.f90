@@ -21,7 +21,6 @@ contains
   !> All checks of combinations of groups.
   subroutine check_zones_across_groups(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 

@@ -25,7 +25,6 @@ contains
   !> Sentence on the steps and the time of a run.
   function explicit_sentence(deck, model_size) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> Size of its model
     type(model_size_t), intent(in) :: model_size
     !> One sentence
     character(len=:), allocatable :: sentence

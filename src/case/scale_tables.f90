@@ -97,7 +97,6 @@ contains
       character(len=*), intent(in) :: name
       !> Its size, in the deck's units
       real(wp), intent(in) :: value
-      !> Its dimension
       type(dimension_t), intent(in) :: dimension
       !> True: the value is a lower bound
       logical, intent(in), optional :: is_bound
@@ -114,7 +113,6 @@ contains
     character(len=*), intent(in) :: name
     !> Its size, in the deck's units
     real(wp), intent(in) :: value
-    !> Its dimension
     type(dimension_t), intent(in) :: dimension
     !> True: the value is a lower bound
     logical, intent(in), optional :: is_bound
@@ -271,7 +269,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> The value, in its units
     real(wp), intent(in) :: value
-    !> Its dimension
     type(dimension_t), intent(in) :: dimension
     !> The digits
     character(len=:), allocatable :: digits

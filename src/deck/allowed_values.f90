@@ -10,7 +10,6 @@ contains
 
   !> Allowed values of a key, for the end of a message.
   pure recursive function allowed_sentence(key) result(sentence)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Such as `allowed: 2 real values > 0`
     character(len=:), allocatable :: sentence
@@ -65,7 +64,6 @@ contains
   !> The part of a key that accepts a choice or a number for one of the two; in the table its choices precede the
   !> conditions.
   pure function branch_of(key, kind) result(branch)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> `choice` or `real`
     character(len=*), intent(in) :: kind

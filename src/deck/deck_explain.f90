@@ -14,11 +14,9 @@ contains
 
   !> Explains all groups, one group, one key of a group, or a key of any group.
   subroutine explain(vocabulary, topic, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Empty, `plate`, `plate%length`, `plate.length`, `plate length` or `length`, with or without &
     character(len=*), intent(in) :: topic
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if there is no such group or key
     type(error_t), allocatable, intent(inout) :: error
@@ -46,9 +44,7 @@ contains
 
   !> One line per group.
   subroutine explain_groups(vocabulary, lines)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     integer :: i
 
@@ -65,11 +61,9 @@ contains
 
   !> A group and its keys.
   subroutine explain_group(vocabulary, name, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Name of the group
     character(len=*), intent(in) :: name
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Raised if there is no such group
     type(error_t), allocatable, intent(inout) :: error
@@ -87,11 +81,9 @@ contains
 
   !> One key of a group.
   subroutine explain_one(vocabulary, group, key, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Raised if there is no such key
     type(error_t), allocatable, intent(inout) :: error
@@ -115,7 +107,6 @@ contains
 
   !> Raises an error if there is no group of this name.
   subroutine require_group(vocabulary, name, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Name of the group
     character(len=*), intent(in) :: name
@@ -145,7 +136,6 @@ contains
   !> Two lines on a key, one on its conditions, and one on its usual range.
   subroutine explain_key(key, lines)
     type(key_entry_t), intent(in) :: key
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     character(len=:), allocatable :: unit
 
@@ -194,11 +184,9 @@ contains
 
   !> The keys of a group as a Markdown table.
   subroutine explain_table(vocabulary, group, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Name of the group
     character(len=*), intent(in) :: group
-    !> The table
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if there is no such group, or if it is a key
     type(error_t), allocatable, intent(inout) :: error

@@ -39,7 +39,6 @@ contains
     character(len=*), intent(in) :: deck
     !> Moved behind the word
     type(cursor_t), intent(inout) :: cursor
-    !> The word
     type(token_t), intent(out) :: token
 
     call skip_blanks(deck, cursor)
@@ -206,7 +205,6 @@ contains
     character(len=*), intent(in) :: deck
     !> At its first character; moved behind the word, or behind the = of a key
     type(cursor_t), intent(inout) :: cursor
-    !> The word
     type(token_t), intent(inout) :: token
     type(cursor_t) :: ahead
     integer :: finish, last

@@ -66,7 +66,6 @@ contains
 
   !> Mean strains of a sub-ply along and across the fibres.
   pure function sub_ply_means(strains, number) result(mean)
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Number of the sub-ply, from the top
     integer, intent(in) :: number
@@ -110,7 +109,6 @@ contains
   pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
@@ -142,7 +140,6 @@ contains
   pure subroutine find_means(elasticity, strains, left, direction, spread, means, is_open)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
@@ -178,7 +175,6 @@ contains
   pure function compressed_share(elasticity, strains, left) result(share)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
@@ -208,7 +204,6 @@ contains
   pure function find_recovered(elasticity, strains, left) result(recovered)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left

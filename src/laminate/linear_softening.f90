@@ -77,7 +77,6 @@ contains
 
   !> Damage of a softening law: d = N (f - 1)/(f (N - 1)).
   pure real(wp) function damage_at(softening) result(damage)
-    !> The softening law
     type(softening_t), intent(in) :: softening
 
     damage = 0
@@ -90,7 +89,6 @@ contains
 
   !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
   pure real(wp) function dissipated_by(softening, part, damage_from, damage_to) result(energy)
-    !> The softening law
     type(softening_t), intent(in) :: softening
     !> Factor of the energy of the law, at most 1
     real(wp), intent(in) :: part

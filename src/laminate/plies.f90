@@ -56,7 +56,6 @@ contains
 
   !> True: the moduli along the fibres in tension and in compression differ.
   elemental logical function is_bimodular(elasticity)
-    !> The constants
     type(elasticity_t), intent(in) :: elasticity
 
     is_bimodular = abs(elasticity%compression - 1) > 0

@@ -63,7 +63,6 @@ contains
 
   !> Starts PETSc, unless it is already started, without the command line.
   subroutine start_petsc(communicator, options, error)
-    !> All ranks of the run
     type(communicator_t), intent(in) :: communicator
     !> Options for PETSc's database, such as `-log_view -mat_mumps_icntl_14 50`; may be blank
     character(len=*), intent(in) :: options

@@ -27,10 +27,8 @@ module stringer_deck
                                  other_stiffnesses = 'EI_lateral eccentricity'
   !> E/G of an isotropic material with Poisson's ratio .3.
   real(wp), parameter :: isotropic_ratio = 2*(1 + 0.3_wp)
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: stringer_group_row = &
     'stringer | several | A stiffener bonded to a face of the plate, a beam along a line of the mesh.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: stringer_rows(*) = [character(len=key_row_length) :: &
     'stringer | name | name | 1 | - | required | letters, digits, . _ - | &
       &Name, in messages.', &
@@ -85,7 +83,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
-    !> Receives them
     type(stringer_t), allocatable, intent(out) :: all(:)
     real(wp) :: modulus
     integer :: place, i

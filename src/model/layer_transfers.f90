@@ -151,7 +151,6 @@ contains
   !> Copies the items of an archive that only rank 0 has saved to every rank. Collective.
   subroutine broadcast(self, communicator)
     class(layer_transfer_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     integer :: item, extents(2)
     real(wp), allocatable :: list(:)
@@ -272,7 +271,6 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    !> How it is mapped
     type(field_mapping_t), intent(in) :: mapping
 
     if (.not. self%loading) then

@@ -68,7 +68,6 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    !> How it is mapped
     type(field_mapping_t), intent(in) :: mapping
     integer :: item, i
 

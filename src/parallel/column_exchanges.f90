@@ -24,7 +24,6 @@ contains
 
   !> Determines the exchange between ranks, from lists that are the same on every rank. Collective.
   function new_column_exchange(communicator, mine, groups) result(self)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> True for columns that this rank computes, (columns)
     logical, intent(in) :: mine(:)

@@ -33,7 +33,6 @@ contains
 
   !> Starts MPI, unless it runs, and hands over the communicator of all ranks.
   subroutine start_mpi(communicator)
-    !> All ranks of the run
     type(communicator_t), intent(out) :: communicator
     logical :: running
 

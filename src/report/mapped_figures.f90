@@ -196,7 +196,6 @@ contains
   !> Adds them to the summary.
   subroutine put(self, json, below_plies)
     class(mapped_figures_t), intent(in) :: self
-    !> The summary
     type(json_t), intent(inout) :: json
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)

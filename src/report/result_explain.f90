@@ -32,7 +32,6 @@ contains
   subroutine explain_column(topic, lines, error)
     !> Such as work_external or area_below_3, optionally after the name of its table as in `history force`
     character(len=*), intent(in) :: topic
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if a table is named and has no such column or field
     type(error_t), allocatable, intent(inout) :: error
@@ -84,7 +83,6 @@ contains
     character(len=*), intent(in) :: topic
     !> True: the table alone, as Markdown
     logical, intent(in) :: markdown
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
 
     if (lower_case(topic) == 'history') then

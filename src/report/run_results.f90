@@ -175,7 +175,6 @@ contains
   !> Writes all as members of the summary.
   subroutine put(self, json)
     class(results_t), intent(in) :: self
-    !> The summary
     type(json_t), intent(inout) :: json
     integer :: i
 

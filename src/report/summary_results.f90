@@ -23,7 +23,6 @@ contains
     type(deck_t), intent(in) :: deck
     type(state_t), intent(in) :: now
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> The list
     type(results_t) :: results
@@ -53,12 +52,10 @@ contains
 
   !> Contact and impactor.
   subroutine add_impact(results, deck, now, record, figures)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(state_t), intent(in) :: now
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     real(wp) :: energy
 
@@ -79,7 +76,6 @@ contains
 
   !> The ledger at the end.
   subroutine add_energies(results, ledger)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(ledger_t), intent(in) :: ledger
 
@@ -99,11 +95,9 @@ contains
 
   !> All interfaces together.
   subroutine add_interfaces(results, deck, record, figures)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
 
     call results%add('delaminated_area', sum(figures%interfaces%area))
@@ -134,7 +128,6 @@ contains
 
   !> Strength and modulus of a compression.
   subroutine add_compression(results, deck, record)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record

@@ -15,7 +15,6 @@ contains
     character(len=*), intent(in) :: path
     !> Its text
     character(len=*), intent(in) :: content
-    !> Set if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(output_stream_t) :: file
 

@@ -49,7 +49,6 @@ contains
   !> Starts a checkpoint; the previous one is kept until this one is closed.
   subroutine open_for_saving(self, communicator, path, provenance, error)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -68,7 +67,6 @@ contains
   !> Opens a checkpoint, after a check of its validity.
   subroutine open_for_loading(self, communicator, path, error)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the file
     character(len=*), intent(in) :: path
@@ -106,7 +104,6 @@ contains
 
   !> Finds the newest valid checkpoint of a folder.
   subroutine newest_checkpoint(communicator, folder, path, error)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the folder
     character(len=*), intent(in) :: folder
@@ -138,7 +135,6 @@ contains
 
   !> Renames the checkpoint of an earlier run, which must not be taken for that of the new run.
   subroutine retire_checkpoint(communicator, path, retired, error)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the checkpoint
     character(len=*), intent(in) :: path

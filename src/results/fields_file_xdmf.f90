@@ -90,7 +90,6 @@ contains
     character(len=*), intent(in) :: part
     !> One grid per time
     type(line_t), intent(in) :: grids(:)
-    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(output_stream_t) :: file
     integer :: i

@@ -187,7 +187,6 @@ contains
     character(len=*), intent(in) :: heading
     !> The table
     character(len=*), intent(in) :: rows(:)
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     integer, allocatable :: widths(:)
     integer :: i, j

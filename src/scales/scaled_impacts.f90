@@ -42,7 +42,6 @@ contains
   pure function largest_scaling(setup, scales, limit, bound) result(found)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     !> Largest factor
     real(wp), intent(in) :: limit

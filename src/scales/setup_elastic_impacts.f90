@@ -84,7 +84,6 @@ contains
   pure function start_elastic_impact(setup, scales) result(elastic)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     type(setup_elastic_impact_t) :: elastic
 
@@ -134,7 +133,6 @@ contains
   pure function expected_scales_of(setup, scales, step, end, edge, scaling) result(expected)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     !> Step and end of the run
     real(wp), intent(in) :: step, end
