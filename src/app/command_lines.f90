@@ -238,7 +238,6 @@ contains
 
   !> Command most similar to a word; empty: none is similar, or the word may be the name of a file.
   pure function meant_verb(word) result(verb)
-    !> The word
     character(len=*), intent(in) :: word
     !> The verb
     character(len=:), allocatable :: verb
@@ -270,7 +269,6 @@ contains
 
   !> Value of a word; 0 if it is no whole number.
   pure integer function whole_number(word) result(number)
-    !> The word
     character(len=*), intent(in) :: word
     integer :: status
 
@@ -282,7 +280,6 @@ contains
 
   !> Seconds of hours:minutes:seconds or hours:minutes; 0 if the word is neither.
   pure integer function clock_seconds(word) result(seconds)
-    !> The word
     character(len=*), intent(in) :: word
     type(line_t), allocatable :: parts(:)
     integer :: i
@@ -299,7 +296,6 @@ contains
 
   !> Value of a word in seconds; 0 if it is no number.
   pure real(wp) function seconds_of(word) result(seconds)
-    !> The word
     character(len=*), intent(in) :: word
     integer :: status
 
@@ -340,7 +336,6 @@ contains
 
   !> Verb of a word; 0: the word is not a verb.
   pure integer function verb_of(word) result(verb)
-    !> The word
     character(len=*), intent(in) :: word
 
     verb = findloc(verb_words == word, .true., dim=1)

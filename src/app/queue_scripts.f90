@@ -139,7 +139,6 @@ contains
 
   !> Reads a deck that must have no faults.
   subroutine read_valid_deck(path, deck, error)
-    !> Its path
     character(len=*), intent(in) :: path
     type(deck_t), intent(out) :: deck
     !> Raised if it cannot be read or has faults
@@ -275,7 +274,6 @@ contains
 
   !> A word quoted for a shell.
   pure function quoted(word) result(safe)
-    !> The word
     character(len=*), intent(in) :: word
     !> In quotes
     character(len=:), allocatable :: safe

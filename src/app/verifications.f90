@@ -178,7 +178,6 @@ contains
 
   !> A word padded with blanks.
   pure function wide(word)
-    !> The word
     character(len=*), intent(in) :: word
     !> The same in 14 columns or more
     character(len=max(14, len(word) + 1)) :: wide

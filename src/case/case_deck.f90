@@ -99,7 +99,6 @@ contains
 
   !> File name of a path without folders and extension; invalid characters of a case name become _.
   pure function name_from(path) result(name)
-    !> The path
     character(len=*), intent(in) :: path
     !> A valid case name
     character(len=:), allocatable :: name
@@ -115,7 +114,6 @@ contains
 
   !> File name of a path without folders and extension.
   pure function stem_of(path) result(stem)
-    !> The path
     character(len=*), intent(in) :: path
     !> The name
     character(len=:), allocatable :: stem

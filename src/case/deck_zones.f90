@@ -71,7 +71,6 @@ contains
   subroutine remark_patch(deck, zone, group, place, problems)
     type(deck_t), intent(in) :: deck
     class(ply_zone_t), intent(in) :: zone
-    !> Its group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place

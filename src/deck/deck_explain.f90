@@ -62,7 +62,6 @@ contains
   !> A group and its keys.
   subroutine explain_group(vocabulary, name, lines, error)
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: name
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Raised if there is no such group
@@ -82,7 +81,6 @@ contains
   !> One key of a group.
   subroutine explain_one(vocabulary, group, key, lines, error)
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Raised if there is no such key
@@ -108,7 +106,6 @@ contains
   !> Raises an error if there is no group of this name.
   subroutine require_group(vocabulary, name, error)
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: name
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: nearest
@@ -185,7 +182,6 @@ contains
   !> The keys of a group as a Markdown table.
   subroutine explain_table(vocabulary, group, lines, error)
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: group
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if there is no such group, or if it is a key

@@ -143,7 +143,6 @@ contains
   !> True: an error belongs to this group, or to this key of it, so that checks that depend on it would be misleading.
   pure logical function concern(self, group, key, place)
     class(problems_t), intent(in) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Name of the key; absent: any
     character(len=*), intent(in), optional :: key

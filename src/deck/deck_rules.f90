@@ -79,7 +79,6 @@ contains
 
   !> A group that is not in the table.
   subroutine report_unknown_group(name, line, vocabulary, problems)
-    !> Name of the group
     character(len=*), intent(in) :: name
     !> Its line
     integer, intent(in) :: line
@@ -121,7 +120,6 @@ contains
 
   !> A key that its group does not have.
   subroutine report_unknown_key(group, place, entry, vocabulary, problems)
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place
@@ -186,7 +184,6 @@ contains
     !> Index among the groups of this name
     integer, intent(in) :: place
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> The keys are added to these
     type(settings_t), intent(inout) :: settings
@@ -321,7 +318,6 @@ contains
 
   !> Beginning of a message: `&group key = values: `.
   pure function message_head(group, entry) result(head)
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry

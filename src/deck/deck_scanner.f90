@@ -207,7 +207,6 @@ contains
 
   !> Place of the first of some characters in a word, 0 if there is none.
   pure integer function scan_for(word, characters)
-    !> The word
     character(len=*), intent(in) :: word
     !> The characters
     character(len=*), intent(in) :: characters

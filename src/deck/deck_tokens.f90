@@ -172,7 +172,6 @@ contains
     character(len=*), intent(in) :: deck
     !> At the opening quote; moved behind the closing one or to the end of the line
     type(cursor_t), intent(inout) :: cursor
-    !> The text
     type(token_t), intent(inout) :: token
     character(len=1) :: quote
     integer :: start, line_end, step

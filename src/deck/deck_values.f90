@@ -244,7 +244,6 @@ contains
 
   !> True: a way to write infinity or not-a-number.
   pure logical function is_not_finite(word)
-    !> The word
     character(len=*), intent(in) :: word
     character(len=:), allocatable :: bare
 
@@ -255,7 +254,6 @@ contains
 
   !> Whether a word is a number, and its decimal magnitude, determined without overflow.
   pure subroutine measure_number(word, is_number, decade)
-    !> The word
     character(len=*), intent(in) :: word
     !> True: sign, digits, point and exponent are valid
     logical, intent(out) :: is_number

@@ -245,7 +245,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Index of the group
     integer, intent(in) :: place
-    !> The key
     character(len=*), intent(in) :: key
     !> Strength of the weaker ply; 0: not given
     real(wp), intent(in) :: of_plies

@@ -154,7 +154,6 @@ contains
 
     !> Remarks on the largest angle beyond 180 degrees.
     subroutine remark_large(key, values, hint)
-      !> The key
       character(len=*), intent(in) :: key
       !> Its angles, degrees
       real(wp), intent(in) :: values(:)

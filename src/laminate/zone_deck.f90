@@ -82,7 +82,6 @@ contains
   !> Centre and sides of a zone.
   subroutine fill_rectangle(settings, group, place, at, sides)
     type(settings_t), intent(in) :: settings
-    !> Its group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place
@@ -175,7 +174,6 @@ contains
   !> Refuses zones that reach beyond the plate.
   subroutine check_rectangle(settings, group, place, zone, length, problems)
     type(settings_t), intent(in) :: settings
-    !> Its group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place

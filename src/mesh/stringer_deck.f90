@@ -134,7 +134,6 @@ contains
 
     !> Value of one of its keys.
     real(wp) function of(key)
-      !> Its name
       character(len=*), intent(in) :: key
 
       of = value_of(settings, key, place)
@@ -144,7 +143,6 @@ contains
   !> Value of a key of a stringer; 0: it is not given.
   real(wp) function value_of(settings, key, place) result(value)
     type(settings_t), intent(in) :: settings
-    !> Its name
     character(len=*), intent(in) :: key
     !> Index of its group
     integer, intent(in) :: place

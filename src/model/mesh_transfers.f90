@@ -60,7 +60,6 @@ contains
   !> when saving.
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(mesh_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)

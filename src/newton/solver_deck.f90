@@ -73,7 +73,6 @@ contains
 
   !> True if a word is an allowed option, or a value that is not the name of a file.
   pure logical function is_allowed(word)
-    !> The word
     character(len=*), intent(in) :: word
     type(line_t), allocatable :: prefixes(:)
     integer :: i

@@ -62,7 +62,6 @@ contains
 
     !> One interface or ply.
     subroutine put_place(name, number, before, after, across)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Its number
       integer, intent(in) :: number

@@ -49,7 +49,6 @@ contains
   !> Time, force and deflection of an event.
   subroutine put_event(json, name, event, deck)
     type(json_t), intent(inout) :: json
-    !> Its name
     character(len=*), intent(in) :: name
     !> Time, contact force, deflection; time 0: never, negative: before the run
     real(wp), intent(in) :: event(3)

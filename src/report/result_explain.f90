@@ -49,7 +49,6 @@ contains
 
   !> Explains a column of the history or a field.
   subroutine find_column(name, lines)
-    !> Its name
     character(len=*), intent(in) :: name
     !> The explanation; empty: there is none
     type(line_t), allocatable, intent(out) :: lines(:)

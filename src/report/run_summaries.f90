@@ -41,7 +41,6 @@ contains
     type(provenance_t), intent(in) :: provenance
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
-    !> Path of the file
     character(len=*), intent(in) :: path
     type(log_t), intent(inout) :: log
     !> Reason of a premature end; otherwise set if the summary cannot be written

@@ -130,7 +130,6 @@ contains
 
     !> Adds a warning at its first occurrence.
     subroutine add(name, occurs, at_zone)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Whether its condition is met
       logical, intent(in) :: occurs
@@ -144,7 +143,6 @@ contains
   !> True: the warning, which concerns no zone, has not been given.
   pure logical function is_new(record, name)
     type(run_record_t), intent(in) :: record
-    !> Its name
     character(len=*), intent(in) :: name
 
     is_new = .not. record%has_warned(kind_of(name), 0)
@@ -167,7 +165,6 @@ contains
 
   !> Adds a warning at its first occurrence.
   subroutine add_warning(name, occurs, deck, stepper, record, warnings, at_zone)
-    !> Its name
     character(len=*), intent(in) :: name
     !> Whether its condition is met
     logical, intent(in) :: occurs

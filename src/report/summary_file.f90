@@ -103,7 +103,6 @@ contains
 
     !> Adds an error, or null.
     subroutine put_known(name, error)
-      !> Its name
       character(len=*), intent(in) :: name
       !> The error; negative: not known
       real(wp), intent(in) :: error

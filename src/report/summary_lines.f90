@@ -317,7 +317,6 @@ contains
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
     type(results_t), intent(in) :: results
-    !> Its name
     character(len=*), intent(in) :: name
     !> Time, contact force, deflection; time 0: never, negative: before the run
     real(wp), intent(in) :: event(3)

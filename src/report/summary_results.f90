@@ -116,7 +116,6 @@ contains
 
     !> Time and force of the first event of all interfaces.
     subroutine add_first(name, event)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Time, contact force, deflection; time 0: never
       real(wp), intent(in) :: event(3)

@@ -11,7 +11,6 @@ contains
 
   !> Writes a file or replaces it; without success, as on a full disk, there is no new file.
   subroutine write_whole_file(path, content, error)
-    !> Its path
     character(len=*), intent(in) :: path
     !> Its text
     character(len=*), intent(in) :: content

@@ -50,7 +50,6 @@ contains
   subroutine open_for_saving(self, communicator, path, provenance, error)
     class(checkpoint_archive_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> The run, deck included
     type(provenance_t), intent(in) :: provenance
@@ -68,7 +67,6 @@ contains
   subroutine open_for_loading(self, communicator, path, error)
     class(checkpoint_archive_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Raised if it cannot be read
     type(error_t), allocatable, intent(inout) :: error
@@ -182,7 +180,6 @@ contains
 
   !> Folder of a file.
   pure function folder(path)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Its folder, with a slash at the end
     character(len=:), allocatable :: folder
@@ -194,7 +191,6 @@ contains
   !> Visits one real.
   subroutine real_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item
     real(wp), intent(inout) :: value
@@ -211,7 +207,6 @@ contains
   !> Visits one integer.
   subroutine integer_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item
     integer, intent(inout) :: value
@@ -228,7 +223,6 @@ contains
   !> Visits one logical, stored as 0 or 1.
   subroutine logical_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item
     logical, intent(inout) :: value
@@ -242,7 +236,6 @@ contains
   !> Visits a list of reals.
   subroutine reals_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item; not allocated counts as length 0 when saving
     real(wp), allocatable, intent(inout) :: value(:)
@@ -261,7 +254,6 @@ contains
   !> Visits a list of integers.
   subroutine integers_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item; not allocated counts as length 0 when saving
     integer, allocatable, intent(inout) :: value(:)
@@ -280,7 +272,6 @@ contains
   !> Visits a table of reals.
   subroutine table_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item; not allocated counts as 0 by 0 when saving
     real(wp), allocatable, intent(inout) :: value(:, :)
@@ -301,7 +292,6 @@ contains
   !> Visits a field distributed over the ranks, stored in global order.
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> Global columns (from 1) of the leading columns of `value`
     integer, intent(in) :: columns(:)
@@ -322,7 +312,6 @@ contains
   !> Extents of a stored list or table; zeros, which do not fit, if it has another rank or does not exist.
   function extents_of(self, name, rank) result(extents)
     class(checkpoint_archive_t), intent(in) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> 1: a list, 2: a table
     integer, intent(in) :: rank

@@ -154,7 +154,6 @@ contains
 
   !> A name with the special characters of XML escaped.
   pure function escaped(name)
-    !> The name
     character(len=*), intent(in) :: name
     !> As XML requires it
     character(len=:), allocatable :: escaped

@@ -52,7 +52,6 @@ contains
   subroutine create(self, communicator, path, columns, whole, error)
     class(history_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
@@ -80,7 +79,6 @@ contains
   subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
     class(history_file_t), intent(inout) :: self
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
