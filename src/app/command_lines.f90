@@ -239,7 +239,6 @@ contains
   !> Command most similar to a word; empty: none is similar, or the word may be the name of a file.
   pure function meant_verb(word) result(verb)
     character(len=*), intent(in) :: word
-    !> The verb
     character(len=:), allocatable :: verb
     type(line_t), allocatable :: known(:)
     integer :: i
@@ -360,7 +359,6 @@ contains
   function argument(i) result(word)
     !> Position
     integer, intent(in) :: i
-    !> The argument
     character(len=:), allocatable :: word
     integer :: length
 

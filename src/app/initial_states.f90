@@ -96,7 +96,6 @@ contains
   !> Remark of the check on an initial state that does not exist yet.
   function missing_start(deck) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> The sentence
     character(len=:), allocatable :: sentence
 
     sentence = 'The initial state '//deck%setup%initial%from// &

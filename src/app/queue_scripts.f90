@@ -245,7 +245,6 @@ contains
   !> Command that submits a job that continues from the checkpoint.
   pure function continuation_command(job) result(words)
     type(queue_job_t), intent(in) :: job
-    !> A command
     character(len=:), allocatable :: words
 
     words = 'sbatch '//job%name//'.slurm restart'

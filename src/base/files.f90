@@ -147,7 +147,6 @@ contains
     character(len=*), intent(in) :: path
     !> Number of bytes
     integer, intent(in) :: bytes
-    !> The reason
     character(len=:), allocatable :: reason
 
     select case (implam_write_obstacle(path//c_null_char, path//'.trial'//c_null_char, bytes))
@@ -241,7 +240,6 @@ contains
   !> Why a path cannot be read, as the end of a sentence; empty if it can be.
   function read_obstacle(path) result(reason)
     character(len=*), intent(in) :: path
-    !> The reason
     character(len=:), allocatable :: reason
 
     reason = ''

@@ -115,7 +115,6 @@ contains
   !> File name of a path without folders and extension.
   pure function stem_of(path) result(stem)
     character(len=*), intent(in) :: path
-    !> The name
     character(len=:), allocatable :: stem
 
     stem = path(index(path, '/', back=.true.) + 1:)

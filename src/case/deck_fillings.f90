@@ -114,7 +114,6 @@ contains
   !> Materials of the plies of the laminate; none if it is not valid.
   pure function skin_materials(deck) result(material)
     type(deck_t), intent(in) :: deck
-    !> Their indices
     integer, allocatable :: material(:)
 
     allocate (material(0))

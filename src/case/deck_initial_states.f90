@@ -69,7 +69,6 @@ contains
   function inheritance_objection(deck, old) result(objection)
     !> The deck, and that of the other run with the zones at its end
     type(deck_t), intent(in) :: deck, old
-    !> The sentence
     character(len=:), allocatable :: objection
 
     objection = ''
@@ -221,7 +220,6 @@ contains
     pure function given(is_given) result(word)
       !> True: the group is given
       logical, intent(in) :: is_given
-      !> The words
       character(len=:), allocatable :: word
 
       word = trim(merge('given   ', 'left out', is_given))

@@ -297,7 +297,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    !> Their coordinates
     real(wp), allocatable :: lines(:)
 
     allocate (lines(0))

@@ -127,7 +127,6 @@ contains
   !> Sentence on the smallest part of the plate that need be modelled; empty if the deck already models only this part.
   function symmetry_sentence(deck) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> The sentence
     character(len=:), allocatable :: sentence
     character(len=*), parameter :: names(5) = [character(len=7) :: 'none', 'quarter', 'half_x', 'half_y', 'point']
     integer :: part

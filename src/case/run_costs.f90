@@ -29,7 +29,6 @@ contains
   function cost_lines(deck, model_size) result(lines)
     type(deck_t), intent(in) :: deck
     type(model_size_t), intent(in) :: model_size
-    !> The sentences
     type(line_t), allocatable :: lines(:)
 
     allocate (lines(0))
@@ -53,7 +52,6 @@ contains
   function implicit_sentence(deck, model_size) result(sentence)
     type(deck_t), intent(in) :: deck
     type(model_size_t), intent(in) :: model_size
-    !> One sentence
     character(len=:), allocatable :: sentence
     real(wp) :: steps, solves
 

@@ -176,7 +176,6 @@ contains
       integer, intent(in) :: from, to
       !> Their strengths
       character(len=*), intent(in) :: strengths
-      !> The line
       character(len=:), allocatable :: line
 
       line = 'in-situ YT and S12, ply '//to_text(from)
@@ -257,7 +256,6 @@ contains
   pure function table_line(name, value, unit) result(line)
     !> Name of the quantity, its value, and its unit or dimension
     character(len=*), intent(in) :: name, value, unit
-    !> The line
     character(len=:), allocatable :: line
 
     line = '  '//name//repeat(' ', max(1, name_width - len(name)))//value
@@ -270,7 +268,6 @@ contains
     !> The value, in its units
     real(wp), intent(in) :: value
     type(dimension_t), intent(in) :: dimension
-    !> The digits
     character(len=:), allocatable :: digits
     integer :: system
 

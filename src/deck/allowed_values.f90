@@ -46,7 +46,6 @@ contains
   pure function counted_kind(number, noun) result(words)
     !> Number of values as the table has it, and what a value is
     character(len=*), intent(in) :: number, noun
-    !> The words
     character(len=:), allocatable :: words
 
     select case (number)

@@ -147,7 +147,6 @@ contains
   !> Whether a group is required and repeatable, in words.
   pure function presence_in_words(group) result(words)
     type(group_entry_t), intent(in) :: group
-    !> A few words
     character(len=:), allocatable :: words
 
     select case (group%presence)
@@ -165,7 +164,6 @@ contains
   !> The default of a key.
   pure function default_in_words(key) result(words)
     type(key_entry_t), intent(in) :: key
-    !> A few words
     character(len=:), allocatable :: words
 
     if (key%default == 'required') then
@@ -206,7 +204,6 @@ contains
   !> One row of a Markdown table.
   pure function table_row(key) result(row)
     type(key_entry_t), intent(in) :: key
-    !> The row
     character(len=:), allocatable :: row
     character(len=:), allocatable :: default, allowed, conditions
     type(line_t), allocatable :: choices(:)

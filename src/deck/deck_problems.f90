@@ -226,7 +226,6 @@ contains
   !> into one.
   function grouped(self) result(list)
     class(problems_t), intent(in) :: self
-    !> The faults
     type(problem_t), allocatable :: list(:)
     type(line_t), allocatable :: alike(:)
     logical :: reported(size(self%list))

@@ -321,7 +321,6 @@ contains
     character(len=*), intent(in) :: group
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry
-    !> The beginning
     character(len=:), allocatable :: head
 
     head = '&'//lower_case(group)//' '//shown(entry%key)//' ='//shown_values(entry%values)//': '

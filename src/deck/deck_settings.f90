@@ -183,7 +183,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The text
     character(len=:), allocatable :: word
     type(value_t), allocatable :: values(:)
 
@@ -198,7 +197,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The texts
     type(line_t), allocatable :: words(:)
     type(value_t), allocatable :: values(:)
     integer :: i
@@ -229,7 +227,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The numbers
     real(wp), allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
     integer :: i
@@ -244,7 +241,6 @@ contains
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The numbers
     integer, allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
     integer :: i

@@ -46,7 +46,6 @@ contains
   !> The range of a quantity for `explain` and the manual, such as usual mass 1e-6 to 1e5 kg.
   pure function range_in_words(name) result(words)
     character(len=*), intent(in) :: name
-    !> The words
     character(len=:), allocatable :: words
     integer :: i
 

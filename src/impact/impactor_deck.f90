@@ -105,7 +105,6 @@ contains
   !> Names of the keys of the impactor's velocity, separated by blanks.
   pure function keys_of_motion(settings) result(keys)
     type(settings_t), intent(in) :: settings
-    !> The names
     character(len=:), allocatable :: keys
 
     keys = key_velocity//' '//key_energy

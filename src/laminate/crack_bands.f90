@@ -219,7 +219,6 @@ contains
   elemental function degraded_elasticity(band, state) result(elasticity)
     type(crack_band_t), intent(in) :: band
     type(band_state_t), intent(in) :: state
-    !> The constants
     type(elasticity_t) :: elasticity
     real(wp) :: left(2)
 
@@ -246,7 +245,6 @@ contains
   pure function remaining_fractions(band, state) result(left)
     type(crack_band_t), intent(in) :: band
     type(band_state_t), intent(in) :: state
-    !> The parts
     type(remaining_t) :: left
 
     left = remaining_t(remaining_stiffness(band, state%damage), remaining_stiffness(band, state%damage))
@@ -259,7 +257,6 @@ contains
     type(band_state_t), intent(in) :: state
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
-    !> The constants
     type(elasticity_t) :: elasticity
     real(wp) :: left(2)
 

@@ -69,7 +69,6 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> Number of the sub-ply, from the top
     integer, intent(in) :: number
-    !> The strains
     real(wp) :: mean(2)
 
     mean = strains%mean
@@ -84,7 +83,6 @@ contains
     real(wp), intent(in) :: mean(2)
     !> Remaining fractions of the stiffness
     real(wp), intent(in) :: left(2)
-    !> The strains
     real(wp) :: strains(2)
     real(wp) :: part(2)
 

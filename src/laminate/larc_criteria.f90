@@ -39,7 +39,6 @@ contains
   !> 2 G12 (YT/S12)**2. Without XC and YC its fibres do not kink, and its matrix is not crushed.
   pure function larc_of(material) result(larc)
     type(material_t), intent(in) :: material
-    !> The constants
     type(larc_t) :: larc
     real(wp) :: ratio
 

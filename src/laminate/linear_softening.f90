@@ -46,7 +46,6 @@ contains
   pure function more_damaged(signs)
     !> Tension and compression
     type(softening_t), intent(in) :: signs(2)
-    !> That law
     type(softening_t) :: more_damaged
 
     more_damaged = signs(1)
@@ -65,7 +64,6 @@ contains
     real(wp), intent(in) :: length
     !> The mode
     integer, intent(in) :: mode
-    !> The softening law
     type(softening_t) :: softening
 
     softening%mode = mode

@@ -234,7 +234,6 @@ contains
     character(len=*), intent(in) :: keys
     !> True: those given
     logical, intent(in) :: given
-    !> The names
     type(line_t), allocatable :: words(:)
     type(line_t), allocatable :: names(:)
     integer :: i

@@ -47,7 +47,6 @@ contains
   !> Elastic constants of a material without damage.
   pure function elasticity_of(material) result(elasticity)
     type(material_t), intent(in) :: material
-    !> Its constants
     type(elasticity_t) :: elasticity
 
     elasticity = elasticity_t(material%e1, material%e2, material%g12, material%g13, material%g23, material%nu12)

@@ -180,7 +180,6 @@ contains
   !> Name of the package, and number of factorizations by the second package.
   function package_used(self) result(name)
     class(linear_solver_t), intent(in) :: self
-    !> The name
     character(len=:), allocatable :: name
 
     name = self%factors(definite)%title()

@@ -263,7 +263,6 @@ contains
   !> Usual name of the package.
   pure function title(self)
     class(petsc_factor_t), intent(in) :: self
-    !> The name
     character(len=:), allocatable :: title
 
     title = package_title(self%package)

@@ -128,7 +128,6 @@ contains
   function text_at(address) result(text)
     !> Address of the text; null for an empty one
     type(c_ptr), intent(in) :: address
-    !> The text
     character(len=:), allocatable :: text
     character(kind=c_char), pointer :: letters(:)
     integer, parameter :: longest = 1024

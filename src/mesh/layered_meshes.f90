@@ -234,7 +234,6 @@ contains
     class(layered_mesh_t), intent(in) :: self
     !> Element
     integer, intent(in) :: element
-    !> The numbers
     integer :: range(2)
 
     range = self%layers(self%element_layer(element))%plies

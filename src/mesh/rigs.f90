@@ -64,7 +64,6 @@ contains
     type(support_t), intent(in) :: support
     !> The cell
     integer, intent(in) :: cell
-    !> The points
     type(crossing_t), allocatable :: crossings(:)
     integer :: place(2), nodes(9)
 

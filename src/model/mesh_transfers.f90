@@ -99,7 +99,6 @@ contains
     integer, intent(in) :: point
     !> Signs in images
     type(field_mapping_t), intent(in) :: mapping
-    !> Its unknowns
     real(wp) :: motion(5)
     real(wp) :: at(2), shapes(3, 2)
     integer :: place(2), i, j
@@ -132,7 +131,6 @@ contains
     real(wp), intent(in) :: saved(:, :)
     !> Node, and zone; 0: the first layer
     integer, intent(in) :: node, zone
-    !> The unknowns
     real(wp) :: unknowns(5)
     integer :: above
 

@@ -62,7 +62,6 @@ contains
       integer, intent(in) :: other
       !> True for the columns
       logical, intent(in) :: some(:)
-      !> Their numbers
       integer, allocatable :: columns(:)
       logical :: needs(size(some))
       integer :: i

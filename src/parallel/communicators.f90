@@ -70,7 +70,6 @@ contains
   function communicator_from_handle(handle) result(communicator)
     !> Handle of MPI's Fortran interfaces
     integer, intent(in) :: handle
-    !> Its ranks
     type(communicator_t) :: communicator
 
     communicator%group%mpi_val = handle

@@ -187,7 +187,6 @@ contains
   pure function both(values) result(text)
     !> Before and after, and before a cut
     real(wp), intent(in) :: values(:)
-    !> The text
     character(len=:), allocatable :: text
 
     text = rounded_text(values(1))//' -> '//rounded_text(values(2))

@@ -45,7 +45,6 @@ contains
     type(provenance_t), intent(in) :: provenance
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
-    !> The text
     character(len=:), allocatable :: content
     type(json_t) :: json
 

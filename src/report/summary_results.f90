@@ -24,7 +24,6 @@ contains
     type(state_t), intent(in) :: now
     type(run_record_t), intent(in) :: record
     type(run_figures_t), intent(in) :: figures
-    !> The list
     type(results_t) :: results
 
     results = new_results(deck%case%units, deck%setup%is_static())

@@ -99,7 +99,6 @@ contains
     character(len=*), intent(in) :: at
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
-    !> One sentence
     character(len=:), allocatable :: text
     type(warning_row_t) :: row
 

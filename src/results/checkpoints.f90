@@ -315,7 +315,6 @@ contains
     character(len=*), intent(in) :: name
     !> 1: a list, 2: a table
     integer, intent(in) :: rank
-    !> The extents
     integer, allocatable :: extents(:)
     integer :: i
 

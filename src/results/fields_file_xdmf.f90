@@ -134,7 +134,6 @@ contains
   pure function numbered(number) result(name)
     !> The number, from 1
     integer, intent(in) :: number
-    !> The name
     character(len=8) :: name
 
     write (name, '(i8.8)') number

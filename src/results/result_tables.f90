@@ -204,7 +204,6 @@ contains
     pure function padded(row) result(line)
       !> The row
       character(len=*), intent(in) :: row
-      !> The line
       character(len=:), allocatable :: line
       integer :: k
 

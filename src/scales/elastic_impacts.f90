@@ -143,7 +143,6 @@ contains
   !> impactor at the end.
   pure function figures_of(elastic) result(figures)
     type(elastic_impact_t), intent(in) :: elastic
-    !> The figures
     real(wp) :: figures(5)
 
     figures = [elastic%peak, elastic%peak_time, elastic%duration, elastic%deflection, elastic%velocity]

@@ -47,7 +47,6 @@ contains
     real(wp), intent(in) :: limit
     !> Largest fraction permitted for both
     real(wp), intent(in) :: bound
-    !> The factor
     type(scaled_impact_t) :: found
     type(setup_elastic_impact_t) :: elastic
     type(elastic_impact_t) :: exact

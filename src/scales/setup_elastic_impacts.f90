@@ -101,7 +101,6 @@ contains
     real(wp), intent(in) :: end
     !> Side of the elements; 0: infinitely fine
     real(wp), intent(in) :: cell
-    !> The impacts
     type(elastic_impact_t) :: run
     type(modal_plate_t) :: plate
     integer :: steps
@@ -120,7 +119,6 @@ contains
     type(setup_elastic_impact_t), intent(in) :: self
     !> End of the run; 0: not known
     real(wp), intent(in) :: end
-    !> The impacts
     type(elastic_impact_t) :: run
     real(wp) :: horizon
 
