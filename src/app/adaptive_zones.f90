@@ -44,7 +44,6 @@ contains
 
   !> A note on each extent of the adaptive zones, with all plies above zones of that extent.
   pure function zone_notes(delaminations, since, units) result(notes)
-    !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
     !> Since when, such as time 0.001, and the deck's system of units
     character(len=*), intent(in) :: since, units
@@ -87,7 +86,6 @@ contains
 
   !> Saves the adaptive zones, or loads them: a model has to be built with them.
   subroutine visit_zones(delaminations, archive)
-    !> The interfaces
     type(delamination_t), intent(inout) :: delaminations(:)
     class(archive_t), intent(inout) :: archive
     real(wp), allocatable :: places(:)

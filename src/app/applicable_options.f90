@@ -35,7 +35,6 @@ contains
   pure function commands_with(option) result(commands)
     !> The option
     character(len=*), intent(in) :: option
-    !> Their words
     character(len=:), allocatable :: commands
     type(line_t), allocatable :: terms(:)
     integer :: i, j

@@ -60,7 +60,6 @@ contains
 
   !> Parses the arguments of the program.
   subroutine read_command_line(command, error)
-    !> The parsed command line
     type(command_t), intent(out) :: command
     !> Set (usage) if an argument is not understood
     type(error_t), allocatable, intent(out) :: error
@@ -114,7 +113,6 @@ contains
 
   !> Turns the command into help or version, whatever else is given: the first option of these decides.
   subroutine inform(command, verb_given)
-    !> The parsed command line
     type(command_t), intent(inout) :: command
     !> True: a command was given; the topic of help is then not its file
     logical, intent(in) :: verb_given
@@ -129,7 +127,6 @@ contains
 
   !> Reads an option that begins with two dashes.
   subroutine read_option(command, word, i, error)
-    !> Receives the option
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
@@ -156,7 +153,6 @@ contains
 
   !> Reads an option without a value.
   subroutine read_switch(command, word, error)
-    !> Receives the option
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
@@ -181,7 +177,6 @@ contains
 
   !> Reads an option with its value, the next word or the text after an equals sign.
   subroutine read_value(command, word, value, error)
-    !> Receives the option
     type(command_t), intent(inout) :: command
     !> The option
     character(len=*), intent(in) :: word
@@ -243,9 +238,7 @@ contains
 
   !> Command most similar to a word; empty: none is similar, or the word may be the name of a file.
   pure function meant_verb(word) result(verb)
-    !> The word
     character(len=*), intent(in) :: word
-    !> The verb
     character(len=:), allocatable :: verb
     type(line_t), allocatable :: known(:)
     integer :: i
@@ -275,7 +268,6 @@ contains
 
   !> Value of a word; 0 if it is no whole number.
   pure integer function whole_number(word) result(number)
-    !> The word
     character(len=*), intent(in) :: word
     integer :: status
 
@@ -287,7 +279,6 @@ contains
 
   !> Seconds of hours:minutes:seconds or hours:minutes; 0 if the word is neither.
   pure integer function clock_seconds(word) result(seconds)
-    !> The word
     character(len=*), intent(in) :: word
     type(line_t), allocatable :: parts(:)
     integer :: i
@@ -304,7 +295,6 @@ contains
 
   !> Value of a word in seconds; 0 if it is no number.
   pure real(wp) function seconds_of(word) result(seconds)
-    !> The word
     character(len=*), intent(in) :: word
     integer :: status
 
@@ -316,7 +306,6 @@ contains
 
   !> Checks that the verbs that need a file have one.
   subroutine require_target(command, error)
-    !> The parsed command line
     type(command_t), intent(inout) :: command
     !> Set (usage) if no file is given, (files) if restart is given a deck
     type(error_t), allocatable, intent(inout) :: error
@@ -346,7 +335,6 @@ contains
 
   !> Verb of a word; 0: the word is not a verb.
   pure integer function verb_of(word) result(verb)
-    !> The word
     character(len=*), intent(in) :: word
 
     verb = findloc(verb_words == word, .true., dim=1)
@@ -371,7 +359,6 @@ contains
   function argument(i) result(word)
     !> Position
     integer, intent(in) :: i
-    !> The argument
     character(len=:), allocatable :: word
     integer :: length
 

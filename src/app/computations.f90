@@ -29,9 +29,7 @@ contains
 
   !> Runs a deck, or continues from a checkpoint.
   subroutine compute(command, communicator, code, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(inout) :: communicator
     !> Exit code
     integer, intent(inout) :: code
@@ -63,9 +61,7 @@ contains
 
   !> Reads the deck from its file or a checkpoint, and its initial state.
   subroutine take_deck(command, communicator, deck, checkpoint, code, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(deck_t), intent(out) :: deck
     !> Path of the checkpoint from which the run continues; empty: it begins
@@ -100,9 +96,7 @@ contains
 
   !> Reports the errors of a deck, and applies the options of the command line.
   subroutine accept_deck(command, communicator, deck, problems, code)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(deck_t), intent(inout) :: deck
     !> Errors and warnings so far
@@ -119,7 +113,6 @@ contains
   !> Runs the deck's setup to its end.
   subroutine simulate(deck, communicator, profile, checkpoint, error)
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
@@ -145,9 +138,7 @@ contains
   !> Runs a setup twice, the second time on finer elements with shorter steps, and reports the change of the results.
   !> Results of an earlier command are reused.
   subroutine verify(command, communicator, deck, profile, code, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> The deck of the first run
     type(deck_t), intent(in) :: deck
@@ -176,7 +167,6 @@ contains
   !> Continues a run of an earlier command.
   subroutine continue_run(deck, communicator, profile, error)
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
@@ -206,7 +196,6 @@ contains
   subroutine read_deck_everywhere(path, communicator, deck, problems)
     !> Path of the deck
     character(len=*), intent(in) :: path
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(deck_t), intent(out) :: deck
     type(problems_t), intent(out) :: problems
@@ -227,9 +216,7 @@ contains
 
   !> The checkpoint to continue from: the given file, or else the newest valid one of a folder.
   subroutine find_checkpoint(command, communicator, path, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the checkpoint
     character(len=:), allocatable, intent(out) :: path
@@ -254,7 +241,6 @@ contains
   subroutine read_checkpoint_deck(path, communicator, deck, problems, error)
     !> The checkpoint
     character(len=*), intent(in) :: path
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(deck_t), intent(out) :: deck
     type(problems_t), intent(out) :: problems

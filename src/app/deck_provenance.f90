@@ -15,7 +15,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> Number of ranks
     integer, intent(in) :: ranks
-    !> The provenance
     type(provenance_t) :: run
 
     run = this_run(this_build(), deck%text, ranks)

@@ -26,7 +26,6 @@ contains
   subroutine explain_growth_errors(markdown, lines)
     !> True: as a table for the manual
     logical, intent(in) :: markdown
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
     type(line_t), allocatable :: table(:)
 

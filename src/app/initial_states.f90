@@ -45,7 +45,6 @@ contains
   !> Collective.
   subroutine fit_initial_state(deck, communicator, error, lacks)
     type(deck_t), intent(inout) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Set (files) if the checkpoint cannot be read, (deck) if it is of another plate
     type(error_t), allocatable, intent(inout) :: error
@@ -104,7 +103,6 @@ contains
   !> Remark of the check on an initial state that does not exist yet.
   function missing_start(deck) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> The sentence
     character(len=:), allocatable :: sentence
 
     sentence = 'The initial state '//deck%setup%initial%from// &
@@ -114,7 +112,6 @@ contains
   !> Refuses the checkpoint that the run itself will write.
   subroutine refuse_own_end(deck, communicator, error)
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Set (deck) if it is that checkpoint
     type(error_t), allocatable, intent(inout) :: error
@@ -213,7 +210,6 @@ contains
   subroutine open_checkpoint(path, communicator, archive, old, error)
     !> The checkpoint
     character(len=*), intent(in) :: path
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(checkpoint_archive_t), intent(inout) :: archive
     !> Receives its deck

@@ -30,7 +30,6 @@ contains
     character(len=*), intent(in) :: topic
     !> True: as tables for the manual
     logical, intent(in) :: markdown
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Set (usage) if there is no such material
     type(error_t), allocatable, intent(inout) :: error

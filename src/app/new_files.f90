@@ -12,7 +12,6 @@ contains
 
   !> Writes lines to a new file.
   subroutine write_new_file(path, lines, error)
-    !> Its path
     character(len=*), intent(in) :: path
     !> Its lines
     type(line_t), intent(in) :: lines(:)

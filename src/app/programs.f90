@@ -99,7 +99,6 @@ contains
 
   !> Prints the usage.
   subroutine print_usage(communicator)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(line_t), allocatable :: lines(:)
 
@@ -109,9 +108,7 @@ contains
 
   !> Prints the manual page or the completions of a shell.
   subroutine print_page(command, communicator, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Set (usage) if the shell is not known
     type(error_t), allocatable, intent(inout) :: error
@@ -129,9 +126,7 @@ contains
 
   !> Writes a deck to start from.
   subroutine start_deck(command, communicator, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Set (files) if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
@@ -147,9 +142,7 @@ contains
 
   !> Writes the script of a job.
   subroutine queue_deck(command, communicator, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Set if the deck has faults or the script exists
     type(error_t), allocatable, intent(inout) :: error
@@ -173,9 +166,7 @@ contains
 
   !> Explains a group or key of the deck, or the tables of results.
   subroutine explain_topic(command, communicator, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Set (usage) if there is no such group or key
     type(error_t), allocatable, intent(out) :: error
@@ -222,9 +213,7 @@ contains
 
   !> Reads and checks a deck, and lists its errors.
   subroutine check(command, communicator, code, error)
-    !> The parsed command line
     type(command_t), intent(in) :: command
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Exit code
     integer, intent(out) :: code

@@ -92,7 +92,6 @@ contains
 
   !> Name, results, ranks and memory of a deck.
   subroutine size_deck(job, error)
-    !> Receives them
     type(queue_job_t), intent(inout) :: job
     !> Raised if the deck has faults
     type(error_t), allocatable, intent(inout) :: error
@@ -111,7 +110,6 @@ contains
 
   !> Number of commands of a sweep's list, and the largest of its decks, listed in decks.txt.
   subroutine size_array(job, error)
-    !> Receives them
     type(queue_job_t), intent(inout) :: job
     !> Raised if a list cannot be read, is empty, or a deck has faults
     type(error_t), allocatable, intent(inout) :: error
@@ -141,7 +139,6 @@ contains
 
   !> Reads a deck that must have no faults.
   subroutine read_valid_deck(path, deck, error)
-    !> Its path
     character(len=*), intent(in) :: path
     type(deck_t), intent(out) :: deck
     !> Raised if it cannot be read or has faults
@@ -158,7 +155,6 @@ contains
 
   !> Resources requested from Slurm. It may send the signal up to a minute early.
   subroutine head_of_slurm(job, script)
-    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -182,7 +178,6 @@ contains
 
   !> Resources requested from PBS. It sends no signal before the limit; `timeout` in the script does.
   subroutine head_of_pbs(job, script)
-    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -205,7 +200,6 @@ contains
 
   !> Commands for both queues.
   subroutine append_body(job, script)
-    !> Content of the script
     type(queue_job_t), intent(in) :: job
     !> Lines are added
     type(line_t), allocatable, intent(inout) :: script(:)
@@ -251,7 +245,6 @@ contains
   !> Command that submits a job that continues from the checkpoint.
   pure function continuation_command(job) result(words)
     type(queue_job_t), intent(in) :: job
-    !> A command
     character(len=:), allocatable :: words
 
     words = 'sbatch '//job%name//'.slurm restart'
@@ -280,7 +273,6 @@ contains
 
   !> A word quoted for a shell.
   pure function quoted(word) result(safe)
-    !> The word
     character(len=*), intent(in) :: word
     !> In quotes
     character(len=:), allocatable :: safe

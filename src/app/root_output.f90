@@ -11,7 +11,6 @@ contains
 
   !> Prints lines on the root rank.
   subroutine print_lines(communicator, lines)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(line_t), intent(in) :: lines(:)
     integer :: i

@@ -90,7 +90,6 @@ contains
   subroutine log_costs(timers, operator, log)
     !> Time of set-up, steps and output
     type(timer_set_t), intent(in) :: timers
-    !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     type(log_t), intent(inout) :: log
     real(wp) :: factor_entries, megabytes

@@ -18,11 +18,9 @@ contains
 
   !> The manual page in the macros of man(7).
   subroutine manual_page(vocabulary, version, lines)
-    !> Groups and keys of the deck
     type(vocabulary_t), intent(in) :: vocabulary
     !> Version of the program
     character(len=*), intent(in) :: version
-    !> The page
     type(line_t), allocatable, intent(out) :: lines(:)
     integer :: i, j
 
@@ -75,7 +73,6 @@ contains
   !> A key in the manual page.
   subroutine append_key(key, lines)
     type(key_entry_t), intent(in) :: key
-    !> The page
     type(line_t), allocatable, intent(inout) :: lines(:)
     character(len=:), allocatable :: unit, conditions
 
@@ -116,7 +113,6 @@ contains
   subroutine completion(shell, vocabulary, lines, error)
     !> bash or zsh
     character(len=*), intent(in) :: shell
-    !> Groups and keys of the deck
     type(vocabulary_t), intent(in) :: vocabulary
     !> The script
     type(line_t), allocatable, intent(out) :: lines(:)
@@ -151,7 +147,6 @@ contains
 
   !> The function that both shells run.
   subroutine append_words(lines, topics)
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Topics of explain
     character(len=*), intent(in) :: topics

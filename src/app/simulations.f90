@@ -89,7 +89,6 @@ contains
   subroutine initialize(self, deck, communicator, profile, error)
     class(simulation_t), intent(out) :: self
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
@@ -125,7 +124,6 @@ contains
   subroutine prepare(self, deck, communicator, profile, append, error)
     class(simulation_t), intent(inout) :: self
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
@@ -174,7 +172,6 @@ contains
     class(simulation_t), intent(out) :: self
     !> The deck of the checkpoint
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Clock at the program's start; its profile is unallocated unless requested
     type(profile_t), intent(in) :: profile
@@ -302,7 +299,6 @@ contains
     class(simulation_t), intent(inout) :: self
     !> True if the step has reached an output time or the end
     logical, intent(in) :: at_event
-    !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
     type(error_t), allocatable :: row_error
     real(wp) :: closest
@@ -340,7 +336,6 @@ contains
   !> Saves a checkpoint.
   subroutine save_checkpoint(self, error)
     class(simulation_t), intent(inout) :: self
-    !> Set if it cannot be written
     type(error_t), allocatable, intent(out) :: error
     type(checkpoint_archive_t) :: archive
     integer :: rows
@@ -360,7 +355,6 @@ contains
   !> Writes the last fields, closes the files and reports the cost of the run.
   subroutine finalize(self, error)
     class(simulation_t), intent(inout) :: self
-    !> Set if a file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
     ! In a complete run that is continued in another folder, no step writes the last fields.

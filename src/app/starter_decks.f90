@@ -49,7 +49,6 @@ contains
 
   !> Writes the deck into a new file.
   subroutine write_starter(path, rig, error)
-    !> Its path
     character(len=*), intent(in) :: path
     !> Name of a rig; empty: none
     character(len=*), intent(in) :: rig

@@ -121,7 +121,6 @@ contains
 
   !> A heading and its rows.
   pure subroutine append_rows(lines, heading, prefix, rows)
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Line above
     character(len=*), intent(in) :: heading
@@ -139,7 +138,6 @@ contains
 
   !> A term with its explanation beside it.
   pure subroutine append_wrapped(lines, term, words, column)
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> The term; empty: none
     character(len=*), intent(in) :: term

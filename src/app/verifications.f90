@@ -37,7 +37,6 @@ contains
     character(len=*), intent(in) :: deck
     !> Of the program
     character(len=*), intent(in) :: commit
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(checkpoint_archive_t) :: archive
     type(error_t), allocatable :: error
@@ -92,9 +91,7 @@ contains
   subroutine print_changes(deck, finer, communicator, error)
     !> The deck, and the same refined
     type(deck_t), intent(in) :: deck, finer
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(line_t), allocatable :: lines(:)
     character(len=:), allocatable :: content
@@ -111,7 +108,6 @@ contains
   subroutine compare_summaries(deck, finer, lines, content)
     !> The deck, and the same refined
     type(deck_t), intent(in) :: deck, finer
-    !> The table
     type(line_t), allocatable, intent(out) :: lines(:)
     !> The JSON
     character(len=:), allocatable, intent(out) :: content
@@ -182,7 +178,6 @@ contains
 
   !> A word padded with blanks.
   pure function wide(word)
-    !> The word
     character(len=*), intent(in) :: word
     !> The same in 14 columns or more
     character(len=max(14, len(word) + 1)) :: wide

@@ -39,7 +39,6 @@ contains
   !> Takes the lock without waiting; without effect on file systems without locks.
   subroutine take(self, path, refused)
     class(file_lock_t), intent(inout) :: self
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> True: another run holds it
     logical, intent(out) :: refused

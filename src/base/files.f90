@@ -105,7 +105,6 @@ contains
 
   !> True: there is a file or folder of that name.
   logical function file_exists(path) result(exists)
-    !> Its path
     character(len=*), intent(in) :: path
 
     exists = c_access(path//c_null_char, 0_c_int) == 0
@@ -113,7 +112,6 @@ contains
 
   !> True: the path is a folder.
   logical function is_directory(path)
-    !> Its path
     character(len=*), intent(in) :: path
 
     is_directory = c_access(path//'/.'//c_null_char, 0_c_int) == 0
@@ -121,7 +119,6 @@ contains
 
   !> True: the path is a pipe. Opening it would wait for another program.
   logical function is_pipe(path)
-    !> Its path
     character(len=*), intent(in) :: path
 
     is_pipe = implam_is_pipe(path//c_null_char) == 1
@@ -129,7 +126,6 @@ contains
 
   !> True: the path is a file, not a folder, that this process may read.
   logical function is_readable(path)
-    !> Its path
     character(len=*), intent(in) :: path
 
     is_readable = .false.
@@ -151,7 +147,6 @@ contains
     character(len=*), intent(in) :: path
     !> Number of bytes
     integer, intent(in) :: bytes
-    !> The reason
     character(len=:), allocatable :: reason
 
     select case (implam_write_obstacle(path//c_null_char, path//'.trial'//c_null_char, bytes))
@@ -179,7 +174,6 @@ contains
 
   !> Removes a file if it exists. A failure is reported when the file is written again.
   subroutine remove_file(path)
-    !> Its path
     character(len=*), intent(in) :: path
     integer(c_int) :: ignored
 
@@ -188,7 +182,6 @@ contains
 
   !> Creates a folder and its parents, if they do not exist.
   subroutine make_directory(path, error)
-    !> Its path
     character(len=*), intent(in) :: path
     !> Raised if the folder does not exist afterwards
     type(error_t), allocatable, intent(inout) :: error
@@ -209,7 +202,6 @@ contains
 
   !> Reads an entire file, byte by byte.
   subroutine read_whole_file(path, max_bytes, content, error)
-    !> Its path
     character(len=*), intent(in) :: path
     !> Largest size accepted
     integer, intent(in) :: max_bytes
@@ -247,9 +239,7 @@ contains
 
   !> Why a path cannot be read, as the end of a sentence; empty if it can be.
   function read_obstacle(path) result(reason)
-    !> The path
     character(len=*), intent(in) :: path
-    !> The reason
     character(len=:), allocatable :: reason
 
     reason = ''

@@ -78,7 +78,6 @@ contains
   !> Opens a file.
   subroutine open (self, path, mode)
     class(output_stream_t), intent(inout) :: self
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> As in C: 'w' a new file, 'a' at the end of the file, 'r+' over its beginning, 'r' nothing to write
     character(len=*), intent(in) :: mode

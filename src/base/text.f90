@@ -92,7 +92,6 @@ contains
   pure function tried_text(value) result(digits)
     !> The number
     real(wp), intent(in) :: value
-    !> Its text
     character(len=:), allocatable :: digits
     character(len=40) :: buffer
     character(len=12) :: form

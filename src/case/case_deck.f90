@@ -13,10 +13,8 @@ module case_deck
                                          key_accuracy = 'accuracy', key_refine = 'refine', &
                                          key_error_estimate = 'error_estimate', key_units = 'units'
   character(len=*), parameter :: group = case_group
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: case_group_row = &
     'case | settings | Name and title of the case, units, accuracy and kinematics.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: case_rows(*) = [character(len=key_row_length) :: &
     'case | name | name | 1 | - | = the deck''s file name | letters, digits, . _ - | &
       &Names the output files.', &
@@ -101,7 +99,6 @@ contains
 
   !> File name of a path without folders and extension; invalid characters of a case name become _.
   pure function name_from(path) result(name)
-    !> The path
     character(len=*), intent(in) :: path
     !> A valid case name
     character(len=:), allocatable :: name
@@ -117,9 +114,7 @@ contains
 
   !> File name of a path without folders and extension.
   pure function stem_of(path) result(stem)
-    !> The path
     character(len=*), intent(in) :: path
-    !> The name
     character(len=:), allocatable :: stem
 
     stem = path(index(path, '/', back=.true.) + 1:)

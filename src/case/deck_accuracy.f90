@@ -104,7 +104,6 @@ contains
   !> Patch, end, step and mesh of an impact, by preliminary elastic impacts.
   subroutine choose_for_impact(deck, scales, problems)
     type(deck_t), intent(inout) :: deck
-    !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
     type(problems_t), intent(inout) :: problems
     type(setup_elastic_impact_t) :: elastic
@@ -163,7 +162,6 @@ contains
   !> Mesh, and in time the step, of a plate under pressure.
   subroutine choose_for_pressure(deck, scales, problems)
     type(deck_t), intent(inout) :: deck
-    !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
     type(problems_t), intent(inout) :: problems
 
@@ -184,7 +182,6 @@ contains
     type(deck_t), intent(inout) :: deck
     !> Largest side
     real(wp), intent(in) :: side
-    !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
     type(problems_t), intent(inout) :: problems
     real(wp) :: half(2), cell, length, cells

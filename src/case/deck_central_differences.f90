@@ -47,7 +47,6 @@ contains
   subroutine choose_for_central_differences(deck, problems)
     !> The deck, its bodies and loads filled
     type(deck_t), intent(inout) :: deck
-    !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
     type(setup_scales_t) :: scales
 
@@ -69,7 +68,6 @@ contains
   !> longer by an unknown time; the run continues until the impactor has left.
   subroutine choose_end(deck, scales, problems)
     type(deck_t), intent(inout) :: deck
-    !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
     type(problems_t), intent(inout) :: problems
     type(elastic_impact_t) :: elastic
@@ -97,7 +95,6 @@ contains
   !> Factor of in-plane and rotary inertia permitted by the waves of first contact.
   subroutine choose_scaling(deck, scales)
     type(deck_t), intent(inout) :: deck
-    !> Scales of its setup
     type(setup_scales_t), intent(in) :: scales
     type(scaled_impact_t) :: chosen
 

@@ -20,7 +20,6 @@ contains
     character(len=*), intent(in) :: what
     !> Value in the deck, and in that of the other run
     character(len=*), intent(in) :: here, there
-    !> The clause
     character(len=:), allocatable :: clause
 
     clause = what//': '//here//' here and '//there//' there'

@@ -37,7 +37,6 @@ contains
   !> All checks.
   subroutine check_crack_bands(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     logical :: softens
     integer :: i

@@ -43,7 +43,6 @@ contains
   !> All checks of combinations of groups except for those of sizes.
   subroutine check_across_groups(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     call check_loads(deck, problems)
@@ -91,7 +90,6 @@ contains
   !> Checks the travel of an impactor in load steps, which must be the only load.
   subroutine check_travel(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. deck%settings%is_given(impactor_group, key_travel)) then
@@ -108,7 +106,6 @@ contains
   !> Checks an impactor with a travel prescribed in time.
   subroutine check_travel_in_time(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. is_explicit(deck%stepping)) then
@@ -128,7 +125,6 @@ contains
   !> Keys that a static analysis needs, and keys without effect in it.
   subroutine check_static(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (size(deck%setup%supports) > 0) then
@@ -154,7 +150,6 @@ contains
   !> Keys that a run in time needs, and keys without effect in it.
   subroutine check_transient(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (problems%concern(static_group)) return
@@ -186,7 +181,6 @@ contains
   !> Impactor, its patch and its contact stiffness.
   subroutine check_impact(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 

@@ -23,7 +23,6 @@ contains
   !> Refuses features that the method does not have, and reports keys without effect.
   subroutine check_central_differences(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     call check_fronts(deck, problems)

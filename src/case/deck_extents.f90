@@ -47,7 +47,6 @@ contains
   !> Checks sizes given in the deck.
   subroutine check_sizes(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (are_clear(deck%settings, problems, plate_group, key_length)) then
@@ -110,7 +109,6 @@ contains
   !> Thickness of the laminate against the plate.
   subroutine check_thickness(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     real(wp) :: thickness, shorter, longer
 
@@ -134,7 +132,6 @@ contains
   !> Zones against the plate, and starters against the loaded patch.
   subroutine check_zones(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -203,7 +200,6 @@ contains
   !> around a disc then loses 29 % of its amplitude, 8 % at half the radius.
   subroutine check_smoothing(deck, delamination, cell, radius, problems)
     type(deck_t), intent(in) :: deck
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Length of the mean cell of its zone, and half of its starter
     real(wp), intent(in) :: cell, radius

@@ -32,7 +32,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> True: plies soften by their fracture energies
     logical, intent(in) :: softens
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     associate (s => deck%settings, damage => deck%setup%ply_damage)

@@ -114,7 +114,6 @@ contains
   !> Materials of the plies of the laminate; none if it is not valid.
   pure function skin_materials(deck) result(material)
     type(deck_t), intent(in) :: deck
-    !> Their indices
     integer, allocatable :: material(:)
 
     allocate (material(0))
@@ -138,7 +137,6 @@ contains
   !> that depend on them.
   subroutine fill_loads(deck, problems)
     type(deck_t), intent(inout) :: deck
-    !> Faults so far; faults found are added
     type(problems_t), intent(inout) :: problems
 
     call fill_impactor(deck%settings, deck%setup%impactor, problems)

@@ -26,7 +26,6 @@ contains
   !> Checks of each group.
   subroutine check_groups(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     call check_plate(deck%settings, deck%setup%plate, problems)

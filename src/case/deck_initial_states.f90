@@ -36,7 +36,6 @@ contains
   !> Refuses features that are not possible in a run from the end of another run.
   subroutine check_initial_state(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: place
 
@@ -70,7 +69,6 @@ contains
   function inheritance_objection(deck, old) result(objection)
     !> The deck, and that of the other run with the zones at its end
     type(deck_t), intent(in) :: deck, old
-    !> The sentence
     character(len=:), allocatable :: objection
 
     objection = ''
@@ -225,7 +223,6 @@ contains
     pure function given(is_given) result(word)
       !> True: the group is given
       logical, intent(in) :: is_given
-      !> The words
       character(len=:), allocatable :: word
 
       word = trim(merge('given   ', 'left out', is_given))
@@ -299,7 +296,6 @@ contains
 
   !> Size of a starter, its centre, and its strip.
   pure function starter_of(delamination) result(numbers)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Side or diameter, centre along x and y, first and last x of a strip
     real(wp) :: numbers(5)
@@ -309,7 +305,6 @@ contains
 
   !> A starter as text.
   pure function starter_list(delamination) result(list)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Its numbers and shape, or none
     character(len=:), allocatable :: list

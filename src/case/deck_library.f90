@@ -89,7 +89,6 @@ contains
     integer, intent(in) :: system
     !> Published material; empty: none
     character(len=*), intent(in) :: name
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Index among groups of this name
     integer, intent(in) :: place

@@ -81,7 +81,6 @@ contains
   !> Reports prescribed deflections of lines where supports constrain the plate, and strains that are not small.
   subroutine check_moved_lines(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: line, along, i
 
@@ -143,7 +142,6 @@ contains
 
   !> True: the frame of a rig resists the motion of a line. The plate may lift off a unilateral frame.
   pure logical function resists(support, line, along, lengths)
-    !> The rig
     type(support_t), intent(in) :: support
     type(line_load_t), intent(in) :: line
     !> Direction that it runs along, 1 for x, 2 for y
@@ -169,7 +167,6 @@ contains
 
   !> True: a window that reaches the edges of the plate holds it at the ends of a line.
   pure logical function holds_ends(support, line, along, lengths)
-    !> The rig
     type(support_t), intent(in) :: support
     !> The line, which the rig does not resist
     type(line_load_t), intent(in) :: line

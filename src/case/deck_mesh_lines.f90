@@ -181,7 +181,6 @@ contains
     !> Adds the edges of one zone.
     subroutine take(zone, group)
       class(ply_zone_t), intent(inout) :: zone
-      !> Its group
       character(len=*), intent(in) :: group
       real(wp) :: edges(2), moved(2)
       integer :: k
@@ -262,7 +261,6 @@ contains
     !> Reports one of them.
     subroutine check(zone, group)
       class(ply_zone_t), intent(in) :: zone
-      !> Its group
       character(len=*), intent(in) :: group
 
       if (misses(deck, zone%edges(direction), direction)) &
@@ -299,7 +297,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
-    !> Their coordinates
     real(wp), allocatable :: lines(:)
 
     allocate (lines(0))

@@ -89,7 +89,6 @@ contains
   !> Reports where transverse shear cracks of the plies have no effect.
   subroutine remark_shear_cracks(deck, delamination, problems)
     type(deck_t), intent(in) :: deck
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     type(problems_t), intent(inout) :: problems
     type(ply_t), allocatable :: plies(:)
@@ -132,7 +131,6 @@ contains
   !> True where the energy release rate starts growth.
   pure logical function grows_by_energy(deck, delamination)
     type(deck_t), intent(in) :: deck
-    !> The interface
     type(delamination_t), intent(in) :: delamination
 
     grows_by_energy = delamination%growth_control == growth_by_energy .and. deck%has_time .and. &
@@ -142,7 +140,6 @@ contains
   !> Data of the process zone of an interface.
   pure function process_zone(deck, delamination) result(zone)
     type(deck_t), intent(in) :: deck
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Modulus and thickness of the thinner layer, toughness, strengths and cells
     type(process_zone_t) :: zone
@@ -187,7 +184,6 @@ contains
 
   !> True for a starter across the full width. Its front runs along y and advances along x.
   pure logical function has_strip(delamination)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
 
     has_strip = delamination%starter_strip(1) < delamination%starter_strip(2)
@@ -196,7 +192,6 @@ contains
   !> Data of the process zone of an interface, without cells.
   pure function zone_of_any_cells(deck, delamination) result(zone)
     type(deck_t), intent(in) :: deck
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Modulus and thickness of the thinner layer, toughness and strengths
     type(process_zone_t) :: zone
@@ -226,7 +221,6 @@ contains
   !> doubler.
   pure function plies_around(deck, delamination) result(plies)
     type(deck_t), intent(in) :: deck
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     type(ply_t), allocatable :: plies(:)
     type(ply_stack_t) :: stack

@@ -41,7 +41,6 @@ contains
 
   !> Reads a deck from a file.
   subroutine read_deck(path, deck, problems)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> The deck, valid if there are no errors among the problems
     type(deck_t), intent(out) :: deck

@@ -19,7 +19,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> True: plies soften by their fracture energies
     logical, intent(in) :: softens
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: place
 

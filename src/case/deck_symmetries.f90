@@ -107,7 +107,6 @@ contains
 
   !> True if a starter across the width of its zone has an image beside it.
   pure logical function strip_is_eccentric(delamination, symmetry) result(eccentric)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> The symmetry
     integer, intent(in) :: symmetry
@@ -131,7 +130,6 @@ contains
   !> Sentence on the smallest part of the plate that need be modelled; empty if the deck already models only this part.
   function symmetry_sentence(deck) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> The sentence
     character(len=:), allocatable :: sentence
     character(len=*), parameter :: names(5) = [character(len=7) :: 'none', 'quarter', 'half_x', 'half_y', 'point']
     integer :: part

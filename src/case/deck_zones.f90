@@ -21,7 +21,6 @@ contains
   !> All checks of combinations of groups.
   subroutine check_zones_across_groups(deck, problems)
     type(deck_t), intent(in) :: deck
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: i
 
@@ -72,7 +71,6 @@ contains
   subroutine remark_patch(deck, zone, group, place, problems)
     type(deck_t), intent(in) :: deck
     class(ply_zone_t), intent(in) :: zone
-    !> Its group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place

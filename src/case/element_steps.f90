@@ -118,7 +118,6 @@ contains
     integer, intent(in) :: cells
     !> True for the doublers and ply drops that it has
     logical, intent(in) :: here(:)
-    !> The plate
     type(setup_t) :: setup
     integer :: i
 

@@ -25,9 +25,7 @@ contains
   !> Sentence on the steps and the time of a run.
   function explicit_sentence(deck, model_size) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> Size of its model
     type(model_size_t), intent(in) :: model_size
-    !> One sentence
     character(len=:), allocatable :: sentence
     real(wp) :: steps, step, end, seconds
     character(len=:), allocatable :: bound, time_bound
@@ -81,7 +79,6 @@ contains
     type(deck_t), intent(in) :: deck
     !> The step that is used
     real(wp), intent(in) :: step
-    !> One sentence
     character(len=:), allocatable :: sentence
     real(wp) :: given
 

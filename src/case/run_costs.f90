@@ -28,9 +28,7 @@ contains
   !> Sentences on steps and time.
   function cost_lines(deck, model_size) result(lines)
     type(deck_t), intent(in) :: deck
-    !> Size of its model
     type(model_size_t), intent(in) :: model_size
-    !> The sentences
     type(line_t), allocatable :: lines(:)
 
     allocate (lines(0))
@@ -53,9 +51,7 @@ contains
   !> Implicit steps: the time of an undamaged plate is a lower bound.
   function implicit_sentence(deck, model_size) result(sentence)
     type(deck_t), intent(in) :: deck
-    !> Size of its model
     type(model_size_t), intent(in) :: model_size
-    !> One sentence
     character(len=:), allocatable :: sentence
     real(wp) :: steps, solves
 
@@ -70,7 +66,6 @@ contains
   !> Processor time for an undamaged plate.
   function min_time(deck, model_size, solves, residuals) result(clause)
     type(deck_t), intent(in) :: deck
-    !> Size of its model
     type(model_size_t), intent(in) :: model_size
     !> Number of solves, with factorizations converted to solves, and of residuals
     real(wp), intent(in) :: solves, residuals

@@ -91,7 +91,6 @@ contains
       character(len=*), intent(in) :: name
       !> Its size, in the deck's units
       real(wp), intent(in) :: value
-      !> Its dimension
       type(dimension_t), intent(in) :: dimension
       !> True: the value is a lower bound
       logical, intent(in), optional :: is_bound
@@ -108,7 +107,6 @@ contains
     character(len=*), intent(in) :: name
     !> Its size, in the deck's units
     real(wp), intent(in) :: value
-    !> Its dimension
     type(dimension_t), intent(in) :: dimension
     !> True: the value is a lower bound
     logical, intent(in), optional :: is_bound
@@ -139,7 +137,6 @@ contains
   pure function table_line(name, value, unit) result(line)
     !> Name of the quantity, its value, and its unit or dimension
     character(len=*), intent(in) :: name, value, unit
-    !> The line
     character(len=:), allocatable :: line
 
     line = '  '//name//repeat(' ', max(1, name_width - len(name)))//value
@@ -151,9 +148,7 @@ contains
     type(deck_t), intent(in) :: deck
     !> The value, in its units
     real(wp), intent(in) :: value
-    !> Its dimension
     type(dimension_t), intent(in) :: dimension
-    !> The digits
     character(len=:), allocatable :: digits
     integer :: system
 

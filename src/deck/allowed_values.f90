@@ -10,7 +10,6 @@ contains
 
   !> Allowed values of a key, for the end of a message.
   pure recursive function allowed_sentence(key) result(sentence)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Such as `allowed: 2 real values > 0`
     character(len=:), allocatable :: sentence
@@ -47,7 +46,6 @@ contains
   pure function counted_kind(number, noun) result(words)
     !> Number of values as the table has it, and what a value is
     character(len=*), intent(in) :: number, noun
-    !> The words
     character(len=:), allocatable :: words
 
     select case (number)
@@ -65,7 +63,6 @@ contains
   !> The part of a key that accepts a choice or a number for one of the two; in the table its choices precede the
   !> conditions.
   pure function branch_of(key, kind) result(branch)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> `choice` or `real`
     character(len=*), intent(in) :: kind

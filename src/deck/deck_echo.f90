@@ -12,7 +12,6 @@ contains
 
   !> Lines such as `&plate edges = 'clamped' [deck]`.
   subroutine echo(vocabulary, settings, lines)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Keys in effect of a deck without errors
     type(settings_t), intent(in) :: settings
@@ -55,7 +54,6 @@ contains
 
   !> Values of a key as written in a deck, or the meaning of its absence; empty if there is none.
   pure function value_in_effect(vocabulary, item) result(words)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> The key
     type(setting_t), intent(in) :: item

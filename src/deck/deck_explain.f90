@@ -14,11 +14,9 @@ contains
 
   !> Explains all groups, one group, one key of a group, or a key of any group.
   subroutine explain(vocabulary, topic, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Empty, `plate`, `plate%length`, `plate.length`, `plate length` or `length`, with or without &
     character(len=*), intent(in) :: topic
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if there is no such group or key
     type(error_t), allocatable, intent(inout) :: error
@@ -46,9 +44,7 @@ contains
 
   !> One line per group.
   subroutine explain_groups(vocabulary, lines)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     integer :: i
 
@@ -65,11 +61,8 @@ contains
 
   !> A group and its keys.
   subroutine explain_group(vocabulary, name, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: name
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Raised if there is no such group
     type(error_t), allocatable, intent(inout) :: error
@@ -87,11 +80,8 @@ contains
 
   !> One key of a group.
   subroutine explain_one(vocabulary, group, key, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     !> Raised if there is no such key
     type(error_t), allocatable, intent(inout) :: error
@@ -115,9 +105,7 @@ contains
 
   !> Raises an error if there is no group of this name.
   subroutine require_group(vocabulary, name, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: name
     type(error_t), allocatable, intent(inout) :: error
     character(len=:), allocatable :: nearest
@@ -145,7 +133,6 @@ contains
   !> Two lines on a key, one on its conditions, and one on its usual range.
   subroutine explain_key(key, lines)
     type(key_entry_t), intent(in) :: key
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     character(len=:), allocatable :: unit
 
@@ -160,7 +147,6 @@ contains
   !> Whether a group is required and repeatable, in words.
   pure function presence_in_words(group) result(words)
     type(group_entry_t), intent(in) :: group
-    !> A few words
     character(len=:), allocatable :: words
 
     select case (group%presence)
@@ -178,7 +164,6 @@ contains
   !> The default of a key.
   pure function default_in_words(key) result(words)
     type(key_entry_t), intent(in) :: key
-    !> A few words
     character(len=:), allocatable :: words
 
     if (key%default == 'required') then
@@ -194,11 +179,8 @@ contains
 
   !> The keys of a group as a Markdown table.
   subroutine explain_table(vocabulary, group, lines, error)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: group
-    !> The table
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if there is no such group, or if it is a key
     type(error_t), allocatable, intent(inout) :: error
@@ -222,7 +204,6 @@ contains
   !> One row of a Markdown table.
   pure function table_row(key) result(row)
     type(key_entry_t), intent(in) :: key
-    !> The row
     character(len=:), allocatable :: row
     character(len=:), allocatable :: default, allowed, conditions
     type(line_t), allocatable :: choices(:)

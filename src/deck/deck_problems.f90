@@ -143,7 +143,6 @@ contains
   !> True: an error belongs to this group, or to this key of it, so that checks that depend on it would be misleading.
   pure logical function concern(self, group, key, place)
     class(problems_t), intent(in) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Name of the key; absent: any
     character(len=*), intent(in), optional :: key
@@ -227,7 +226,6 @@ contains
   !> into one.
   function grouped(self) result(list)
     class(problems_t), intent(in) :: self
-    !> The faults
     type(problem_t), allocatable :: list(:)
     type(line_t), allocatable :: alike(:)
     logical :: reported(size(self%list))

@@ -16,7 +16,6 @@ contains
   subroutine report(settings, problems, group, key, fault, place)
     type(settings_t), intent(in) :: settings
     type(problems_t), intent(inout) :: problems
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> The error and the values allowed
     character(len=*), intent(in) :: fault
@@ -31,7 +30,6 @@ contains
   subroutine remark(settings, problems, group, key, message, place)
     type(settings_t), intent(in) :: settings
     type(problems_t), intent(inout) :: problems
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> One clause
     character(len=*), intent(in) :: message
@@ -45,7 +43,6 @@ contains
   subroutine remark_idle(settings, problems, group, keys, message, place)
     type(settings_t), intent(in) :: settings
     type(problems_t), intent(inout) :: problems
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
@@ -89,7 +86,6 @@ contains
   pure logical function are_clear(settings, problems, group, keys, place)
     type(settings_t), intent(in) :: settings
     type(problems_t), intent(in) :: problems
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Names of keys, separated by blanks
     character(len=*), intent(in) :: keys
@@ -114,7 +110,6 @@ contains
   !> Line of the deck to be named in a message.
   pure integer function line_of(settings, group, key, place) result(line)
     type(settings_t), intent(in) :: settings
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -129,7 +124,6 @@ contains
   !> Beginning of a message.
   pure function head(settings, group, key, place) result(beginning)
     type(settings_t), intent(in) :: settings
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place

@@ -19,7 +19,6 @@ contains
 
   !> Turns a scanned deck into keys in effect and reports every name and value that is not allowed.
   subroutine resolve_settings(scan, vocabulary, settings, problems)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     type(vocabulary_t), intent(in) :: vocabulary
     type(settings_t), intent(out) :: settings
@@ -44,7 +43,6 @@ contains
 
   !> Whether a group is known and allowed here.
   subroutine check_group(scan, block, vocabulary, settings, problems, accepted)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the group in it
     integer, intent(in) :: block
@@ -81,11 +79,9 @@ contains
 
   !> A group that is not in the table.
   subroutine report_unknown_group(name, line, vocabulary, problems)
-    !> Name of the group
     character(len=*), intent(in) :: name
     !> Its line
     integer, intent(in) :: line
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: nearest
@@ -101,13 +97,11 @@ contains
 
   !> Checks that a key belongs to its group and is given once.
   subroutine check_key(scan, entry, place, vocabulary, problems)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the key in it
     integer, intent(in) :: entry
     !> Index of the key's group among those of this name
     integer, intent(in) :: place
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     type(problems_t), intent(inout) :: problems
     integer :: earlier
@@ -126,13 +120,11 @@ contains
 
   !> A key that its group does not have.
   subroutine report_unknown_key(group, place, entry, vocabulary, problems)
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key
     type(entry_t), intent(in) :: entry
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: nearest
@@ -154,11 +146,9 @@ contains
 
   !> Adds all keys of the groups of one name, given or by default.
   subroutine resolve_group(scan, accepted, vocabulary, group, settings, problems)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> True for groups that are used
     logical, intent(in) :: accepted(:)
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> Index of the group in the table
     integer, intent(in) :: group
@@ -188,15 +178,12 @@ contains
 
   !> Adds all keys of one group.
   subroutine resolve_keys(scan, block, place, vocabulary, group, settings, problems)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the group in it; 0: the deck does not have it
     integer, intent(in) :: block
     !> Index among the groups of this name
     integer, intent(in) :: place
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> The keys are added to these
     type(settings_t), intent(inout) :: settings
@@ -230,7 +217,6 @@ contains
 
   !> A key that the deck does not give.
   subroutine take_default(key, setting, problems)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Gets the default
     type(setting_t), intent(inout) :: setting
@@ -246,13 +232,11 @@ contains
 
   !> Number and values of a given key.
   subroutine check_values(key, place, entry, vocabulary, valid, problems)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Index among the groups of this name
     integer, intent(in) :: place
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry
-    !> The table
     type(vocabulary_t), intent(in) :: vocabulary
     !> True: the values can be used
     logical, intent(out) :: valid
@@ -289,7 +273,6 @@ contains
   !> Replaces choices by their spelling in the table, as they are accepted in any case. A text with several choices is
   !> not changed.
   pure subroutine take_spelling(key, values)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Its values, valid
     type(value_t), intent(inout) :: values(:)
@@ -308,7 +291,6 @@ contains
 
   !> Index of a group among those of its name.
   pure integer function place_of(scan, accepted, block) result(place)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> True for groups that are used
     logical, intent(in) :: accepted(:)
@@ -322,7 +304,6 @@ contains
 
   !> First key of this name in a group, 0 if it has none.
   pure integer function entry_of(scan, block, key) result(index)
-    !> The scanned deck
     type(scan_t), intent(in) :: scan
     !> Index of the group in it
     integer, intent(in) :: block
@@ -337,11 +318,9 @@ contains
 
   !> Beginning of a message: `&group key = values: `.
   pure function message_head(group, entry) result(head)
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> The key as the deck gives it
     type(entry_t), intent(in) :: entry
-    !> The beginning
     character(len=:), allocatable :: head
 
     head = '&'//lower_case(group)//' '//shown(entry%key)//' ='//shown_values(entry%values)//': '

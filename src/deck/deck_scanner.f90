@@ -119,9 +119,7 @@ contains
 
   !> Adds a word of the deck to the result.
   subroutine take(scan, token, problems)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
-    !> The word
     type(token_t), intent(in) :: token
     type(problems_t), intent(inout) :: problems
 
@@ -149,7 +147,6 @@ contains
 
   !> A group begins.
   subroutine begin_block(scan, token, problems)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The group's name
     type(token_t), intent(in) :: token
@@ -173,7 +170,6 @@ contains
 
   !> The open group is not ended.
   subroutine report_missing_slash(scan, event, problems)
-    !> The result so far
     type(scan_t), intent(in) :: scan
     !> The consequence, end of a sentence
     character(len=*), intent(in) :: event
@@ -187,7 +183,6 @@ contains
 
   !> A key begins.
   subroutine begin_entry(scan, token, problems)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The key's name
     type(token_t), intent(in) :: token
@@ -212,7 +207,6 @@ contains
 
   !> Place of the first of some characters in a word, 0 if there is none.
   pure integer function scan_for(word, characters)
-    !> The word
     character(len=*), intent(in) :: word
     !> The characters
     character(len=*), intent(in) :: characters
@@ -223,7 +217,6 @@ contains
 
   !> Ends the list of values of the last key.
   subroutine finish_entry(scan, problems)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
     type(problems_t), intent(inout) :: problems
 
@@ -239,7 +232,6 @@ contains
 
   !> A value of the last key.
   subroutine take_value(scan, token, problems)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The value
     type(token_t), intent(in) :: token
@@ -276,7 +268,6 @@ contains
 
   !> A value without a key.
   subroutine report_stray_value(scan, token, problems)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> The value
     type(token_t), intent(in) :: token
@@ -300,7 +291,6 @@ contains
 
   !> Reports an error in the syntax of the last key once, and excludes the key from further checks.
   subroutine mark_faulty(scan, line, fault, problems, keys)
-    !> The result so far
     type(scan_t), intent(inout) :: scan
     !> Line of the fault
     integer, intent(in) :: line

@@ -72,7 +72,6 @@ contains
   !> Number of groups of this name in the deck.
   pure integer function groups_named(self, group) result(number)
     class(settings_t), intent(in) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
     integer :: i
 
@@ -82,7 +81,6 @@ contains
   !> True: the deck has the group.
   pure logical function has_group(self, group)
     class(settings_t), intent(in) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
 
     has_group = self%groups_named(group) > 0
@@ -91,7 +89,6 @@ contains
   !> Line of a group, 0 if the deck does not have it.
   pure integer function line_of_group(self, group, place) result(line)
     class(settings_t), intent(in) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -110,7 +107,6 @@ contains
   !> Index of a key in the list; 0: the key is not in it.
   pure integer function find(self, group, key, place) result(index)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -128,7 +124,6 @@ contains
   !> True: the deck gives the key.
   pure logical function is_given(self, group, key, place)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -142,7 +137,6 @@ contains
   !> True: the key has values, given or by default, that can be used.
   pure logical function is_known(self, group, key, place)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -156,7 +150,6 @@ contains
   !> Line to be named when a key has an error: its own, or that of its group.
   pure integer function line_of(self, group, key, place) result(line)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -171,7 +164,6 @@ contains
   !> texts in a list that a function returns.
   pure subroutine take_values(self, group, key, values, place)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     type(value_t), allocatable, intent(out) :: values(:)
     !> Index among the groups of this name
@@ -188,11 +180,9 @@ contains
   !> Text of a key with one value; empty if there is none.
   pure function text_of(self, group, key, place) result(word)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The text
     character(len=:), allocatable :: word
     type(value_t), allocatable :: values(:)
 
@@ -204,11 +194,9 @@ contains
   !> Texts of a key.
   pure function texts_of(self, group, key, place) result(words)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The texts
     type(line_t), allocatable :: words(:)
     type(value_t), allocatable :: values(:)
     integer :: i
@@ -223,7 +211,6 @@ contains
   !> Number of a key with one value; 0 if there is none.
   pure real(wp) function real_of(self, group, key, place)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -237,11 +224,9 @@ contains
   !> Numbers of a key.
   pure function reals_of(self, group, key, place) result(numbers)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The numbers
     real(wp), allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
     integer :: i
@@ -253,11 +238,9 @@ contains
   !> Whole numbers of a key.
   pure function integers_of(self, group, key, place) result(numbers)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
-    !> The numbers
     integer, allocatable :: numbers(:)
     type(value_t), allocatable :: values(:)
     integer :: i
@@ -269,7 +252,6 @@ contains
   !> Whole number of a key with one value; 0 if there is none.
   pure integer function integer_of(self, group, key, place)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -283,7 +265,6 @@ contains
   !> Truth value of a key; false if there is none.
   pure logical function logical_of(self, group, key, place)
     class(settings_t), intent(in) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> Index among the groups of this name
     integer, intent(in), optional :: place
@@ -298,7 +279,6 @@ contains
   !> given.
   pure subroutine adopt(self, group, key, word, origin, place)
     class(settings_t), intent(inout) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> The value as written in a deck
     character(len=*), intent(in) :: word
@@ -319,7 +299,6 @@ contains
   !> Sets the value of a key that the deck does not give and that follows from other keys.
   pure subroutine derive(self, group, key, word, quoted, place)
     class(settings_t), intent(inout) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> The value as written in a deck, without quotes
     character(len=*), intent(in) :: word
@@ -341,7 +320,6 @@ contains
   !> Sets the numbers of a key that the deck does not give and that follow from other keys.
   pure subroutine derive_numbers(self, group, key, numbers)
     class(settings_t), intent(inout) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> The numbers
     real(wp), intent(in) :: numbers(:)
@@ -360,7 +338,6 @@ contains
   !> Sets the values of a key that are chosen for the accuracy.
   pure subroutine choose(self, group, key, words, quoted)
     class(settings_t), intent(inout) :: self
-    !> Names of group and key
     character(len=*), intent(in) :: group, key
     !> The values as written in a deck, without quotes
     type(line_t), intent(in) :: words(:)
@@ -384,7 +361,6 @@ contains
   !> Omits a group that the deck does not have from the echo.
   pure subroutine set_aside(self, group)
     class(settings_t), intent(inout) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
     integer :: i
 

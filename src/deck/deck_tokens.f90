@@ -39,7 +39,6 @@ contains
     character(len=*), intent(in) :: deck
     !> Moved behind the word
     type(cursor_t), intent(inout) :: cursor
-    !> The word
     type(token_t), intent(out) :: token
 
     call skip_blanks(deck, cursor)
@@ -173,7 +172,6 @@ contains
     character(len=*), intent(in) :: deck
     !> At the opening quote; moved behind the closing one or to the end of the line
     type(cursor_t), intent(inout) :: cursor
-    !> The text
     type(token_t), intent(inout) :: token
     character(len=1) :: quote
     integer :: start, line_end, step
@@ -206,7 +204,6 @@ contains
     character(len=*), intent(in) :: deck
     !> At its first character; moved behind the word, or behind the = of a key
     type(cursor_t), intent(inout) :: cursor
-    !> The word
     type(token_t), intent(inout) :: token
     type(cursor_t) :: ahead
     integer :: finish, last

@@ -22,7 +22,6 @@ contains
 
   !> Error of a value, or an empty text.
   pure function fault_of_value(key, value) result(fault)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> One of its values
     type(value_t), intent(in) :: value
@@ -52,7 +51,6 @@ contains
 
   !> Error of a number, or of a word that the key accepts in its place, or an empty text.
   pure function fault_of_number(key, value) result(fault)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> One of its values
     type(value_t), intent(in) :: value
@@ -81,7 +79,6 @@ contains
 
   !> Error of a text, or an empty text.
   pure function fault_of_text(key, word) result(fault)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> The text without its quotes
     character(len=*), intent(in) :: word
@@ -110,7 +107,6 @@ contains
 
   !> Error of a choice, or an empty text. A key of several choices accepts one text with all, separated by commas.
   pure function fault_of_choice(key, word) result(fault)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> The text without its quotes
     character(len=*), intent(in) :: word
@@ -139,7 +135,6 @@ contains
 
   !> Error of the number of values, or an empty text; lists over the plies are checked with the laminate.
   pure function fault_of_count(key, number) result(fault)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Number of its values
     integer, intent(in) :: number
@@ -163,7 +158,6 @@ contains
 
   !> Probable cause of too many values, or an empty text: numbers with decimal commas.
   pure function decimal_commas(key, values) result(hint)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> Its values, too many
     type(value_t), intent(in) :: values(:)
@@ -186,7 +180,6 @@ contains
 
   !> Limit by the size of numbers, if a value exceeds it; else an empty text.
   pure function limit_of_size(key, value) result(limit)
-    !> The key as the table has it
     type(key_entry_t), intent(in) :: key
     !> A value at fault
     type(value_t), intent(in) :: value
@@ -226,7 +219,6 @@ contains
 
   !> The number of a word, which is valid.
   pure real(wp) function real_value(value)
-    !> The word
     type(value_t), intent(in) :: value
     integer :: status
 
@@ -236,7 +228,6 @@ contains
 
   !> The integer of a word, which is valid.
   pure integer function integer_value(value)
-    !> The word
     type(value_t), intent(in) :: value
     integer :: status
 
@@ -246,7 +237,6 @@ contains
 
   !> The logical value of a word, which is valid.
   pure logical function logical_value(value)
-    !> The word
     type(value_t), intent(in) :: value
 
     logical_value = scan(lower_case(value%text), 't') > 0
@@ -254,7 +244,6 @@ contains
 
   !> True: a way to write infinity or not-a-number.
   pure logical function is_not_finite(word)
-    !> The word
     character(len=*), intent(in) :: word
     character(len=:), allocatable :: bare
 
@@ -265,7 +254,6 @@ contains
 
   !> Whether a word is a number, and its decimal magnitude, determined without overflow.
   pure subroutine measure_number(word, is_number, decade)
-    !> The word
     character(len=*), intent(in) :: word
     !> True: sign, digits, point and exponent are valid
     logical, intent(out) :: is_number

@@ -151,7 +151,6 @@ contains
   !> Names of a group's keys.
   pure function key_names(self, group) result(names)
     class(vocabulary_t), intent(in) :: self
-    !> Name of the group
     character(len=*), intent(in) :: group
     !> In the order of the manual
     type(line_t), allocatable :: names(:)

@@ -118,7 +118,6 @@ contains
   pure function integers(numbers) result(values)
     !> Their texts
     type(line_t), intent(in) :: numbers(:)
-    !> The numbers
     integer :: values(size(numbers))
     integer :: i
 

@@ -29,7 +29,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> The cell
     character(len=*), intent(in) :: conditions
-    !> Group of the key
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place
@@ -90,7 +89,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> Conditions with ` or ` between them
     character(len=*), intent(in) :: alternatives
-    !> Group of the key
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place
@@ -110,7 +108,6 @@ contains
   pure logical function holds(settings, condition, group, place)
     type(settings_t), intent(in) :: settings
     type(condition_t), intent(in) :: condition
-    !> Group of the key
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place

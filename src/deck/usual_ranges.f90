@@ -36,7 +36,6 @@ contains
 
   !> Number of a quantity in the table; 0: it is not there.
   pure integer function quantity_named(name) result(quantity)
-    !> Its name
     character(len=*), intent(in) :: name
 
     do quantity = size(ranges), 1, -1
@@ -46,9 +45,7 @@ contains
 
   !> The range of a quantity for `explain` and the manual, such as usual mass 1e-6 to 1e5 kg.
   pure function range_in_words(name) result(words)
-    !> Its name
     character(len=*), intent(in) :: name
-    !> The words
     character(len=:), allocatable :: words
     integer :: i
 

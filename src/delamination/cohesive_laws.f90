@@ -103,7 +103,6 @@ contains
     type(cohesive_law_t), intent(in) :: law
     !> Factor of the strengths, and factor of the stiffness of opening; above 0 and up to 1
     real(wp), intent(in) :: part, opening
-    !> The reduced law
     type(cohesive_law_t) :: weak
 
     weak = law

@@ -29,10 +29,8 @@ module delamination_deck
     key_flaws = 'cracks_as_flaws', key_shear_cracks = 'shear_cracks', key_strength_shear = 'strength_shear', &
     key_growth_control = 'growth_control'
   character(len=*), parameter :: group = delamination_group
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: delamination_group_row = &
     'delamination | several | Interfaces that may delaminate; one group for all that have equal properties.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: delamination_rows(*) = [character(len=key_row_length) :: &
     'delamination | below_ply | integer | 1 or more | - | none | >= 1, <= 1000, or ''all'', &
       &or ''between_angles'' | Plies above the interfaces, counted from the struck face, or a word for those &
@@ -111,7 +109,6 @@ contains
     integer, intent(in) :: between(:)
     !> Doublers of the plate; receive which of them are bonded by a cohesive interface
     type(ply_zones_t), intent(inout) :: zones
-    !> Receives them
     type(delamination_t), allocatable, intent(out) :: delaminations(:)
     type(delamination_t) :: next
     integer, allocatable :: below(:)
@@ -200,7 +197,6 @@ contains
     integer, intent(in) :: place, plies
     !> Strengths YT and S12 of the weaker ply; 0: not given
     real(wp), intent(in) :: weaker(2)
-    !> Receives it
     type(delamination_t), intent(inout) :: delamination
     logical :: is_cohesive
 
@@ -249,7 +245,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Index of the group
     integer, intent(in) :: place
-    !> The key
     character(len=*), intent(in) :: key
     !> Strength of the weaker ply; 0: not given
     real(wp), intent(in) :: of_plies
@@ -267,9 +262,7 @@ contains
     type(settings_t), intent(in) :: settings
     !> Doublers of the plate
     type(ply_zones_t), intent(in) :: zones
-    !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: place, before, i
 
@@ -301,7 +294,6 @@ contains
   !> Checks that a strip has ascending ends, and that no square starter is given too.
   subroutine check_strip(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
@@ -319,7 +311,6 @@ contains
   !> Checks that toughnesses are consistent, and suffice for the energy release rate.
   subroutine check_toughness(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
@@ -337,7 +328,6 @@ contains
   !> Checks the strengths of a cohesive law, whose defaults may differ between interfaces; warns of a front by default.
   subroutine check_strengths(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place
@@ -371,7 +361,6 @@ contains
   !> Checks the stiffness of the law.
   subroutine check_law(settings, delamination, place, problems)
     type(settings_t), intent(in) :: settings
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> Index of the group
     integer, intent(in) :: place

@@ -115,7 +115,6 @@ contains
 
   !> Values of these keys.
   pure function law_of(delamination) result(numbers)
-    !> The interface
     type(delamination_t), intent(in) :: delamination
     !> In the order of their names; the law by its number in the list of the deck
     real(wp) :: numbers(size(law_names))
@@ -145,7 +144,6 @@ contains
 
   !> Objection to the position of an interface; empty: none.
   pure function interface_objection(delamination, plies) result(objection)
-    !> The parameters
     type(delamination_t), intent(in) :: delamination
     !> Number of plies of the laminate
     integer, intent(in) :: plies
@@ -160,7 +158,6 @@ contains
 
   !> Objection to the combination of toughnesses; empty: none.
   pure function toughness_objection(delamination) result(objection)
-    !> The parameters
     type(delamination_t), intent(in) :: delamination
     !> A clause of a message; empty: no objection
     character(len=:), allocatable :: objection
@@ -178,7 +175,6 @@ contains
 
   !> Toughnesses of opening and shear.
   pure function toughnesses(delamination) result(toughness)
-    !> The parameters
     type(delamination_t), intent(in) :: delamination
     !> G_Ic and G_IIc
     real(wp) :: toughness(2)

@@ -102,7 +102,6 @@ contains
   subroutine check_bonds(settings, zones, delaminations, problems)
     type(settings_t), intent(in) :: settings
     type(ply_zones_t), intent(in) :: zones
-    !> The interfaces
     type(delamination_t), intent(in) :: delaminations(:)
     type(problems_t), intent(inout) :: problems
     integer :: i, place

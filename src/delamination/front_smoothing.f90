@@ -178,7 +178,6 @@ contains
     type(neighbours_t), intent(in) :: near
     !> Its own normal, and its length
     real(wp), intent(in) :: own(2), width
-    !> The normal
     real(wp) :: normal(2)
     real(wp) :: mean(2)
     integer :: t
@@ -239,7 +238,6 @@ contains
     !> Its segments
     type(front_segment_t), intent(in) :: segments(:)
     type(layered_mesh_t), intent(in) :: mesh
-    !> The nodes
     type(near_front_t) :: nodes
     integer, dimension((2*lines_beside + 1)**2*size(segments)) :: node, segment
     real(wp) :: away((2*lines_beside + 1)**2*size(segments))
@@ -292,7 +290,6 @@ contains
   pure function signs(image)
     !> The image
     integer, intent(in) :: image
-    !> The signs
     real(wp) :: signs(2)
 
     signs = 1 - 2*[modulo(image, 2), image/2]
@@ -302,7 +299,6 @@ contains
   pure function turned(normal) result(along)
     !> The normal
     real(wp), intent(in) :: normal(2)
-    !> The direction
     real(wp) :: along(2)
 
     along = [-normal(2), normal(1)]

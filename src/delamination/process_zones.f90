@@ -50,7 +50,6 @@ contains
 
   !> Length of the process zone in shear, sqrt(E' G_IIc h)/tau.
   pure real(wp) function shear_zone_length(zone) result(length)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     length = sqrt(zone%modulus*zone%toughness_shear*zone%thickness)/zone%strength_shear
@@ -58,7 +57,6 @@ contains
 
   !> Length of the process zone in opening, (E' G_Ic/sigma**2)**(1/4) h**(3/4).
   pure real(wp) function opening_zone_length(zone) result(length)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     length = sqrt(sqrt(zone%modulus*zone%toughness_opening*zone%thickness**3)/zone%strength_opening)
@@ -66,7 +64,6 @@ contains
 
   !> Shear strength with a process zone of 2.5 cells.
   pure real(wp) function resolved_shear_strength(zone) result(strength)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     strength = sqrt(zone%modulus*zone%toughness_shear*zone%thickness)/(resolving_cells*zone%cell)
@@ -74,7 +71,6 @@ contains
 
   !> Strength of opening with a process zone of 2.5 cells.
   pure real(wp) function resolved_opening_strength(zone) result(strength)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     strength = sqrt(zone%modulus*zone%toughness_opening*zone%thickness**3)/(resolving_cells*zone%cell)**2
@@ -82,7 +78,6 @@ contains
 
   !> Fraction of the governing strengths that the cells resolve, at most 1.
   pure real(wp) function resolved_part(zone) result(part)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     part = min(1.0_wp, resolved_shear_strength(zone)/zone%strength_shear)
@@ -91,7 +86,6 @@ contains
 
   !> Longest side of cells with at least 2.5 cells in the governing process zones.
   pure real(wp) function resolving_cell(zone) result(cell)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     cell = shear_zone_length(zone)/resolving_cells
@@ -101,7 +95,6 @@ contains
   !> False: the check warns of cells that are too long, with fewer than 1.7 in the process zone in shear or 2.3 in that
   !> in opening.
   pure logical function is_resolved(zone)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
 
     is_resolved = zone%strength_shear <= tolerated_shear*resolved_shear_strength(zone)
@@ -111,7 +104,6 @@ contains
 
   !> Number of cells in the process zones of shear and opening.
   pure function cells_in_zones(zone) result(cells)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
     !> In shear and in opening
     real(wp) :: cells(2)
@@ -122,7 +114,6 @@ contains
   !> Warning of the check for an interface; empty if its process zone is resolved. Numbers have the units of the deck,
   !> lengths the given one.
   pure function process_zone_warning(zone, below_ply, fewest, unit, size_of_unit) result(warning)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
     !> Ply above the interface
     integer, intent(in) :: below_ply
@@ -161,7 +152,6 @@ contains
 
   !> Errors with growth by energy, as measured.
   pure function expected_errors(zone, fewest) result(errors)
-    !> The interface
     type(process_zone_t), intent(in) :: zone
     !> Fewest cells in the process zones of shear and opening
     real(wp), intent(in) :: fewest(2)

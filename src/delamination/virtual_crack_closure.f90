@@ -128,7 +128,6 @@ contains
     real(wp), intent(in) :: force(3)
     !> Jump of the displacements x, y, z
     real(wp), intent(in) :: jump(3)
-    !> The moments
     real(wp) :: figures(closure_figures)
     real(wp) :: turn(3, 3)
 

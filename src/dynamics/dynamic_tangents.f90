@@ -86,7 +86,6 @@ contains
   !> equilibrium.
   pure logical function is_exact(model, operator, mass_factor) result(exact)
     type(model_t), intent(in) :: model
-    !> The factored operator
     type(tangent_operator_t), intent(in) :: operator
     !> Factor of mass in the tangent
     real(wp), intent(in) :: mass_factor

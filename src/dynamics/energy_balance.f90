@@ -169,7 +169,6 @@ contains
     type(state_t), intent(in) :: old
     !> State at the end
     type(state_t), intent(in) :: new
-    !> The products
     real(wp) :: sums(2)
     real(wp), allocatable :: before(:, :), after(:, :), holding(:, :), change(:, :)
 

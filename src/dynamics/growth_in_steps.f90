@@ -23,9 +23,7 @@ contains
     !> The step
     type(dynamic_step_t), intent(inout) :: problem
     type(model_t), intent(in) :: model
-    !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
-    !> The factored operator
     type(tangent_operator_t), intent(inout) :: operator
     !> State at the start of the step
     type(state_t), intent(in) :: now

@@ -74,7 +74,6 @@ contains
     type(plate_integrator_t), intent(in) :: integrator
     !> Times of the states
     real(wp), intent(in) :: times(:)
-    !> The weights
     real(wp) :: weights(size(times))
     real(wp) :: step, third, second
     integer :: i

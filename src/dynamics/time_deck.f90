@@ -20,10 +20,8 @@ module time_deck
                                          key_mass_scaling = 'mass_scaling', key_integrator = 'integrator', &
                                          key_settle = 'settle', key_until = 'until', &
                                          key_longest_step = 'step_max'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: time_group_row = &
     'time | settings | Time integration of the plate; needed unless the analysis is static.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: time_rows(*) = [character(len=key_row_length) :: &
     'time | end | real | 1 | time | = by &case accuracy, central differences: after the contact | > 0 | &
       &End of the run.', &
@@ -71,7 +69,6 @@ contains
     real(wp), intent(in) :: rho_infinity
     !> True: by default the step may become larger than the first
     logical, intent(in) :: grows
-    !> Receives them
     type(time_t), intent(inout) :: time
     !> Receives the parameters of central differences
     type(central_difference_parameters_t), intent(inout) :: central

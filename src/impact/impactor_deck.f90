@@ -18,10 +18,8 @@ module impactor_deck
                                          key_mass = 'mass', key_integrator = 'integrator', &
                                          key_travel = 'travel', key_rise = 'rise', key_energy = 'energy', &
                                          key_contact_area = 'contact_area'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: impactor_group_row = &
     'impactor | optional | The rigid impactor, and the point that it strikes.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: impactor_rows(*) = [character(len=key_row_length) :: &
     'impactor | mass | real | 1 | mass | none | > 0 | &
       &Mass of the full impactor, also under symmetry; needed unless travel is given. | not travel | mass', &
@@ -51,7 +49,6 @@ contains
   subroutine fill_impactor(settings, impactor, problems)
     !> Keys in effect; receive the velocity for the energy
     type(settings_t), intent(inout) :: settings
-    !> Receives them
     type(impactor_parameters_t), intent(inout) :: impactor
     type(problems_t), intent(inout) :: problems
 
@@ -108,7 +105,6 @@ contains
   !> Names of the keys of the impactor's velocity, separated by blanks.
   pure function keys_of_motion(settings) result(keys)
     type(settings_t), intent(in) :: settings
-    !> The names
     character(len=:), allocatable :: keys
 
     keys = key_velocity//' '//key_energy

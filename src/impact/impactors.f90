@@ -37,7 +37,6 @@ contains
   pure function new_impactor(parameters) result(impactor)
     !> Mass, velocity, gravity, integrator
     type(impactor_parameters_t), intent(in) :: parameters
-    !> Its state
     type(impactor_t) :: impactor
 
     impactor%velocity = parameters%velocity

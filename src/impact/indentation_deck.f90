@@ -18,10 +18,8 @@ module indentation_deck
   character(len=*), parameter, public :: indentation_group = 'indentation', key_k = 'k', &
                                          key_alpha_critical = 'alpha_cr', &
                                          key_face = 'face', key_e3 = 'E3', key_yield = 'yield_pressure'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: indentation_group_row = &
     'indentation | optional | Law of contact force and indentation; left out: elastic Hertz, k by Sun''s formula.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: indentation_rows(*) = [character(len=key_row_length) :: &
     'indentation | law | choice | 1 | - | ''tan_sun'' | tan_sun hertz thornton | &
       &Tan and Sun''s law with a permanent dent, elastic law of Hertz, or elastic-plastic law of Thornton.', &
@@ -141,7 +139,6 @@ contains
   !> Default law without the group, for the list of keys in effect.
   subroutine echo_without_group(law, lines)
     type(indentation_law_t), intent(in) :: law
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
 
     call append(lines, '&indentation law = ''hertz'' [default]')
@@ -152,7 +149,6 @@ contains
   subroutine check_indentation(settings, law, problems)
     type(settings_t), intent(in) :: settings
     type(indentation_law_t), intent(in) :: law
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
 
     if (.not. settings%is_known(indentation_group, 'law')) return

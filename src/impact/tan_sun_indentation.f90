@@ -236,7 +236,6 @@ contains
     type(indentation_law_t), intent(in) :: law
     !> Committed state
     type(indentation_t), intent(in) :: state
-    !> The curve
     type(branch_t) :: branch
 
     if (law%law == law_hertz) return

@@ -92,7 +92,6 @@ contains
     integer, intent(in) :: i
     !> The jumps
     real(wp), intent(in) :: jumps(3)
-    !> The force
     real(wp) :: force(3)
 
     force = 0

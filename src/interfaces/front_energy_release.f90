@@ -35,7 +35,6 @@ contains
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
@@ -59,7 +58,6 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
@@ -92,7 +90,6 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Index of the zone
     integer, intent(in) :: zone
@@ -127,7 +124,6 @@ contains
   !> Force that holds the jump at a point: external less internal and inertia forces.
   pure function tie_force(model, motion, i) result(force)
     class(composite_plate_t), intent(in) :: model
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> Point below the interface, on the rank that owns it
     integer, intent(in) :: i

@@ -22,7 +22,6 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive new delaminated cells and the largest ratio
     type(interface_state_t), intent(inout) :: state
@@ -52,7 +51,6 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> The interfaces; receive the largest ratio
     type(interface_state_t), intent(inout) :: state
@@ -152,7 +150,6 @@ contains
   !> Releases the jumps of the new delamination; surfaces under pressure start in contact.
   subroutine open_faces(model, motion, state)
     class(composite_plate_t), intent(in) :: model
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     type(interface_state_t), intent(inout) :: state
     logical, allocatable :: before(:)

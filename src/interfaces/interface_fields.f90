@@ -51,12 +51,9 @@ contains
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
-    !> Requested fields
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (output%requests(field_onset)) call write_onset(model, stiffness, interfaces, motion, fields, error)
@@ -85,7 +82,6 @@ contains
     class(composite_plate_t), intent(in) :: model
     type(interface_state_t), intent(in) :: interfaces
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(interface_figures_t) :: figures(size(model%mesh%zones))
     real(wp) :: bounds(4, size(figures)), areas(area_rules)
@@ -111,10 +107,8 @@ contains
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
     type(interface_state_t), intent(in) :: interfaces
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: delaminated(:, :), onset(:, :)
 
@@ -213,7 +207,6 @@ contains
     real(wp), intent(in) :: stiffness(:, :, :)
     !> Delaminated cells
     type(contact_and_ties_t), intent(in) :: contact
-    !> Motion with its forces
     type(motion_t), intent(in) :: motion
     !> G/G_c of the interface above, (1, elements)
     real(wp), allocatable :: ratio(:, :)

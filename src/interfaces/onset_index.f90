@@ -36,7 +36,6 @@ contains
   !> Largest index of the interfaces within each element and on top of it, and the ply above that interface.
   pure function onset_of_elements(model, stacks) result(onset)
     class(composite_plate_t), intent(in) :: model
-    !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     !> Index and ply; both 0 without strengths, (2, elements)
     real(wp), allocatable :: onset(:, :)
@@ -62,7 +61,6 @@ contains
   !> Index of each interface in the cells of the mesh where it lies within one layer, 0 in the others.
   pure function onset_of_joined_cells(model, stacks) result(onset)
     class(composite_plate_t), intent(in) :: model
-    !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     !> Stress over strength, (cells of the mesh, zones)
     real(wp), allocatable :: onset(:, :)
@@ -89,7 +87,6 @@ contains
   !> Gathers the data for indices.
   pure function new_onset(model, stacks) result(self)
     class(composite_plate_t), intent(in) :: model
-    !> The stacks of joined layers
     type(joined_stacks_t), intent(in) :: stacks
     type(onset_t) :: self
     integer :: i

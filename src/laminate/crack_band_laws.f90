@@ -61,7 +61,6 @@ contains
     type(material_t), intent(in) :: material
     !> Criteria, and residual stiffness as a fraction
     type(ply_damage_t), intent(in) :: damage
-    !> The law
     type(crack_band_t) :: band
 
     band%elasticity = elasticity_of(material)

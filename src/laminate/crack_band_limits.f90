@@ -19,7 +19,6 @@ contains
   !> A strain below which a ply cannot be damaged, in any direction. The measure of in-plane strains is the root of
   !> e1**2 + e2**2 + g12**2/2, which is invariant under rotation. With nonlinear shear the limit is zero.
   pure real(wp) function onset_strain(band)
-    !> The law
     type(crack_band_t), intent(in) :: band
     integer, parameter :: directions = 180
     real(wp) :: exposure, angle, nu12, nu21
@@ -43,7 +42,6 @@ contains
 
   !> A strain below which the stress along undamaged fibres is smaller than a value, in the same measure.
   pure real(wp) function strain_of_stress(band, stress) result(strain)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> The stress
     real(wp), intent(in) :: stress
@@ -57,7 +55,6 @@ contains
   !> A strain below which fibres do not kink, in the same measure: the smallest of a grid of directions, less the
   !> variation of the exposure between two of them.
   pure real(wp) function kinking_strain(band) result(strain)
-    !> The law
     type(crack_band_t), intent(in) :: band
     integer, parameter :: directions = 60
     real(wp), parameter :: reserve = 0.9_wp
@@ -86,9 +83,7 @@ contains
   !> cause by less than that of all of them compressed; the exposures of the matrix are convex on each side of pure
   !> shear, hence largest at the ends.
   pure logical function may_soften(band, strains, state)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> The ply in the last accepted state
     type(band_state_t), intent(in) :: state
@@ -117,7 +112,6 @@ contains
   !> Longest element across the crack that dissipates no more than the fracture energy, in each mode; shear counts as
   !> transverse compression.
   pure function longest_element(band) result(lengths)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> The lengths in the order of the modes
     real(wp) :: lengths(energy_modes)

@@ -36,7 +36,6 @@ contains
   !> Permanent shear strain of a ply under trial strains, which is subtracted from these. The opening of a crack is no
   !> strain of the ply: after cracking the permanent strain is constant.
   pure subroutine flow_band(band, strains, state)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Strains of the ply; receive the elastic ones
     type(band_strains_t), intent(inout) :: strains
@@ -54,7 +53,6 @@ contains
 
   !> Damage of a ply under trial strains.
   pure subroutine soften_band(band, lengths, strains, old, new, rate_factor)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)
@@ -87,7 +85,6 @@ contains
     type(crack_band_t), intent(in) :: band
     !> Length of the element along and across the fibres
     real(wp), intent(in) :: lengths(2)
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
@@ -130,9 +127,7 @@ contains
 
   !> Energy per volume dissipated by permanent shear strains of a ply.
   elemental real(wp) function energy_of_shear(band, state) result(energy)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> The ply
     type(band_state_t), intent(in) :: state
 
     energy = 0
@@ -141,9 +136,7 @@ contains
 
   !> Loss of G12 by nonlinear shear before matrix cracking, found for the strains up to the onset of the crack.
   pure subroutine shear_band(band, strains, factor, old, new)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor
@@ -197,7 +190,6 @@ contains
 
   !> Fractions of the stiffness that a ply has lost: along and across the fibres, in shear before cracking.
   pure function stiffness_lost(state) result(lost)
-    !> The ply
     type(band_state_t), intent(in) :: state
     !> From 0 to 1
     real(wp) :: lost(3)
@@ -207,7 +199,6 @@ contains
 
   !> True: not the undamaged state.
   elemental logical function is_damaged(state)
-    !> The ply
     type(band_state_t), intent(in) :: state
 
     is_damaged = any(stiffness_lost(state) > 0) .or. state%accumulated > 0
@@ -215,7 +206,6 @@ contains
 
   !> The law with the reduced G12.
   pure function sheared_law(band, loss) result(law)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Part of G12 that is lost
     real(wp), intent(in) :: loss
@@ -227,11 +217,8 @@ contains
 
   !> Elastic constants of a state.
   elemental function degraded_elasticity(band, state) result(elasticity)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> The ply
     type(band_state_t), intent(in) :: state
-    !> The constants
     type(elasticity_t) :: elasticity
     real(wp) :: left(2)
 
@@ -245,7 +232,6 @@ contains
 
   !> Remaining fractions of the stiffness along and across the fibres.
   pure function remaining_stiffness(band, damage) result(left)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Damage of fibres and matrix
     real(wp), intent(in) :: damage(2)
@@ -257,11 +243,8 @@ contains
 
   !> Remaining fractions of the stiffness of a state.
   pure function remaining_fractions(band, state) result(left)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> The ply
     type(band_state_t), intent(in) :: state
-    !> The parts
     type(remaining_t) :: left
 
     left = remaining_t(remaining_stiffness(band, state%damage), remaining_stiffness(band, state%damage))
@@ -270,13 +253,10 @@ contains
 
   !> Elastic constants of a state for mean strains.
   pure function mean_elasticity(band, state, mean) result(elasticity)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> The ply
     type(band_state_t), intent(in) :: state
     !> Mean strains along and across the fibres
     real(wp), intent(in) :: mean(2)
-    !> The constants
     type(elasticity_t) :: elasticity
     real(wp) :: left(2)
 
@@ -289,11 +269,9 @@ contains
 
   !> Softening laws of the fibres.
   pure subroutine soften_fibres(band, length, strains, left, kinked, signs)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element along the fibres
     real(wp), intent(in) :: length
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
@@ -322,7 +300,6 @@ contains
 
   !> Undamaged stress of fibres in tension, which their exposure compares with XT.
   pure real(wp) function tensile_stress(band, strains, state) result(stress)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Strains of the ply without permanent ones
     type(band_strains_t), intent(in) :: strains
@@ -337,9 +314,7 @@ contains
   !> Exposure of compressed fibres to kinking. The stresses across the fibres and in shear are those that the damaged
   !> matrix transfers: a failed matrix leaves XC.
   pure real(wp) function exposure_to_kinking(band, strains, left, along) result(exposure)
-    !> The law
     type(crack_band_t), intent(in) :: band
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
@@ -360,11 +335,9 @@ contains
 
   !> Softening laws of the matrix.
   pure function matrix_softening(band, length, strains, factor, left) result(signs)
-    !> The law
     type(crack_band_t), intent(in) :: band
     !> Length of the element across the fibres
     real(wp), intent(in) :: length
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Factor of the matrix strengths
     real(wp), intent(in) :: factor

@@ -66,11 +66,9 @@ contains
 
   !> Mean strains of a sub-ply along and across the fibres.
   pure function sub_ply_means(strains, number) result(mean)
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Number of the sub-ply, from the top
     integer, intent(in) :: number
-    !> The strains
     real(wp) :: mean(2)
 
     mean = strains%mean
@@ -85,7 +83,6 @@ contains
     real(wp), intent(in) :: mean(2)
     !> Remaining fractions of the stiffness
     real(wp), intent(in) :: left(2)
-    !> The strains
     real(wp) :: strains(2)
     real(wp) :: part(2)
 
@@ -110,7 +107,6 @@ contains
   pure subroutine find_strain_alone(elasticity, strains, left, direction, size, weights)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness along and across the fibres
     type(remaining_t), intent(in) :: left
@@ -142,7 +138,6 @@ contains
   pure subroutine find_means(elasticity, strains, left, direction, spread, means, is_open)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
@@ -178,7 +173,6 @@ contains
   pure function compressed_share(elasticity, strains, left) result(share)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left
@@ -208,7 +202,6 @@ contains
   pure function find_recovered(elasticity, strains, left) result(recovered)
     !> Constants without damage
     type(elasticity_t), intent(in) :: elasticity
-    !> Strains of the ply
     type(band_strains_t), intent(in) :: strains
     !> Remaining fractions of the stiffness
     type(remaining_t), intent(in) :: left

@@ -22,7 +22,6 @@ contains
     logical, intent(in) :: failed(failure_modes)
     !> Divisor and floor
     type(ply_damage_t), intent(in) :: damage
-    !> The reduced constants
     type(elasticity_t) :: elasticity
     real(wp) :: fibre, in_plane_shear, matrix
 

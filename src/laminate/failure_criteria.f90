@@ -19,7 +19,6 @@ contains
   pure function chosen_indices(criteria, material, stresses, kinking) result(indices)
     !> criteria_hou, criteria_hashin, criteria_puck or criteria_larc
     integer, intent(in) :: criteria
-    !> Material of the ply
     type(material_t), intent(in) :: material
     !> Stresses s11, s22, s12, s13, s23 of the points, shape (5, points)
     real(wp), intent(in) :: stresses(:, :)
@@ -55,7 +54,6 @@ contains
   pure function squared_exposures(criteria, material, stress) result(indices)
     !> criteria_puck or criteria_larc
     integer, intent(in) :: criteria
-    !> Material of the ply
     type(material_t), intent(in) :: material
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)

@@ -12,7 +12,6 @@ contains
   !> Value of each criterion; a ply fails where it reaches 1. The required strengths must be given (see
   !> `needed_strengths`).
   pure function failure_indices(material, stress) result(indices)
-    !> Material of the ply
     type(material_t), intent(in) :: material
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
@@ -32,7 +31,6 @@ contains
 
   !> Strength along the fibres: XC under compression if the deck gives it, else XT for both signs as in the paper.
   pure real(wp) function fibre_strength(material, s11)
-    !> Material of the ply
     type(material_t), intent(in) :: material
     !> Stress along the fibres
     real(wp), intent(in) :: s11

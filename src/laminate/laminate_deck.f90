@@ -25,10 +25,8 @@ module laminate_deck
   !> Names used here more than once.
   character(len=*), parameter :: key_angles = 'angles', key_stacking = 'stacking'
   character(len=*), parameter :: either = 'give stacking and ply_thickness, or angles and thicknesses.'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: laminate_group_row = &
     'laminate | required | The plies, from the struck face to the back.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: laminate_rows(*) = [character(len=key_row_length) :: &
     'laminate | materials | text | 1 or plies | - | required | names of &material groups | &
       &Material of each ply from the struck face; one value serves all.', &
@@ -52,7 +50,6 @@ contains
     !> Keys in effect; receive angles and thicknesses of the stacking sequence
     type(settings_t), intent(inout) :: settings
     type(material_t), intent(in) :: materials(:)
-    !> Receives them
     type(laminate_t), intent(inout) :: laminate
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: angles(:), thicknesses(:)
@@ -157,7 +154,6 @@ contains
 
     !> Remarks on the largest angle beyond 180 degrees.
     subroutine remark_large(key, values, hint)
-      !> The key
       character(len=*), intent(in) :: key
       !> Its angles, degrees
       real(wp), intent(in) :: values(:)

@@ -39,7 +39,6 @@ contains
   !> 2 G12 (YT/S12)**2. Without XC and YC its fibres do not kink, and its matrix is not crushed.
   pure function larc_of(material) result(larc)
     type(material_t), intent(in) :: material
-    !> The constants
     type(larc_t) :: larc
     real(wp) :: ratio
 
@@ -84,7 +83,6 @@ contains
 
   !> Exposure of the matrix to in-plane stresses.
   pure real(wp) function matrix_exposure_of(larc, across, shear) result(exposure)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress across the fibres, and in-plane shear stress
     real(wp), intent(in) :: across, shear
@@ -98,7 +96,6 @@ contains
 
   !> Exposure in transverse tension: the inverse of the factor at which (1 - g) x + g x**2 + y**2 = 1.
   pure real(wp) function cracking_exposure(larc, across, shear) result(exposure)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress across the fibres, not negative, and in-plane shear stress
     real(wp), intent(in) :: across, shear
@@ -112,7 +109,6 @@ contains
 
   !> Exposure in transverse compression: the largest of the planes up to the fracture angle.
   pure real(wp) function crushing_exposure(larc, across, shear) result(exposure)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress across the fibres, negative, and in-plane shear stress
     real(wp), intent(in) :: across, shear
@@ -144,7 +140,6 @@ contains
 
   !> Exposure of one plane: effective shear stresses after Mohr and Coulomb.
   pure real(wp) function plane_exposure(larc, across, shear, c, s) result(exposure)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress across the fibres, negative, and in-plane shear stress
     real(wp), intent(in) :: across, shear
@@ -161,7 +156,6 @@ contains
   !> Exposure of compressed fibres to kinking: the inverse of the factor of the stresses at which the criterion is met
   !> in the frame of the misaligned fibres, which rotate with the load.
   pure real(wp) function kinking_exposure(larc, along, across, shear) result(exposure)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress along the fibres, negative; across them; in-plane shear stress
     real(wp), intent(in) :: along, across, shear
@@ -213,7 +207,6 @@ contains
 
   !> Criterion of the matrix in the frame of the misaligned fibres; it is met at 1.
   pure real(wp) function frame_exposure(larc, along, across, shear) result(exposure)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress along the fibres, negative; across them; in-plane shear stress
     real(wp), intent(in) :: along, across, shear
@@ -233,7 +226,6 @@ contains
 
   !> Misalignment of the fibres under stresses: the initial one and the shear strain in its frame, for small angles.
   pure real(wp) function misalignment(larc, along, across, shear) result(angle)
-    !> The constants
     type(larc_t), intent(in) :: larc
     !> Stress along the fibres, negative; across them; in-plane shear stress
     real(wp), intent(in) :: along, across, shear

@@ -46,7 +46,6 @@ contains
   pure function more_damaged(signs)
     !> Tension and compression
     type(softening_t), intent(in) :: signs(2)
-    !> That law
     type(softening_t) :: more_damaged
 
     more_damaged = signs(1)
@@ -65,7 +64,6 @@ contains
     real(wp), intent(in) :: length
     !> The mode
     integer, intent(in) :: mode
-    !> The softening law
     type(softening_t) :: softening
 
     softening%mode = mode
@@ -77,7 +75,6 @@ contains
 
   !> Damage of a softening law: d = N (f - 1)/(f (N - 1)).
   pure real(wp) function damage_at(softening) result(damage)
-    !> The softening law
     type(softening_t), intent(in) :: softening
 
     damage = 0
@@ -90,7 +87,6 @@ contains
 
   !> Energy per volume dissipated by growing damage on a linear softening branch; 0: no growth.
   pure real(wp) function dissipated_by(softening, part, damage_from, damage_to) result(energy)
-    !> The softening law
     type(softening_t), intent(in) :: softening
     !> Factor of the energy of the law, at most 1
     real(wp), intent(in) :: part

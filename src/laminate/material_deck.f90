@@ -23,10 +23,8 @@ module material_deck
                                          key_expansion = 'alpha1 alpha2', key_library = 'library', &
                                          key_compressive = 'XC', key_gain = 'rate_strengthening', &
                                          key_rate = 'reference_rate'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: material_group_row = &
     'material | repeatable | One ply material, orthotropic or isotropic; may be given several times.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: material_rows(*) = [character(len=key_row_length) :: &
     'material | name | text | 1 | - | required | not empty | &
       &Name that &laminate refers to.', &
@@ -106,7 +104,6 @@ contains
   subroutine fill_materials(settings, materials, problems)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
-    !> Receives them
     type(material_t), allocatable, intent(out) :: materials(:)
     type(problems_t), intent(inout) :: problems
     integer :: i, j
@@ -128,7 +125,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Its index
     integer, intent(in) :: place
-    !> Receives it
     type(material_t), intent(inout) :: material
     type(problems_t), intent(inout) :: problems
     logical :: complete
@@ -238,7 +234,6 @@ contains
     character(len=*), intent(in) :: keys
     !> True: those given
     logical, intent(in) :: given
-    !> The names
     type(line_t), allocatable :: words(:)
     type(line_t), allocatable :: names(:)
     integer :: i
@@ -267,7 +262,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> Index of the material
     integer, intent(in) :: place
-    !> Receives them
     type(material_t), intent(inout) :: material
 
     material%e1 = settings%real_of(material_group, 'E', place)
@@ -285,7 +279,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Index of the material
     integer, intent(in) :: place
-    !> Receives them
     type(material_t), intent(inout) :: material
 
     material%e1 = settings%real_of(material_group, 'E1', place)

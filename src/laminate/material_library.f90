@@ -154,7 +154,6 @@ contains
     type(line_t), intent(in) :: cells(:)
     !> True: separated by bars
     logical, intent(in) :: markdown
-    !> The line
     character(len=:), allocatable :: line
     type(line_t) :: plain_cells(size(cells))
     integer :: i

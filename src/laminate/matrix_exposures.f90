@@ -35,7 +35,6 @@ contains
     type(material_t), intent(in) :: material
     !> criteria_hou, criteria_hashin, criteria_puck or criteria_larc
     integer, intent(in) :: criteria
-    !> Its strengths
     type(matrix_strengths_t) :: strengths
 
     strengths = matrix_strengths_t(tension=material%yt, compression=material%yc, shear=material%s12, &

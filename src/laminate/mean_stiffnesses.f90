@@ -94,7 +94,6 @@ contains
     real(wp), intent(in) :: strains(6)
     !> The height
     real(wp), intent(in) :: z
-    !> The strains
     real(wp) :: mean(2)
 
     associate (c => ply%cosine, s => ply%sine, e => strains(1:3) + z*strains(4:6))

@@ -24,7 +24,6 @@ contains
   pure function inverse(matrix) result(inverted)
     !> Symmetric positive definite matrix
     real(wp), intent(in) :: matrix(3, 3)
-    !> Its inverse
     real(wp) :: inverted(3, 3)
     real(wp) :: cofactors(6)
 

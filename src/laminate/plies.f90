@@ -47,7 +47,6 @@ contains
   !> Elastic constants of a material without damage.
   pure function elasticity_of(material) result(elasticity)
     type(material_t), intent(in) :: material
-    !> Its constants
     type(elasticity_t) :: elasticity
 
     elasticity = elasticity_t(material%e1, material%e2, material%g12, material%g13, material%g23, material%nu12)
@@ -56,7 +55,6 @@ contains
 
   !> True: the moduli along the fibres in tension and in compression differ.
   elemental logical function is_bimodular(elasticity)
-    !> The constants
     type(elasticity_t), intent(in) :: elasticity
 
     is_bimodular = abs(elasticity%compression - 1) > 0

@@ -20,10 +20,8 @@ module ply_damage_deck
                                          key_seed = 'strength_seed', key_square = 'strength_length'
   !> Keys without effect on plies that soften by their fracture energies.
   character(len=*), parameter, public :: keys_of_sudden_failure = 'd stress'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: ply_damage_group_row = &
     'ply_damage | optional | Failure of plies: matrix cracking, matrix crushing, fibre failure.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: ply_damage_rows(*) = [character(len=key_row_length) :: &
     'ply_damage | d | real | 1 | - | 100 | >= 1 | &
       &Divisor of the elastic constants affected by a mode of failure (Li et al., Table 2). | not &material G_ft', &
@@ -66,7 +64,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Units of length in a metre; 0: not known
     real(wp), intent(in) :: units_in_metre
-    !> Receives them
     type(ply_damage_t), intent(inout) :: damage
 
     damage%d = settings%real_of(ply_damage_group, 'd')

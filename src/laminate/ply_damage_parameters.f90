@@ -70,7 +70,6 @@ contains
   !> Numbers of the damage in the order of their names; choices by their number in the list of the deck.
   pure function numbers_of(damage) result(numbers)
     type(ply_damage_t), intent(in) :: damage
-    !> One a name
     real(wp) :: numbers(size(damage_names))
 
     numbers = [damage%d, damage%e, real([damage%criteria, damage%stress, &

@@ -32,7 +32,6 @@ contains
   pure function moments_from(values) result(moments)
     !> Strains, then the three products
     real(wp), intent(in) :: values(moment_values)
-    !> The means
     type(strain_moments_t) :: moments
     integer :: i
 

@@ -119,7 +119,6 @@ contains
   !> The different stacks of points of the plate, that of the laminate alone first, and the stack of each point.
   pure subroutine find_stacks(self, laminate, materials, points, stacks, stack_of)
     class(ply_zones_t), intent(in) :: self
-    !> The plate's laminate
     type(laminate_t), intent(in) :: laminate
     type(material_t), intent(in) :: materials(:)
     !> The points, (2, points)
@@ -272,7 +271,6 @@ contains
   !> of doublers follow those of the laminate.
   pure function stack(self, laminate, materials, here)
     class(ply_zones_t), intent(in) :: self
-    !> The plate's laminate
     type(laminate_t), intent(in) :: laminate
     type(material_t), intent(in) :: materials(:)
     !> True for those at the place

@@ -58,7 +58,6 @@ contains
 
   !> Items separated by slashes, up to a bracket or the end.
   pure recursive subroutine read_list(reader, angles, barred)
-    !> Where to read
     type(reader_t), intent(inout) :: reader
     !> Degrees
     real(wp), allocatable, intent(out) :: angles(:)
@@ -86,7 +85,6 @@ contains
 
   !> An angle or a pair with its count, or a bracket with its suffix.
   pure recursive subroutine read_item(reader, angles, barred)
-    !> Where to read
     type(reader_t), intent(inout) :: reader
     !> Degrees
     real(wp), allocatable, intent(out) :: angles(:)
@@ -125,7 +123,6 @@ contains
 
   !> Counts, s and T behind a bracket, applied in their order: 2s repeats, then mirrors.
   pure subroutine read_suffix(reader, angles, barred)
-    !> Where to read
     type(reader_t), intent(inout) :: reader
     !> Angles of the bracket; receive the repetitions of the suffix
     real(wp), allocatable, intent(inout) :: angles(:)
@@ -154,7 +151,6 @@ contains
 
   !> An angle, or a pair of opposite ones.
   pure subroutine read_angle(reader, angles)
-    !> Where to read
     type(reader_t), intent(inout) :: reader
     !> Degrees, one or two
     real(wp), allocatable, intent(out) :: angles(:)
@@ -208,7 +204,6 @@ contains
 
   !> A count from 1 to the most plies.
   pure subroutine read_count(reader, count)
-    !> Where to read
     type(reader_t), intent(inout) :: reader
     !> The count
     integer, intent(out) :: count
@@ -243,7 +238,6 @@ contains
 
   !> Advances by some characters and the blanks after them.
   pure subroutine step(reader, length)
-    !> Where to read
     type(reader_t), intent(inout) :: reader
     !> Number of characters
     integer, intent(in) :: length
@@ -257,7 +251,6 @@ contains
 
   !> Next character; a blank at the end.
   pure character(len=1) function next(reader)
-    !> Where to read
     type(reader_t), intent(in) :: reader
 
     next = rest(reader)//' '
@@ -265,7 +258,6 @@ contains
 
   !> Next two characters, filled up with blanks.
   pure character(len=2) function next_two(reader)
-    !> Where to read
     type(reader_t), intent(in) :: reader
 
     next_two = rest(reader)
@@ -273,7 +265,6 @@ contains
 
   !> Text that has not been read.
   pure function rest(reader) result(words)
-    !> Where to read
     type(reader_t), intent(in) :: reader
     !> From the next character on
     character(len=:), allocatable :: words

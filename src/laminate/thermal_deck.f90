@@ -14,10 +14,8 @@ module thermal_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: thermal_group = 'thermal'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: thermal_group_row = &
     'thermal | optional | Residual stress of the cure.'
-  !> Row of the key.
   character(len=key_row_length), parameter, public :: thermal_rows(*) = [character(len=key_row_length) :: &
     'thermal | delta_T | real | 1 | temperature | required | any | &
       &Temperature minus the stress-free temperature; negative after cooling from the cure.']

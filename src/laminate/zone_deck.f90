@@ -24,11 +24,9 @@ module zone_deck
   character(len=*), parameter :: key_name = 'name', key_face = 'face', key_materials = 'materials', &
                                  key_stacking = 'stacking', key_ply_thickness = 'ply_thickness', &
                                  key_flat_face = 'flat_face'
-  !> Rows of the groups.
   character(len=group_row_length), parameter, public :: zone_group_rows(2) = [character(len=group_row_length) :: &
     'doubler | several | Plies bonded to a face of the laminate in a rectangle or a band of the plate.', &
     'ply_drop | several | Plies of the laminate that are missing in a rectangle or a band of the plate.']
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: zone_rows(*) = [character(len=key_row_length) :: &
     'doubler | name | text | 1 | - | required | not empty | &
       &Name of the doubler in messages and tables.', &
@@ -59,7 +57,6 @@ contains
   subroutine fill_zones(settings, materials, zones, problems)
     type(settings_t), intent(in) :: settings
     type(material_t), intent(in) :: materials(:)
-    !> Receives them
     type(ply_zones_t), intent(inout) :: zones
     type(problems_t), intent(inout) :: problems
     integer :: place
@@ -85,7 +82,6 @@ contains
   !> Centre and sides of a zone.
   subroutine fill_rectangle(settings, group, place, at, sides)
     type(settings_t), intent(in) :: settings
-    !> Its group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place
@@ -113,7 +109,6 @@ contains
     type(material_t), intent(in) :: materials(:)
     !> Index among the groups of this name
     integer, intent(in) :: place
-    !> Receives it
     type(doubler_t), intent(inout) :: doubler
     type(problems_t), intent(inout) :: problems
     character(len=:), allocatable :: fault
@@ -179,7 +174,6 @@ contains
   !> Refuses zones that reach beyond the plate.
   subroutine check_rectangle(settings, group, place, zone, length, problems)
     type(settings_t), intent(in) :: settings
-    !> Its group
     character(len=*), intent(in) :: group
     !> Index among the groups of this name
     integer, intent(in) :: place

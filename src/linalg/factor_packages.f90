@@ -36,7 +36,6 @@ contains
     logical, intent(in) :: positive_definite
     !> Number of ranks, and of rows on all of them
     integer, intent(in) :: ranks, rows
-    !> The names
     character(len=7), allocatable :: names(:)
 
     if (factorization == factorization_cholmod) then
@@ -54,7 +53,6 @@ contains
   pure function package_title(name) result(title)
     !> PETSc's name of it; empty: none
     character(len=*), intent(in) :: name
-    !> The title
     character(len=:), allocatable :: title
 
     select case (name)
@@ -105,7 +103,6 @@ contains
     character(len=*), intent(in) :: title
     !> One of the factor_* outcomes
     integer, intent(in) :: outcome
-    !> The message
     character(len=:), allocatable :: sentence
 
     select case (outcome)

@@ -19,7 +19,6 @@ contains
   !> True if a part of the structure can move without resistance. Two solves for the first factor, one for later ones.
   !> Collective.
   logical function has_mechanism(communicator, solver, matrix, mode) result(found)
-    !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> Applies the factor
     type(tKSP), intent(in) :: solver

@@ -97,7 +97,6 @@ contains
   !> Creates the solver. Collective.
   subroutine define(self, communicator, rows, method, error)
     class(krylov_solver_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Rows that this rank owns
     integer, intent(in) :: rows

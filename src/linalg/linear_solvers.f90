@@ -61,7 +61,6 @@ contains
   !> Sets the pattern of the matrix, replacing a previous one. Collective.
   subroutine define(self, communicator, first_row, total_rows, row_start, columns, positive_definite, error)
     class(linear_solver_t), intent(inout) :: self
-    !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> Number of the first row that this rank owns, from 0
     integer, intent(in) :: first_row
@@ -181,7 +180,6 @@ contains
   !> Name of the package, and number of factorizations by the second package.
   function package_used(self) result(name)
     class(linear_solver_t), intent(in) :: self
-    !> The name
     character(len=:), allocatable :: name
 
     name = self%factors(definite)%title()

@@ -57,7 +57,6 @@ contains
   !> Chooses the package: the first that PETSc has, or that of the user's options.
   subroutine define(self, communicator, matrix, packages, positive_definite, prefix, error)
     class(petsc_factor_t), intent(inout) :: self
-    !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> The matrix to be factored
     type(tMat), intent(in) :: matrix
@@ -264,7 +263,6 @@ contains
   !> Usual name of the package.
   pure function title(self)
     class(petsc_factor_t), intent(in) :: self
-    !> The name
     character(len=:), allocatable :: title
 
     title = package_title(self%package)

@@ -46,7 +46,6 @@ contains
   !> Creates the matrix with all entries of the pattern.
   subroutine define(self, communicator, first_row, total_rows, row_start, columns, error)
     class(petsc_matrix_t), intent(inout) :: self
-    !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> First row that this rank owns, and number of rows of all ranks
     integer, intent(in) :: first_row, total_rows

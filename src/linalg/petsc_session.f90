@@ -63,7 +63,6 @@ contains
 
   !> Starts PETSc, unless it is already started, without the command line.
   subroutine start_petsc(communicator, options, error)
-    !> All ranks of the run
     type(communicator_t), intent(in) :: communicator
     !> Options for PETSc's database, such as `-log_view -mat_mumps_icntl_14 50`; may be blank
     character(len=*), intent(in) :: options
@@ -129,7 +128,6 @@ contains
   function text_at(address) result(text)
     !> Address of the text; null for an empty one
     type(c_ptr), intent(in) :: address
-    !> The text
     character(len=:), allocatable :: text
     character(kind=c_char), pointer :: letters(:)
     integer, parameter :: longest = 1024

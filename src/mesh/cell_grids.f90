@@ -38,9 +38,7 @@ contains
 
   !> Builds the grid of the modelled part.
   pure subroutine create_grid(plate, mesh, self)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     class(cell_grid_t), intent(inout) :: self
     integer :: direction
@@ -58,9 +56,7 @@ contains
 
   !> Cells along x or y.
   pure function cells_along(plate, mesh, direction) result(line)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -71,9 +67,7 @@ contains
 
   !> Cells along x or y, with coordinates from the struck point.
   pure function cells_from_struck(plate, mesh, direction) result(line)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -85,9 +79,7 @@ contains
 
   !> Edges of the cells along x or y.
   pure function cell_edges(plate, mesh, direction) result(edges)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -134,9 +126,7 @@ contains
 
   !> True if the elements along x or y suffice for the loaded patch, the core and the plate around them.
   pure logical function has_enough_elements(plate, mesh, direction) result(enough)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -151,9 +141,7 @@ contains
   !> a struck point has at least one element outside of them on each side. Beside the middle and without a core the
   !> elements on the patch are as long as those of the mesh.
   pure integer function fewest_elements(plate, mesh, direction) result(fewest)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -175,9 +163,7 @@ contains
 
   !> True: the core is in the middle, with equal numbers of elements on both sides.
   pure logical function needs_even_elements(plate, mesh, direction) result(even)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> 1 for x, 2 for y
     integer, intent(in) :: direction

@@ -34,7 +34,6 @@ contains
   !> Distributes the mesh over the ranks of a communicator. Every rank finds the same distribution.
   subroutine distribute(mesh, communicator, self, error, first_image)
     type(layered_mesh_t), intent(in) :: mesh
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(distribution_t), intent(out) :: self
     type(error_t), allocatable, intent(out) :: error

@@ -60,7 +60,6 @@ contains
     integer, intent(in) :: component
     !> Stiffness per length of the edge; 0: none
     real(wp), intent(in) :: stiffness
-    !> Receives them
     type(edge_spring_t), allocatable, intent(inout) :: springs(:)
     real(wp) :: length
     integer :: i

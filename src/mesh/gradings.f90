@@ -201,7 +201,6 @@ contains
       real(wp), intent(in) :: stays, moves
       !> Edges between them
       real(wp), intent(in) :: old(:)
-      !> Their new coordinates
       real(wp) :: new(size(old))
 
       new = stays + (old - stays)*((lines(i) - stays)/(moves - stays))

@@ -30,7 +30,6 @@ contains
   !> The map of a rank's points.
   pure function create_layer_map(mesh, distribution, interface_heights) result(self)
     type(layered_mesh_t), intent(in) :: mesh
-    !> This rank's points
     type(distribution_t), intent(in) :: distribution
     !> Height of each zone's interface
     real(wp), intent(in) :: interface_heights(:)

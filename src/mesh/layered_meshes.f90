@@ -78,9 +78,7 @@ contains
 
   !> Builds the mesh of the modelled part.
   pure function create_mesh(plate, mesh, plies, zones, laminates, stations) result(self)
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> Elements, grading and patch
     type(mesh_t), intent(in) :: mesh
     !> Number of plies of the plate's laminate
     integer, intent(in) :: plies
@@ -236,7 +234,6 @@ contains
     class(layered_mesh_t), intent(in) :: self
     !> Element
     integer, intent(in) :: element
-    !> The numbers
     integer :: range(2)
 
     range = self%layers(self%element_layer(element))%plies

@@ -18,10 +18,8 @@ module mesh_deck
   !> Largest number of elements: with 20 unknowns per element and about 40 entries per row, the upper triangle of the
   !> matrix has 8e8 entries, and default integers reach 2.1e9.
   real(wp), parameter, public :: max_elements = 1.0e6_wp
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: mesh_group_row = &
     'mesh | settings | The rectangle of nine-node elements and the loaded patch.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: mesh_rows(*) = [character(len=key_row_length) :: &
     'mesh | elements | integer | 2 | - | = by &case accuracy | >= 2, <= 2000 | &
       &Elements along x and y of the modelled part.', &
@@ -43,7 +41,6 @@ contains
   !> The mesh without the choices of its element and without required lines.
   subroutine fill_mesh(settings, mesh)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(mesh_t), intent(inout) :: mesh
 
     if (settings%is_known(mesh_group, key_elements)) mesh%elements = settings%integers_of(mesh_group, key_elements)

@@ -20,10 +20,8 @@ module plate_deck
   character(len=*), parameter, public :: plate_group = 'plate', key_length = 'length', key_symmetry = 'symmetry', &
                                          key_imperfection = 'imperfection', key_half_waves = 'half_waves', &
                                          key_curvature_radius = 'curvature_radius'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: plate_group_row = &
     'plate | required | The plate: size, edges, curvature, imperfection and symmetry.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: plate_rows(*) = [character(len=key_row_length) :: &
     'plate | length | real | 2 | length | required | > 0 | &
       &Lengths of the full plate along x and y, also under symmetry. | | length', &
@@ -59,7 +57,6 @@ contains
   !> The plate.
   subroutine fill_plate(settings, plate)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(plate_t), intent(inout) :: plate
     type(line_t), allocatable :: edges(:)
     integer :: i

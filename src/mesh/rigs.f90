@@ -25,7 +25,6 @@ contains
 
   !> Coordinates along x or y of the edges of rectangular windows.
   pure function window_lines(supports, direction) result(lines)
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -43,7 +42,6 @@ contains
   !> Nodes supported by a frame.
   pure function nodes_on_frame(grid, support) result(on_frame)
     class(cell_grid_t), intent(in) :: grid
-    !> The rig
     type(support_t), intent(in) :: support
     !> True where the frame supports the plate, (nodes)
     logical, allocatable :: on_frame(:)
@@ -54,7 +52,6 @@ contains
 
   !> True if a rig fixes w where the edge of its window crosses the sides of cells.
   pure logical function has_crossings(support)
-    !> The rig
     type(support_t), intent(in) :: support
 
     has_crossings = support%shape == window_circle .and. support%bearing == bearing_edge
@@ -64,11 +61,9 @@ contains
   !> to its right, a side at the border of the grid to its only cell.
   pure function circle_crossings(grid, support, cell) result(crossings)
     class(cell_grid_t), intent(in) :: grid
-    !> The rig
     type(support_t), intent(in) :: support
     !> The cell
     integer, intent(in) :: cell
-    !> The points
     type(crossing_t), allocatable :: crossings(:)
     integer :: place(2), nodes(9)
 
@@ -113,9 +108,7 @@ contains
   !> the same distance the one closest to the plate's centre is chosen, so that symmetric clamps have symmetric nodes.
   pure function clamp_nodes(grid, plate, support) result(nodes)
     class(cell_grid_t), intent(in) :: grid
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> The rig
     type(support_t), intent(in) :: support
     !> One node per clamp
     integer, allocatable :: nodes(:)

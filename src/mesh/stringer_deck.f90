@@ -27,10 +27,8 @@ module stringer_deck
                                  other_stiffnesses = 'EI_lateral eccentricity'
   !> E/G of an isotropic material with Poisson's ratio .3.
   real(wp), parameter :: isotropic_ratio = 2*(1 + 0.3_wp)
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: stringer_group_row = &
     'stringer | several | A stiffener bonded to a face of the plate, a beam along a line of the mesh.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: stringer_rows(*) = [character(len=key_row_length) :: &
     'stringer | name | name | 1 | - | required | letters, digits, . _ - | &
       &Name, in messages.', &
@@ -85,7 +83,6 @@ contains
     type(settings_t), intent(inout) :: settings
     !> Lengths of the plate along x and y
     real(wp), intent(in) :: length(2)
-    !> Receives them
     type(stringer_t), allocatable, intent(out) :: all(:)
     real(wp) :: modulus
     integer :: place, i
@@ -137,7 +134,6 @@ contains
 
     !> Value of one of its keys.
     real(wp) function of(key)
-      !> Its name
       character(len=*), intent(in) :: key
 
       of = value_of(settings, key, place)
@@ -147,7 +143,6 @@ contains
   !> Value of a key of a stringer; 0: it is not given.
   real(wp) function value_of(settings, key, place) result(value)
     type(settings_t), intent(in) :: settings
-    !> Its name
     character(len=*), intent(in) :: key
     !> Index of its group
     integer, intent(in) :: place

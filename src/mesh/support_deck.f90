@@ -21,10 +21,8 @@ module support_deck
                                          key_unilateral = 'unilateral', &
                                          key_window_radius = 'radius'
   character(len=*), parameter :: group = support_group
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: support_group_row = &
     'support | several | A rig under a plate with free edges: a frame with a window, clamps at points, or both.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: support_rows(*) = [character(len=key_row_length) :: &
     'support | shape | choice | 1 | - | ''rectangle'' | rectangle circle | &
       &Shape of the frame''s window, which is centred on the plate.', &
@@ -53,7 +51,6 @@ contains
   subroutine fill_supports(settings, supports)
     !> Keys in effect; receives the defaults of keys left out
     type(settings_t), intent(inout) :: settings
-    !> Receives them
     type(support_t), allocatable, intent(out) :: supports(:)
     real(wp), allocatable :: clamps(:)
     integer :: place
@@ -86,9 +83,7 @@ contains
   subroutine check_rigs(settings, plate, supports, problems)
     type(settings_t), intent(in) :: settings
     type(plate_t), intent(in) :: plate
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     integer :: place
 
@@ -130,11 +125,9 @@ contains
   !> Checks that a rig has a support, and no key without effect for its shape.
   subroutine check_parts(settings, support, place, problems)
     type(settings_t), intent(in) :: settings
-    !> The rig
     type(support_t), intent(in) :: support
     !> Index of the group
     integer, intent(in) :: place
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     logical :: circle
 
@@ -163,7 +156,6 @@ contains
   subroutine check_window(settings, plate, support, place, problems)
     type(settings_t), intent(in) :: settings
     type(plate_t), intent(in) :: plate
-    !> The rig
     type(support_t), intent(in) :: support
     !> Index of the group
     integer, intent(in) :: place
@@ -182,7 +174,6 @@ contains
   subroutine check_clamps(settings, plate, support, place, problems)
     type(settings_t), intent(in) :: settings
     type(plate_t), intent(in) :: plate
-    !> The rig
     type(support_t), intent(in) :: support
     !> Index of the group
     integer, intent(in) :: place
@@ -209,7 +200,6 @@ contains
     integer, intent(in) :: symmetry
     !> True: lines prescribe a deflection or a slope
     logical, intent(in) :: lines_hold
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
     type(problems_t), intent(inout) :: problems
     real(wp), allocatable :: points(:)

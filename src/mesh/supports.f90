@@ -13,7 +13,6 @@ contains
   !> Table of the unknowns fixed by supports and symmetry, and of all in-plane displacements if they are zero.
   pure function fixed_unknowns(mesh, plate, membrane_idle, pin_plane) result(fixed)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Supports and symmetry
     type(plate_t), intent(in) :: plate
     !> True: u and v are zero and need no equations
     logical, intent(in) :: membrane_idle
@@ -35,7 +34,6 @@ contains
   !> Unknowns fixed at a node by the borders it is on.
   pure function fixed_on_borders(mesh, plate, line) result(fixed)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Supports and symmetry
     type(plate_t), intent(in) :: plate
     !> Lines of nodes along x and y that the node lies on, from 0
     integer, intent(in) :: line(2)

@@ -45,7 +45,6 @@ contains
   !> Deflections of the points, the same on every rank. Collective.
   function deflections(self, communicator, w)
     class(contact_area_t), intent(in) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Deflection of the struck face, (local points)
     real(wp), intent(in) :: w(:)
@@ -63,7 +62,6 @@ contains
   !> Position of the nose's tip at first contact. Collective.
   real(wp) function first_contact(self, communicator, w)
     class(contact_area_t), intent(in) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Deflection of the struck face, (local points)
     real(wp), intent(in) :: w(:)
@@ -91,7 +89,6 @@ contains
   !> Area of the points with a weight, on the full plate. Collective.
   real(wp) function area_of(self, communicator, weights) result(area)
     class(contact_area_t), intent(in) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> (local points)
     real(wp), intent(in) :: weights(:)

@@ -32,7 +32,6 @@ contains
   !> Mean of a deflection over the patch, the same on every rank.
   real(wp) function mean(self, communicator, displacement)
     class(contact_patch_t), intent(in) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)
@@ -43,7 +42,6 @@ contains
   !> Deflection of the plate under the impactor, the same on every rank.
   real(wp) function deflection(self, communicator, displacement)
     class(contact_patch_t), intent(in) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Displacement, (5, points)
     real(wp), intent(in) :: displacement(:, :)

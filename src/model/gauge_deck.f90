@@ -15,10 +15,8 @@ module gauge_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: gauge_group = 'gauge', key_gauge_at = 'at'
   character(len=*), parameter :: group = gauge_group
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: gauge_group_row = &
     'gauge | several | A strain gauge on a surface of the plate, written as a column of the history.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: gauge_rows(*) = [character(len=key_row_length) :: &
     'gauge | at | real | 2 | length | required | any | &
       &Point from the plate''s centre, x and y.', &
@@ -32,7 +30,6 @@ contains
   !> All gauges, in the order of the deck.
   subroutine fill_gauges(settings, all)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(gauge_t), allocatable, intent(out) :: all(:)
     integer :: place
 

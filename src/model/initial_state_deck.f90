@@ -11,10 +11,8 @@ module initial_state_deck
   !> Names that checks across groups use.
   character(len=*), parameter, public :: initial_state_group = 'initial_state', key_from = 'from', &
                                          key_cut_at = 'cut_at'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: initial_state_group_row = &
     'initial_state | optional | Initial state from the checkpoint of another run, such as compression after impact.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: initial_state_rows(*) = [character(len=key_row_length) :: &
     'initial_state | from | text | 1 | - | required | not empty | &
       &Checkpoint NAME_restart.h5 of the other run; the path is relative to the working directory.', &
@@ -28,7 +26,6 @@ contains
   !> The initial state.
   subroutine fill_initial_state(settings, initial)
     type(settings_t), intent(in) :: settings
-    !> Receives it
     type(initial_state_t), intent(inout) :: initial
 
     if (.not. settings%is_known(initial_state_group, key_from)) return

@@ -120,7 +120,6 @@ contains
   !> Stores an item.
   subroutine keep(self, name, values)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Its values
     real(wp), intent(in) :: values(:, :)
@@ -140,7 +139,6 @@ contains
   !> Index of an item; it exists, as states of one setup consist of the same items.
   pure integer function find(self, name) result(item)
     class(layer_transfer_t), intent(in) :: self
-    !> Its name
     character(len=*), intent(in) :: name
 
     do item = 1, self%items
@@ -151,7 +149,6 @@ contains
   !> Copies the items of an archive that only rank 0 has saved to every rank. Collective.
   subroutine broadcast(self, communicator)
     class(layer_transfer_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     integer :: item, extents(2)
     real(wp), allocatable :: list(:)
@@ -176,7 +173,6 @@ contains
   !> Visits one real.
   subroutine real_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> The item
     real(wp), intent(inout) :: value
@@ -191,7 +187,6 @@ contains
   !> Visits one integer.
   subroutine integer_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> The item
     integer, intent(inout) :: value
@@ -205,7 +200,6 @@ contains
   !> Visits one logical.
   subroutine logical_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> The item
     logical, intent(inout) :: value
@@ -219,7 +213,6 @@ contains
   !> Visits a list of reals.
   subroutine reals_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> The item
     real(wp), allocatable, intent(inout) :: value(:)
@@ -234,7 +227,6 @@ contains
   !> Visits a list of integers.
   subroutine integers_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> The item
     integer, allocatable, intent(inout) :: value(:)
@@ -248,7 +240,6 @@ contains
   !> Visits a table of reals.
   subroutine table_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> The item
     real(wp), allocatable, intent(inout) :: value(:, :)
@@ -264,7 +255,6 @@ contains
   !> when saving.
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
@@ -272,7 +262,6 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    !> How it is mapped
     type(field_mapping_t), intent(in) :: mapping
 
     if (.not. self%loading) then
@@ -313,7 +302,6 @@ contains
   !> Stores a field of all ranks. Collective.
   subroutine keep_field(self, name, columns, global_columns, value)
     class(layer_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)

@@ -44,7 +44,6 @@ contains
     type(setup_t), intent(in) :: setup
     !> Their indices; 0: an unknown name
     integer, intent(in) :: doublers(:)
-    !> Receives them
     type(zone_t), intent(inout) :: zone
     type(cell_line_t) :: columns, rows
     logical, allocatable :: bonded(:, :)

@@ -17,10 +17,8 @@ module line_deck
                                          key_force = 'force'
   !> Keys of values, displacements first.
   character(len=*), parameter :: value_keys(4) = [character(len=12) :: 'force', 'displacement', 'moment', 'rotation']
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: line_group_row = &
     'line | several | A line across the plate with a support, a prescribed displacement or a load.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: line_rows(*) = [character(len=key_row_length) :: &
     'line | at | real | 1 | length | required | any | &
       &Coordinate of the line from the plate''s centre: x of a line along y, y of a line along x.', &
@@ -50,7 +48,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> End of a run in time; 0: load steps
     real(wp), intent(in) :: end_time
-    !> Receives them
     type(line_load_t), allocatable, intent(out) :: lines(:)
     integer :: place, k
 
@@ -76,7 +73,6 @@ contains
   subroutine check_lines(settings, lines, problems)
     type(settings_t), intent(in) :: settings
     type(line_load_t), intent(in) :: lines(:)
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     logical :: given(size(value_keys)), suits(size(value_keys))
     integer :: place, k

@@ -92,7 +92,6 @@ contains
   !> Name of the quantity that increases from step to step.
   pure function progress_name(self) result(name)
     class(load_case_t), intent(in) :: self
-    !> The name
     character(len=:), allocatable :: name
 
     name = 'time'

@@ -60,7 +60,6 @@ contains
   !> when saving.
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(mesh_transfer_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
@@ -68,7 +67,6 @@ contains
     integer, intent(in) :: global_columns
     !> The field
     real(wp), intent(inout) :: value(:, :)
-    !> How it is mapped
     type(field_mapping_t), intent(in) :: mapping
     integer :: item, i
 
@@ -101,7 +99,6 @@ contains
     integer, intent(in) :: point
     !> Signs in images
     type(field_mapping_t), intent(in) :: mapping
-    !> Its unknowns
     real(wp) :: motion(5)
     real(wp) :: at(2), shapes(3, 2)
     integer :: place(2), i, j
@@ -134,7 +131,6 @@ contains
     real(wp), intent(in) :: saved(:, :)
     !> Node, and zone; 0: the first layer
     integer, intent(in) :: node, zone
-    !> The unknowns
     real(wp) :: unknowns(5)
     integer :: above
 

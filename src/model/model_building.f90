@@ -46,7 +46,6 @@ contains
   subroutine create_model(setup, communicator, self, error)
     !> The setup; it has passed the deck's checks
     type(setup_t), intent(in) :: setup
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     type(model_t), intent(out) :: self
     !> Set if the mesh cannot be distributed or an element is ill-shaped; the same on every rank

@@ -53,7 +53,6 @@ contains
     type(setup_t), intent(in) :: setup
     !> True: central differences, without a factor
     logical, intent(in) :: explicit
-    !> Its size
     type(model_size_t) :: size_found
     type(zone_t), allocatable :: zones(:)
     type(cell_line_t) :: line
@@ -144,7 +143,6 @@ contains
   !> Sentence of `implam check`.
   pure function sentence(self) result(words)
     class(model_size_t), intent(in) :: self
-    !> One sentence
     character(len=:), allocatable :: words
 
     words = trim(merge('At most', 'About  ', self%at_most))//' '// &

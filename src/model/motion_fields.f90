@@ -27,10 +27,8 @@ contains
   subroutine write_motion_fields(model, motion, output, fields, error)
     class(discretization_t), intent(in) :: model
     type(motion_t), intent(in) :: motion
-    !> Requested fields
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     real(wp), allocatable :: layers(:, :)
 

@@ -59,15 +59,12 @@ contains
   pure function place_line(load, mesh, distribution, map, fixed, plies, section, symmetry) result(self)
     type(line_load_t), intent(in) :: load
     type(layered_mesh_t), intent(in) :: mesh
-    !> This rank's points
     type(distribution_t), intent(in) :: distribution
-    !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
     !> True for unknowns constrained by supports, (5, points of this rank)
     logical, intent(in) :: fixed(:, :)
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
-    !> Section of the laminate
     type(section_t), intent(in) :: section
     !> Symmetry of the model
     integer, intent(in) :: symmetry
@@ -125,7 +122,6 @@ contains
 
   !> Stiffness of the section that scales the springs of a component.
   pure real(wp) function section_scale(section, component) result(scale)
-    !> Section of the laminate
     type(section_t), intent(in) :: section
     !> 1 to 5
     integer, intent(in) :: component
@@ -144,7 +140,6 @@ contains
   pure subroutine add_layers(self, mesh, map, plies, first_point, local, weight)
     type(placed_line_t), intent(inout) :: self
     type(layered_mesh_t), intent(in) :: mesh
-    !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
     !> Plies of the laminate
     type(ply_t), intent(in) :: plies(:)
@@ -180,7 +175,6 @@ contains
   !> Adds the unknowns that determine the motion of a layer at a node: its own and those of the points above it.
   pure subroutine add_unknowns(self, map, lowest, height)
     type(placed_line_t), intent(inout) :: self
-    !> Motion from unknowns
     type(layer_map_t), intent(in) :: map
     !> Point of the layer on this rank
     integer, intent(in) :: lowest

@@ -1,6 +1,6 @@
 !> Places the stringers of the deck on edges of this rank's elements.
 module placed_stringers
-  use edge_beams, only: edge_beam_t, new_edge_beam
+  use edge_beams, only: edge_beam_t, new_edge_beam, simpson
   use element_batches, only: batch_of, lane_of
   use kinds, only: wp
   use line_loads, only: along_x, line_load_t
@@ -12,9 +12,6 @@ module placed_stringers
   implicit none
   private
   public :: place_stringers, stiffness_on_line
-
-  !> Smallest share of a node in a side of a cell: Simpson's rule.
-  real(wp), parameter :: smallest_share = 1/6.0_wp
 
 contains
 
@@ -66,7 +63,7 @@ contains
           if (load%at < stringer%ends(1) - rounding*maxval(length) .or. &
               load%at > stringer%ends(2) + rounding*maxval(length)) cycle
           stiffness = max(stiffness, relative_stiffness*stiffness_of(stringer)*length(along)/length(3 - along) &
-                          /(smallest_share*minval(model%mesh%along(along)%sides())))
+                          /(minval(simpson)*minval(model%mesh%along(along)%sides())))
         end associate
       end do
     end associate

@@ -13,10 +13,8 @@ module pressure_deck
 
   !> Names that checks across groups use.
   character(len=*), parameter, public :: pressure_group = 'pressure', key_history = 'history'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: pressure_group_row = &
     'pressure | optional | Pressure on the struck face.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: pressure_rows(*) = [character(len=key_row_length) :: &
     'pressure | value | real | 1 | pressure | required | any | &
       &Force per area, positive along z, as the impact.', &
@@ -32,7 +30,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> End of the run
     real(wp), intent(in) :: end_time
-    !> Receives them
     type(pressure_t), intent(inout) :: pressure
 
     pressure%value = settings%real_of(pressure_group, 'value')

@@ -49,11 +49,8 @@ contains
   !> The rigs at a rank's points.
   pure function new_rig_model(mesh, plate, supports, distribution, rigid) result(self)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
-    !> This rank's points
     type(distribution_t), intent(in) :: distribution
     !> Penalty stiffness of a rigid frame where its edge crosses a cell
     real(wp), intent(in) :: rigid
@@ -107,7 +104,6 @@ contains
   pure subroutine find_lines(mesh, plate, supports, distribution, rigid, self)
     type(layered_mesh_t), intent(in) :: mesh
     type(plate_t), intent(in) :: plate
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> This rank's elements
     type(distribution_t), intent(in) :: distribution
@@ -161,7 +157,6 @@ contains
   !> Prepares the sums of forces of lines at points on the borders between ranks, in the order of the mesh. Collective.
   subroutine join_ranks(self, communicator, halo)
     class(rig_model_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Their points
     type(halo_t), intent(in) :: halo
@@ -221,9 +216,7 @@ contains
   !> Stiffness that one clamp of the deck adds to the model.
   pure function springs_of(mesh, plate, support) result(springs)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> The rig
     type(support_t), intent(in) :: support
     !> Along u, v and w
     real(wp) :: springs(3)
@@ -236,9 +229,7 @@ contains
   !> are held.
   pure subroutine fix_by_rigs(mesh, plate, supports, fixed)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> u, v, w, theta_x, theta_y of every point, (5, points)
     logical, intent(inout) :: fixed(:, :)
@@ -268,9 +259,7 @@ contains
   !> layers together there: these frames act on w of the first layer, and would otherwise pull it off the layers below.
   pure subroutine hold_openings(mesh, plate, supports, fixed)
     type(layered_mesh_t), intent(in) :: mesh
-    !> Plate and symmetry
     type(plate_t), intent(in) :: plate
-    !> The rigs
     type(support_t), intent(in) :: supports(:)
     !> u, v, w, theta_x, theta_y of every point, (5, points)
     logical, intent(inout) :: fixed(:, :)

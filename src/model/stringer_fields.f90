@@ -34,10 +34,8 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Displacement, ghosts up to date, (5, points)
     real(wp), intent(in) :: displacement(:, :)
-    !> Requested fields
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(inout) :: error
     real(wp) :: values(columns, model%elements%elements)
     integer :: i

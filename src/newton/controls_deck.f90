@@ -11,10 +11,8 @@ module controls_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: controls_group = 'controls'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: controls_group_row = &
     'controls | hidden | Constants of the iteration, for studies of their effect; not for models.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: controls_rows(*) = [character(len=key_row_length) :: &
     'controls | max_forcing_term | real | 1 | - | 1e-3 | > 0, < 1 | &
       &Largest reduction of the residual required of a correction.', &
@@ -78,7 +76,6 @@ contains
   !> Constants, if the deck has the group.
   subroutine fill_controls(settings, stepping)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(stepping_t), intent(inout) :: stepping
 
     if (.not. settings%has_group(controls_group)) return
@@ -90,7 +87,6 @@ contains
   subroutine fill_newton(s, controls)
     !> Keys in effect
     type(settings_t), intent(in) :: s
-    !> Receives them
     type(newton_controls_t), intent(inout) :: controls
 
     controls%max_forcing_term = s%real_of(controls_group, 'max_forcing_term')
@@ -112,7 +108,6 @@ contains
   subroutine fill_steps(s, controls)
     !> Keys in effect
     type(settings_t), intent(in) :: s
-    !> Receives them
     type(step_controls_t), intent(inout) :: controls
 
     controls%load_step_parts = s%integer_of(controls_group, 'load_step_parts')

@@ -41,9 +41,7 @@ contains
   function new_newton_iteration(model, equilibrium, operator, old, new) result(self)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
-    !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
-    !> The factored operator
     type(tangent_operator_t), target, intent(in) :: operator
     !> State at the start
     type(state_t), target, intent(in) :: old

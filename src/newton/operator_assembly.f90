@@ -49,13 +49,11 @@ contains
     type(model_t), intent(in) :: model
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Equations
     type(numbering_t), intent(in) :: numbering
     !> Displacement at which the tangent is taken, (5, points)
     real(wp), intent(in) :: displacement(:, :)
     !> Factors of stiffness and mass
     real(wp), intent(in) :: stiffness_factor, mass_factor
-    !> Receives the matrices
     class(linear_solver_t), intent(inout) :: solver
     !> Receives the diagonal, (5, points)
     real(wp), intent(inout) :: diagonal(:, :)
@@ -99,9 +97,7 @@ contains
     type(model_t), intent(in) :: model
     !> Factor of stiffness
     real(wp), intent(in) :: stiffness_factor
-    !> Equations
     type(numbering_t), intent(in) :: numbering
-    !> Receives the matrices
     class(linear_solver_t), intent(inout) :: solver
     !> Receives the diagonal, (5, points)
     real(wp), intent(inout) :: diagonal(:, :)
@@ -127,9 +123,7 @@ contains
   !> factor of stiffness weights them.
   subroutine add_lines(model, numbering, solver, diagonal)
     type(model_t), intent(in) :: model
-    !> Equations
     type(numbering_t), intent(in) :: numbering
-    !> Receives the matrices
     class(linear_solver_t), intent(inout) :: solver
     !> Receives their diagonal
     real(wp), intent(inout) :: diagonal(:, :)
@@ -156,13 +150,11 @@ contains
   !> Adds a matrix of layer motions, transformed to the unknowns.
   subroutine add_block(model, numbering, points, matrix, solver, diagonal, element)
     type(model_t), intent(in) :: model
-    !> Equations
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
     !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
-    !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
     !> Receives its diagonal
     real(wp), intent(inout) :: diagonal(:, :)
@@ -183,13 +175,11 @@ contains
 
   !> Adds a matrix of the unknowns of some points.
   subroutine add_to(numbering, points, matrix, solver, diagonal, element)
-    !> Equations
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
     !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
-    !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
     !> Receives its diagonal
     real(wp), intent(inout) :: diagonal(:, :)
@@ -215,13 +205,11 @@ contains
   !> Adds a matrix of the unknowns of some points, in-plane displacements and bending separately if they are not
   !> coupled.
   subroutine add_parts(numbering, points, matrix, solver, element)
-    !> Equations
     type(numbering_t), intent(in) :: numbering
     !> The points
     integer, intent(in) :: points(:)
     !> Matrix, five rows per point
     real(wp), intent(in) :: matrix(:, :)
-    !> Receives the matrix
     class(linear_solver_t), intent(inout) :: solver
     !> Number of the element whose matrix it is
     integer, intent(in), optional :: element
@@ -241,11 +229,9 @@ contains
   !> Adds stiffness to the diagonals of the jumps, and of w and the clamped unknowns on rigs.
   subroutine assemble_diagonal(model, numbering, added, solver)
     type(model_t), intent(in) :: model
-    !> Equations
     type(numbering_t), intent(in) :: numbering
     !> Stiffness added to the three jumps, and to u, v and w of first points, (3, points)
     real(wp), intent(in) :: added(:, :)
-    !> Receives it
     class(linear_solver_t), intent(inout) :: solver
     integer :: i, component
 
@@ -262,11 +248,9 @@ contains
   !> those of the other interfaces.
   subroutine assemble_tangents(model, numbering, tangents, solver)
     type(model_t), intent(in) :: model
-    !> Equations
     type(numbering_t), intent(in) :: numbering
     !> Force per jump, (3, 3, points)
     real(wp), intent(in) :: tangents(:, :, :)
-    !> Receives them
     class(linear_solver_t), intent(inout) :: solver
     real(wp) :: coupling(3, 3)
     integer :: i, k

@@ -15,10 +15,8 @@ module solver_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: solver_group = 'solver'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: solver_group_row = &
     'solver | settings | Tolerance of equilibrium, and the linear solver.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: solver_rows(*) = [character(len=key_row_length) :: &
     'solver | tolerance | real | 1 | - | 1e-6 | >= 1e-13, <= 0.01 | &
       &Residual of equilibrium accepted, relative to the reference force.', &
@@ -38,7 +36,6 @@ contains
   !> Convergence of equilibrium.
   subroutine fill_equilibrium(settings, equilibrium)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(equilibrium_t), intent(inout) :: equilibrium
 
     equilibrium%tolerance = settings%real_of(solver_group, 'tolerance')
@@ -48,7 +45,6 @@ contains
   !> The linear solver.
   subroutine fill_linear_solver(settings, solver)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(linear_solver_parameters_t), intent(inout) :: solver
 
     solver%factorization = code_of(settings%text_of(solver_group, 'factorization'), 'automatic mumps cholmod', &
@@ -77,7 +73,6 @@ contains
 
   !> True if a word is an allowed option, or a value that is not the name of a file.
   pure logical function is_allowed(word)
-    !> The word
     character(len=*), intent(in) :: word
     type(line_t), allocatable :: prefixes(:)
     integer :: i

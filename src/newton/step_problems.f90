@@ -120,11 +120,9 @@ contains
 
   !> Tries a step. If it has not converged, `new` is undefined on return.
   subroutine solve_step(problem, model, equilibrium, operator, old, new, converged, error)
-    !> The kind of step
     class(step_problem_t), intent(inout) :: problem
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
-    !> Required convergence
     type(equilibrium_t), intent(in) :: equilibrium
     !> The factored operator; factorized again if convergence requires it
     type(tangent_operator_t), target, intent(inout) :: operator
@@ -173,7 +171,6 @@ contains
   !> Updates the multipliers of the augmented Lagrangian at equilibrium, by the pressures found; the step has converged
   !> once they have.
   subroutine update_contact(problem, at, converged)
-    !> The kind of step
     class(step_problem_t), intent(in) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
@@ -197,7 +194,6 @@ contains
 
   !> Accepts a fraction of the correction, or tries the next one.
   subroutine try_fraction(problem, at, search, ends)
-    !> The kind of step
     class(step_problem_t), intent(inout) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
@@ -214,7 +210,6 @@ contains
 
   !> Residual with and without ties and contacts.
   subroutine find_forces(problem, at)
-    !> The kind of step
     class(step_problem_t), intent(inout) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at
@@ -230,7 +225,6 @@ contains
 
   !> Finds a correction, and starts the line search along it.
   subroutine correct(problem, at, search, corrected, error)
-    !> The kind of step
     class(step_problem_t), intent(inout) :: problem
     !> The iteration
     type(newton_iteration_t), intent(inout) :: at

@@ -107,7 +107,6 @@ contains
 
   !> True: the plate is integrated by central differences.
   elemental logical function is_explicit(stepping)
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
 
     is_explicit = stepping%time%integrator == integrator_central_difference
@@ -115,7 +114,6 @@ contains
 
   !> End of a run, from the time of last contact so far.
   elemental real(wp) function end_of_run(stepping, contact_end)
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Time of last contact
     real(wp), intent(in) :: contact_end

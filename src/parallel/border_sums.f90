@@ -40,7 +40,6 @@ contains
   !> Collective.
   subroutine define(self, communicator, halo, points, order, targets)
     class(border_sum_t), intent(out) :: self
-    !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> The points
     type(halo_t), intent(in) :: halo

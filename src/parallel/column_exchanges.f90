@@ -24,7 +24,6 @@ contains
 
   !> Determines the exchange between ranks, from lists that are the same on every rank. Collective.
   function new_column_exchange(communicator, mine, groups) result(self)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> True for columns that this rank computes, (columns)
     logical, intent(in) :: mine(:)
@@ -63,7 +62,6 @@ contains
       integer, intent(in) :: other
       !> True for the columns
       logical, intent(in) :: some(:)
-      !> Their numbers
       integer, allocatable :: columns(:)
       logical :: needs(size(some))
       integer :: i

@@ -33,7 +33,6 @@ contains
 
   !> Starts MPI, unless it runs, and hands over the communicator of all ranks.
   subroutine start_mpi(communicator)
-    !> All ranks of the run
     type(communicator_t), intent(out) :: communicator
     logical :: running
 
@@ -71,7 +70,6 @@ contains
   function communicator_from_handle(handle) result(communicator)
     !> Handle of MPI's Fortran interfaces
     integer, intent(in) :: handle
-    !> Its ranks
     type(communicator_t) :: communicator
 
     communicator%group%mpi_val = handle

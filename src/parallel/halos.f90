@@ -39,7 +39,6 @@ contains
   !> Determines the exchange of ghosts between ranks. Collective.
   subroutine define(self, communicator, owned, ghost_numbers, error)
     class(halo_t), intent(inout) :: self
-    !> All ranks
     type(communicator_t), intent(in) :: communicator
     !> Number of points that this rank owns
     integer, intent(in) :: owned

@@ -16,7 +16,6 @@ contains
 
   !> Sum of the lists of all ranks. Collective.
   real(wp) function total_of_list(communicator, values) result(total)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> This rank's terms, any number of them
     real(wp), intent(in) :: values(:)
@@ -28,7 +27,6 @@ contains
 
   !> Sum of the tables of all ranks. Collective.
   real(wp) function total_of_table(communicator, values) result(total)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> This rank's terms, any number of them
     real(wp), intent(in) :: values(:, :)
@@ -40,7 +38,6 @@ contains
 
   !> Total of the sums of all ranks. Collective.
   real(wp) function total_of_sum(communicator, sum) result(total)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Sum of this rank's terms
     type(exact_sum_t), intent(in) :: sum
@@ -52,7 +49,6 @@ contains
 
   !> Totals of several sums of all ranks, in one message. Collective.
   function totals_of(communicator, sums) result(totals)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Sums of this rank's terms
     type(exact_sum_t), intent(in) :: sums(:)

@@ -24,7 +24,7 @@ module edge_beams
   !> The first of each.
   integer, parameter, public :: axial_row = 1, bending_row = 4, twist_row = 7, shear_row = 10
   !> Lumped masses over the mass of a line of three nodes: Simpson's rule.
-  real(wp), parameter :: simpson(3) = [1, 4, 1]/6.0_wp
+  real(wp), parameter, public :: simpson(3) = [1, 4, 1]/6.0_wp
   !> Consistent masses over the mass of a line of three nodes.
   real(wp), parameter :: consistent(3, 3) = reshape([4, 2, -1, 2, 16, 2, -1, 2, 4], [3, 3])/30.0_wp
 

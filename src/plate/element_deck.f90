@@ -11,11 +11,9 @@ module element_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: key_mass = 'mass'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: kinematics_rows(*) = [character(len=key_row_length) :: &
     'case | kinematics | choice | 1 | - | ''von_karman'' | von_karman linear | &
       &Strains: with the squares of the slopes (large deflection), or linear.']
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: element_rows(*) = [character(len=key_row_length) :: &
     'mesh | shear | choice | 1 | - | ''assumed'' | assumed full selective | &
       &Transverse shear of the element: assumed strains, 3 x 3 or 2 x 2 integration.', &

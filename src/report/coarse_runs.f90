@@ -35,9 +35,7 @@ contains
 
   !> Runs the coarse run. Collective.
   subroutine run_coarse_model(deck, communicator, coarse_run)
-    !> The deck of the run
     type(deck_t), intent(in) :: deck
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Its results
     type(coarse_run_t), intent(out) :: coarse_run
@@ -75,7 +73,6 @@ contains
 
   !> The deck of a coarse run.
   pure function coarser_deck(deck) result(coarse)
-    !> The deck of the run
     type(deck_t), intent(in) :: deck
     !> The same setup, coarser
     type(deck_t) :: coarse

@@ -147,7 +147,6 @@ contains
 
   !> Adds a failed cell.
   pure subroutine add_cell(collected, model, along, place)
-    !> Receives it
     type(collected_t), intent(inout) :: collected
     class(composite_plate_t), intent(in) :: model
     !> Axis of the load

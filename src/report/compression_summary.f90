@@ -16,7 +16,6 @@ contains
 
   !> Strength and modulus for the log.
   pure function compression_text(results, at) result(text)
-    !> Results of the run
     type(results_t), intent(in) :: results
     !> Time of the strength in words
     character(len=*), intent(in) :: at
@@ -33,10 +32,8 @@ contains
 
   !> Place of failure, for the file.
   subroutine put_collapse(json, record, figures, below_plies)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)
@@ -67,7 +64,6 @@ contains
 
     !> One interface or ply.
     subroutine put_place(name, number, before, after, across)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Its number
       integer, intent(in) :: number
@@ -91,7 +87,6 @@ contains
   !> The same for the log.
   pure function collapse_text(record, figures, below_plies) result(text)
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)

@@ -47,7 +47,6 @@ contains
   subroutine write_mesh(model, fields, error)
     class(composite_plate_t), intent(in) :: model
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: coordinates(3, model%distribution%owned)
     integer :: values(3, model%elements%elements), i
@@ -111,10 +110,8 @@ contains
   subroutine write_fields(model, stepper, output, fields, error)
     class(composite_plate_t), intent(in) :: model
     class(stepper_t), intent(in) :: stepper
-    !> Requested fields
     type(output_t), intent(in) :: output
     type(fields_file_t), intent(inout) :: fields
-    !> Set if the file cannot be written
     type(error_t), allocatable, intent(out) :: error
 
     if (.not. fields%is_on(model%mesh%points())) call write_mesh(model, fields, error)

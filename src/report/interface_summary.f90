@@ -17,12 +17,10 @@ contains
 
   !> Results of the interfaces.
   subroutine put_interfaces(json, deck, now, record, figures)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(deck_t), intent(in) :: deck
     type(state_t), intent(in) :: now
     type(run_record_t), intent(in) :: record
-    !> Figures of the state
     type(run_figures_t), intent(in) :: figures
     integer :: zone
 
@@ -50,9 +48,7 @@ contains
 
   !> Time, force and deflection of an event.
   subroutine put_event(json, name, event, deck)
-    !> The summary
     type(json_t), intent(inout) :: json
-    !> Its name
     character(len=*), intent(in) :: name
     !> Time, contact force, deflection; time 0: never, negative: before the run
     real(wp), intent(in) :: event(3)

@@ -187,7 +187,6 @@ contains
   pure function both(values) result(text)
     !> Before and after, and before a cut
     real(wp), intent(in) :: values(:)
-    !> The text
     character(len=:), allocatable :: text
 
     text = rounded_text(values(1))//' -> '//rounded_text(values(2))
@@ -196,7 +195,6 @@ contains
   !> Adds them to the summary.
   subroutine put(self, json, below_plies)
     class(mapped_figures_t), intent(in) :: self
-    !> The summary
     type(json_t), intent(inout) :: json
     !> Ply above each interface
     integer, intent(in) :: below_plies(:)

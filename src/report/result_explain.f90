@@ -32,7 +32,6 @@ contains
   subroutine explain_column(topic, lines, error)
     !> Such as work_external or area_below_3, optionally after the name of its table as in `history force`
     character(len=*), intent(in) :: topic
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
     !> Raised if a table is named and has no such column or field
     type(error_t), allocatable, intent(inout) :: error
@@ -50,7 +49,6 @@ contains
 
   !> Explains a column of the history or a field.
   subroutine find_column(name, lines)
-    !> Its name
     character(len=*), intent(in) :: name
     !> The explanation; empty: there is none
     type(line_t), allocatable, intent(out) :: lines(:)
@@ -84,7 +82,6 @@ contains
     character(len=*), intent(in) :: topic
     !> True: the table alone, as Markdown
     logical, intent(in) :: markdown
-    !> The explanation
     type(line_t), allocatable, intent(out) :: lines(:)
 
     if (lower_case(topic) == 'history') then

@@ -57,7 +57,6 @@ contains
   !> Adds a number.
   pure subroutine add_real(self, name, value, is_known)
     class(results_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Its value
     real(wp), intent(in) :: value
@@ -74,7 +73,6 @@ contains
   !> Adds a whole number.
   pure subroutine add_integer(self, name, value)
     class(results_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Its value
     integer, intent(in) :: value
@@ -85,7 +83,6 @@ contains
   !> Adds a logical.
   pure subroutine add_logical(self, name, value)
     class(results_t), intent(inout) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Its value
     logical, intent(in) :: value
@@ -96,7 +93,6 @@ contains
   !> Place of a result in the list; 0: it is not there.
   pure integer function place_of(self, name) result(place)
     class(results_t), intent(in) :: self
-    !> Its name
     character(len=*), intent(in) :: name
 
     do place = size(self%list), 1, -1
@@ -107,7 +103,6 @@ contains
   !> True: a result is there and known.
   pure logical function has(self, name)
     class(results_t), intent(in) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     integer :: place
 
@@ -119,7 +114,6 @@ contains
   !> Value of a result; 0: not known or not there.
   pure real(wp) function value_of(self, name) result(value)
     class(results_t), intent(in) :: self
-    !> Its name
     character(len=*), intent(in) :: name
 
     value = 0
@@ -129,7 +123,6 @@ contains
   !> Value of a result with its unit, rounded to four digits.
   pure function shown(self, name, digits) result(words)
     class(results_t), intent(in) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Significant digits, four if not given
     integer, intent(in), optional :: digits
@@ -142,7 +135,6 @@ contains
   !> Label and value of a result.
   pure function labelled(self, name, round_off) result(words)
     class(results_t), intent(in) :: self
-    !> Its name
     character(len=*), intent(in) :: name
     !> Size up to which it is printed as 0; 0 if not given
     real(wp), intent(in), optional :: round_off
@@ -175,7 +167,6 @@ contains
   !> Writes all as members of the summary.
   subroutine put(self, json)
     class(results_t), intent(in) :: self
-    !> The summary
     type(json_t), intent(inout) :: json
     integer :: i
 

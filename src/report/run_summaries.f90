@@ -38,11 +38,9 @@ contains
     class(loaded_plate_t), intent(in) :: model
     class(stepper_t), intent(in) :: stepper
     type(run_record_t), intent(in) :: record
-    !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
-    !> Path of the file
     character(len=*), intent(in) :: path
     type(log_t), intent(inout) :: log
     !> Reason of a premature end; otherwise set if the summary cannot be written

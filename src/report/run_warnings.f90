@@ -32,9 +32,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     class(stepper_t), intent(in) :: stepper
-    !> Receives the warnings
     type(run_record_t), intent(inout) :: record
-    !> The check of energies
     type(energy_check_t), intent(inout) :: energy_check
     type(log_t), intent(inout) :: log
     !> Set if the run is strict and exceeds a limit of the model
@@ -51,9 +49,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(model_t), intent(in) :: model
     class(stepper_t), intent(in) :: stepper
-    !> Receives the warnings
     type(run_record_t), intent(inout) :: record
-    !> The check of energies
     type(energy_check_t), intent(inout) :: energy_check
     type(log_t), intent(inout) :: log
     !> Set, unless it is already, if the run is strict and exceeds the limit
@@ -92,9 +88,7 @@ contains
     class(stepper_t), intent(in) :: stepper
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: now
-    !> Receives the warnings
     type(run_record_t), intent(inout) :: record
-    !> The check of energies
     type(energy_check_t), intent(inout) :: energy_check
     !> One sentence each; empty: none
     type(line_t), allocatable, intent(out) :: warnings(:)
@@ -136,7 +130,6 @@ contains
 
     !> Adds a warning at its first occurrence.
     subroutine add(name, occurs, at_zone)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Whether its condition is met
       logical, intent(in) :: occurs
@@ -150,7 +143,6 @@ contains
   !> True: the warning, which concerns no zone, has not been given.
   pure logical function is_new(record, name)
     type(run_record_t), intent(in) :: record
-    !> Its name
     character(len=*), intent(in) :: name
 
     is_new = .not. record%has_warned(kind_of(name), 0)
@@ -162,7 +154,6 @@ contains
     logical, intent(in) :: exceeded(3)
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
-    !> Receives the warnings
     type(run_record_t), intent(inout) :: record
     !> Receives their sentences
     type(line_t), allocatable, intent(inout) :: warnings(:)
@@ -174,7 +165,6 @@ contains
 
   !> Adds a warning at its first occurrence.
   subroutine add_warning(name, occurs, deck, stepper, record, warnings, at_zone)
-    !> Its name
     character(len=*), intent(in) :: name
     !> Whether its condition is met
     logical, intent(in) :: occurs

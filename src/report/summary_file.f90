@@ -35,20 +35,16 @@ contains
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
     type(run_record_t), intent(in) :: record
-    !> Results of the run
     type(results_t), intent(in) :: results
     !> Further results of the state reached
     type(run_figures_t), intent(in) :: figures
-    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
     !> Warnings of the run
     type(line_t), intent(in) :: given(:)
     type(ending_t), intent(in) :: ending
-    !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
     !> Wall-clock time since the start of this process
     real(wp), intent(in) :: seconds
-    !> The text
     character(len=:), allocatable :: content
     type(json_t) :: json
 
@@ -76,7 +72,6 @@ contains
 
   !> Largest filtered force.
   subroutine put_filtered(json, record)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(run_record_t), intent(in) :: record
 
@@ -90,7 +85,6 @@ contains
 
   !> Estimated errors.
   subroutine put_errors(json, errors)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(run_errors_t), intent(in) :: errors
 
@@ -108,7 +102,6 @@ contains
 
     !> Adds an error, or null.
     subroutine put_known(name, error)
-      !> Its name
       character(len=*), intent(in) :: name
       !> The error; negative: not known
       real(wp), intent(in) :: error
@@ -120,10 +113,8 @@ contains
 
   !> The plate and its plies.
   subroutine put_plies(json, deck, figures)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(deck_t), intent(in) :: deck
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     type(laminate_t) :: list
     integer :: ply
@@ -154,7 +145,6 @@ contains
   !> Tensile strength of the fibres of a ply, and the stressed volume it belongs to, at their first failure; null
   !> without.
   subroutine put_strength(json, deck, volume, strength)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(deck_t), intent(in) :: deck
     !> The volume; 0: the fibres have not failed
@@ -173,7 +163,6 @@ contains
 
   !> Warnings on the deck, which have no time, and those of the run.
   subroutine put_warnings(json, deck, record, given)
-    !> The summary
     type(json_t), intent(inout) :: json
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record
@@ -199,7 +188,6 @@ contains
 
   !> Cost of the run.
   subroutine put_costs(json, stepper, seconds)
-    !> The summary
     type(json_t), intent(inout) :: json
     class(stepper_t), intent(in) :: stepper
     !> Wall-clock time since the start of this process
@@ -218,7 +206,6 @@ contains
 
   !> Profile of time and memory, if requested.
   subroutine put_profile(json, rows)
-    !> The summary
     type(json_t), intent(inout) :: json
     !> The parts; none without a profile
     type(profile_row_t), intent(in) :: rows(:)

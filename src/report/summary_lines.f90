@@ -25,12 +25,9 @@ contains
   !> The summary as lines of the log.
   function lines_of_summary(deck, results, record, figures, errors, unknown_because, given) result(lines)
     type(deck_t), intent(in) :: deck
-    !> Results of the run
     type(results_t), intent(in) :: results
     type(run_record_t), intent(in) :: record
-    !> Figures of the state
     type(run_figures_t), intent(in) :: figures
-    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
     !> Reason why errors are not known; empty: known, or not to be reported
     character(len=*), intent(in) :: unknown_because
@@ -83,7 +80,6 @@ contains
   !> Numbers of failed plies.
   subroutine add_failed_plies(lines, results)
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> Results of the run
     type(results_t), intent(in) :: results
 
     call add_figure(lines, 'failed plies', counted_of('fibre_failures')//', '//counted_of('matrix_cracks')//', '// &
@@ -117,10 +113,8 @@ contains
   subroutine add_impact(lines, deck, results, record, errors)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    !> Results of the run
     type(results_t), intent(in) :: results
     type(run_record_t), intent(in) :: record
-    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
     character(len=:), allocatable :: until
 
@@ -150,7 +144,6 @@ contains
   subroutine add_dent(lines, deck, results)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    !> Results of the run
     type(results_t), intent(in) :: results
     character(len=:), allocatable :: depth
 
@@ -166,7 +159,6 @@ contains
 
   !> Estimated error of a result: in per cent, of times in their unit.
   pure function within(results, name, error) result(clause)
-    !> Results of the run
     type(results_t), intent(in) :: results
     !> Name of the result
     character(len=*), intent(in) :: name
@@ -200,7 +192,6 @@ contains
   !> Energy of the impactor and its loss, which is the absorbed energy once the contact has ended.
   subroutine add_impact_energy(lines, results)
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> Results of the run
     type(results_t), intent(in) :: results
     character(len=:), allocatable :: clause
     real(wp) :: energy_input, lost
@@ -219,7 +210,6 @@ contains
   !> The energy ledger, with the names of the columns.
   subroutine add_energies(lines, results)
     type(line_t), allocatable, intent(inout) :: lines(:)
-    !> Results of the run
     type(results_t), intent(in) :: results
     character(len=:), allocatable :: damping
     real(wp) :: round_off
@@ -242,12 +232,9 @@ contains
   subroutine add_interfaces(lines, deck, results, record, figures, errors)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    !> Results of the run
     type(results_t), intent(in) :: results
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
-    !> Estimated errors
     type(run_errors_t), intent(in) :: errors
     integer :: zone
 
@@ -281,10 +268,8 @@ contains
   subroutine add_interface(lines, deck, results, record, figures, zone)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    !> Results of the run
     type(results_t), intent(in) :: results
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     !> The interface
     integer, intent(in) :: zone
@@ -331,9 +316,7 @@ contains
   subroutine add_event(lines, deck, results, name, event)
     type(line_t), allocatable, intent(inout) :: lines(:)
     type(deck_t), intent(in) :: deck
-    !> Results of the run
     type(results_t), intent(in) :: results
-    !> Its name
     character(len=*), intent(in) :: name
     !> Time, contact force, deflection; time 0: never, negative: before the run
     real(wp), intent(in) :: event(3)

@@ -10,9 +10,7 @@ contains
 
   !> Provenance of the result.
   subroutine put_provenance(json, provenance)
-    !> The summary
     type(json_t), intent(inout) :: json
-    !> Version, deck and machine
     type(provenance_t), intent(in) :: provenance
 
     call json%open_object('provenance')

@@ -23,9 +23,7 @@ contains
     type(deck_t), intent(in) :: deck
     type(state_t), intent(in) :: now
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
-    !> The list
     type(results_t) :: results
 
     results = new_results(deck%case%units, deck%setup%is_static())
@@ -55,12 +53,10 @@ contains
 
   !> Contact and impactor.
   subroutine add_impact(results, deck, now, record, figures)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(state_t), intent(in) :: now
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
     real(wp) :: energy
 
@@ -81,7 +77,6 @@ contains
 
   !> The ledger at the end.
   subroutine add_energies(results, ledger)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(ledger_t), intent(in) :: ledger
 
@@ -101,11 +96,9 @@ contains
 
   !> All interfaces together.
   subroutine add_interfaces(results, deck, record, figures)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record
-    !> Results of the state reached
     type(run_figures_t), intent(in) :: figures
 
     call results%add('delaminated_area', sum(figures%interfaces%area))
@@ -124,7 +117,6 @@ contains
 
     !> Time and force of the first event of all interfaces.
     subroutine add_first(name, event)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Time, contact force, deflection; time 0: never
       real(wp), intent(in) :: event(3)
@@ -136,7 +128,6 @@ contains
 
   !> Strength and modulus of a compression.
   subroutine add_compression(results, deck, record, figures)
-    !> Results are added
     type(results_t), intent(inout) :: results
     type(deck_t), intent(in) :: deck
     type(run_record_t), intent(in) :: record

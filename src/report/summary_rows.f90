@@ -94,7 +94,6 @@ contains
 
   !> Row of a result; 0: there is none of this name.
   pure integer function row_of_result(name) result(row)
-    !> Its name
     character(len=*), intent(in) :: name
 
     do row = size(summary_table), 1, -1
@@ -104,7 +103,6 @@ contains
 
   !> Its type: real, integer or logical.
   pure function type_of_result(name) result(word)
-    !> Its name
     character(len=*), intent(in) :: name
     !> The type
     character(len=:), allocatable :: word
@@ -114,7 +112,6 @@ contains
 
   !> Kind of its unit.
   pure function unit_of_result(name) result(word)
-    !> Its name
     character(len=*), intent(in) :: name
     !> Such as force
     character(len=:), allocatable :: word
@@ -124,7 +121,6 @@ contains
 
   !> Its label in the log.
   pure function label_of_result(name) result(word)
-    !> Its name
     character(len=*), intent(in) :: name
     !> Such as peak force
     character(len=:), allocatable :: word

@@ -75,7 +75,6 @@ contains
 
   !> Number of the row of a warning.
   pure integer function kind_of(name) result(kind)
-    !> Its name
     character(len=*), intent(in) :: name
 
     do kind = size(rows), 1, -1
@@ -85,7 +84,6 @@ contains
 
   !> Limit of a warning.
   pure real(wp) function limit_of(name) result(limit)
-    !> Its name
     character(len=*), intent(in) :: name
 
     limit = rows(kind_of(name))%limit
@@ -101,7 +99,6 @@ contains
     character(len=*), intent(in) :: at
     type(deck_t), intent(in) :: deck
     class(stepper_t), intent(in) :: stepper
-    !> One sentence
     character(len=:), allocatable :: text
     type(warning_row_t) :: row
 

@@ -11,11 +11,9 @@ contains
 
   !> Writes a file or replaces it; without success, as on a full disk, there is no new file.
   subroutine write_whole_file(path, content, error)
-    !> Its path
     character(len=*), intent(in) :: path
     !> Its text
     character(len=*), intent(in) :: content
-    !> Set if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(output_stream_t) :: file
 

@@ -29,7 +29,6 @@ contains
 
   !> Writes the seal into the header of a file, and waits until the file is on the disk.
   subroutine seal(path, error)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Set if the file cannot be read or written
     type(error_t), allocatable, intent(inout) :: error
@@ -52,7 +51,6 @@ contains
 
   !> Checks that a file is a valid checkpoint.
   subroutine verify_seal(path, error)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Raised with the reason if it is not
     type(error_t), allocatable, intent(inout) :: error
@@ -110,7 +108,6 @@ contains
 
   !> Reads the header of a file; blank where the file is shorter.
   subroutine read_head(path, found, status)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> The head
     character(len=head_length), intent(out) :: found
@@ -129,7 +126,6 @@ contains
 
   !> Length and checksum of the body of a file.
   subroutine read_body(path, bytes, crc, status)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Length
     integer(long), intent(out) :: bytes

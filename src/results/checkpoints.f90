@@ -49,9 +49,7 @@ contains
   !> Starts a checkpoint; the previous one is kept until this one is closed.
   subroutine open_for_saving(self, communicator, path, provenance, error)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> The run, deck included
     type(provenance_t), intent(in) :: provenance
@@ -68,9 +66,7 @@ contains
   !> Opens a checkpoint, after a check of its validity.
   subroutine open_for_loading(self, communicator, path, error)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Raised if it cannot be read
     type(error_t), allocatable, intent(inout) :: error
@@ -106,7 +102,6 @@ contains
 
   !> Finds the newest valid checkpoint of a folder.
   subroutine newest_checkpoint(communicator, folder, path, error)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the folder
     character(len=*), intent(in) :: folder
@@ -138,7 +133,6 @@ contains
 
   !> Renames the checkpoint of an earlier run, which must not be taken for that of the new run.
   subroutine retire_checkpoint(communicator, path, retired, error)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Path of the checkpoint
     character(len=*), intent(in) :: path
@@ -186,7 +180,6 @@ contains
 
   !> Folder of a file.
   pure function folder(path)
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Its folder, with a slash at the end
     character(len=:), allocatable :: folder
@@ -198,7 +191,6 @@ contains
   !> Visits one real.
   subroutine real_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item
     real(wp), intent(inout) :: value
@@ -215,7 +207,6 @@ contains
   !> Visits one integer.
   subroutine integer_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item
     integer, intent(inout) :: value
@@ -232,7 +223,6 @@ contains
   !> Visits one logical, stored as 0 or 1.
   subroutine logical_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item
     logical, intent(inout) :: value
@@ -246,7 +236,6 @@ contains
   !> Visits a list of reals.
   subroutine reals_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item; not allocated counts as length 0 when saving
     real(wp), allocatable, intent(inout) :: value(:)
@@ -265,7 +254,6 @@ contains
   !> Visits a list of integers.
   subroutine integers_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item; not allocated counts as length 0 when saving
     integer, allocatable, intent(inout) :: value(:)
@@ -284,7 +272,6 @@ contains
   !> Visits a table of reals.
   subroutine table_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> The item; not allocated counts as 0 by 0 when saving
     real(wp), allocatable, intent(inout) :: value(:, :)
@@ -305,7 +292,6 @@ contains
   !> Visits a field distributed over the ranks, stored in global order.
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(checkpoint_archive_t), intent(inout) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> Global columns (from 1) of the leading columns of `value`
     integer, intent(in) :: columns(:)
@@ -326,11 +312,9 @@ contains
   !> Extents of a stored list or table; zeros, which do not fit, if it has another rank or does not exist.
   function extents_of(self, name, rank) result(extents)
     class(checkpoint_archive_t), intent(in) :: self
-    !> Name
     character(len=*), intent(in) :: name
     !> 1: a list, 2: a table
     integer, intent(in) :: rank
-    !> The extents
     integer, allocatable :: extents(:)
     integer :: i
 

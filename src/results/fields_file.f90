@@ -74,7 +74,6 @@ contains
   !> Starts the file, replacing one of that name.
   subroutine create(self, communicator, base, provenance, part, error)
     class(fields_file_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
@@ -98,7 +97,6 @@ contains
 
   !> Checks, before any change, that an existing file is that of the deck.
   subroutine check_deck(communicator, base, deck, error)
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
@@ -124,7 +122,6 @@ contains
   !> Continues an existing file: times after the checkpoint are removed. Without a file a new one is started.
   subroutine resume(self, communicator, base, provenance, part, last_time, error)
     class(fields_file_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base
@@ -236,7 +233,6 @@ contains
     character(len=*), intent(in) :: name
     !> The field (components by points, those owned first)
     real(wp), intent(in) :: values(:, :)
-    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
@@ -251,7 +247,6 @@ contains
     character(len=*), intent(in) :: name
     !> The field (components by elements)
     real(wp), intent(in) :: values(:, :)
-    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
 
     if (allocated(error)) return
@@ -293,7 +288,6 @@ contains
   !> Stores the names of the files.
   subroutine name_files(self, communicator, base, part)
     class(fields_file_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
     !> Folder and name of the files, without suffix
     character(len=*), intent(in) :: base

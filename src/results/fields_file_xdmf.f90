@@ -90,7 +90,6 @@ contains
     character(len=*), intent(in) :: part
     !> One grid per time
     type(line_t), intent(in) :: grids(:)
-    !> Raised if it cannot be written
     type(error_t), allocatable, intent(inout) :: error
     type(output_stream_t) :: file
     integer :: i
@@ -135,7 +134,6 @@ contains
   pure function numbered(number) result(name)
     !> The number, from 1
     integer, intent(in) :: number
-    !> The name
     character(len=8) :: name
 
     write (name, '(i8.8)') number
@@ -155,7 +153,6 @@ contains
 
   !> A name with the special characters of XML escaped.
   pure function escaped(name)
-    !> The name
     character(len=*), intent(in) :: name
     !> As XML requires it
     character(len=:), allocatable :: escaped

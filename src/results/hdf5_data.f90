@@ -199,7 +199,6 @@ contains
     integer, intent(in) :: height
     !> Number of columns on all ranks
     integer, intent(in) :: global_columns
-    !> The extents
     integer, allocatable :: extents(:)
 
     extents = [height, global_columns]
@@ -226,7 +225,6 @@ contains
     type(hdf5_file_t), intent(in) :: file
     !> Extents of the array
     integer, intent(in) :: extents(:)
-    !> The columns
     integer, allocatable :: columns(:)
 
     columns = all_columns(extents)
@@ -237,7 +235,6 @@ contains
   pure function all_columns(extents) result(columns)
     !> Extents of the array; none: a scalar
     integer, intent(in) :: extents(:)
-    !> The columns
     integer, allocatable :: columns(:)
     integer :: i
 

@@ -62,7 +62,6 @@ contains
     class(hdf5_file_t), intent(inout) :: self
     !> The ranks that share it
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Bytes kept free at the start of the file: 0, or a power of two of at least 512
     integer, intent(in) :: head
@@ -87,7 +86,6 @@ contains
     class(hdf5_file_t), intent(inout) :: self
     !> The ranks that share it
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> The file is to be written to as well
     logical, intent(in) :: writable
@@ -118,7 +116,6 @@ contains
   !> Writes the reserve file; without space for it the error is set before HDF5 opens the file.
   subroutine write_reserve(self, path)
     class(hdf5_file_t), intent(inout) :: self
-    !> Path of the file
     character(len=*), intent(in) :: path
     type(output_stream_t) :: stream
 

@@ -17,7 +17,6 @@ contains
     type(hdf5_file_t), intent(in) :: file
     !> Path inside the file
     character(len=*), intent(in) :: name
-    !> The extents
     integer, allocatable :: extents(:)
     integer(hid_t) :: dataset, space
     integer(hsize_t), allocatable :: now(:), most(:)

@@ -51,9 +51,7 @@ contains
   !> Starts a history, replacing one of that name.
   subroutine create(self, communicator, path, columns, whole, error)
     class(history_file_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
@@ -80,9 +78,7 @@ contains
   !> run, the history is not changed.
   subroutine resume(self, communicator, path, columns, whole, rows_to_keep, last_row, error)
     class(history_file_t), intent(inout) :: self
-    !> The ranks
     type(communicator_t), intent(in) :: communicator
-    !> Path of the file
     character(len=*), intent(in) :: path
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)

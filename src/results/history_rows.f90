@@ -16,7 +16,6 @@ contains
   pure function header(columns) result(line)
     !> Names of the columns
     character(len=*), intent(in) :: columns(:)
-    !> The line
     character(len=:), allocatable :: line
     integer :: i
 
@@ -33,7 +32,6 @@ contains
     character(len=*), intent(in) :: columns(:)
     !> Integer columns
     logical, intent(in) :: whole(:)
-    !> The widths
     integer :: widths(size(columns))
 
     widths = max(len_trim(columns), merge(longest_count, longest_real, whole))
@@ -47,7 +45,6 @@ contains
     logical, intent(in) :: whole(:)
     !> Characters of each column
     integer, intent(in) :: widths(:)
-    !> The line
     character(len=:), allocatable :: line
     character(len=:), allocatable :: number
     integer :: i, first, last

@@ -17,10 +17,8 @@ module output_deck
   character(len=*), parameter, public :: output_group = 'output', key_fields_every = 'fields_every', &
                                          key_history_every = 'history_every', key_force_filter = 'force_filter'
   character(len=*), parameter :: group = output_group
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: output_group_row = &
     'output | settings | Folder of the results, intervals of output, and fields.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: output_rows(*) = [character(len=key_row_length) :: &
     'output | directory | text | 1 | - | ''.'' | not empty | &
       &Folder of the results, made if it is not there; --output overrides it.', &
@@ -55,7 +53,6 @@ contains
   subroutine fill_output(settings, output)
     !> Keys in effect; receives the default fields
     type(settings_t), intent(inout) :: settings
-    !> Receives them
     type(output_t), intent(inout) :: output
 
     output%directory = settings%text_of(group, 'directory')
@@ -73,7 +70,6 @@ contains
     type(settings_t), intent(in) :: settings
     !> First step and end of the run
     real(wp), intent(in) :: step, end
-    !> Faults and remarks are added
     type(problems_t), intent(inout) :: problems
     character(len=*), parameter :: keys(*) = [character(len=16) :: 'history_every', 'fields_every', 'checkpoint_every']
     real(wp) :: every

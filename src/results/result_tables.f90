@@ -74,7 +74,6 @@ contains
   pure integer function row_named(rows, name) result(place)
     !> The table
     character(len=*), intent(in) :: rows(:)
-    !> The name
     character(len=*), intent(in) :: name
 
     do place = size(rows), 1, -1
@@ -145,7 +144,6 @@ contains
 
   !> True if a word is one of several.
   pure logical function is_one_of(word, words)
-    !> A word
     character(len=*), intent(in) :: word
     !> Words separated by blanks
     character(len=*), intent(in) :: words
@@ -187,7 +185,6 @@ contains
     character(len=*), intent(in) :: heading
     !> The table
     character(len=*), intent(in) :: rows(:)
-    !> Lines are added
     type(line_t), allocatable, intent(inout) :: lines(:)
     integer, allocatable :: widths(:)
     integer :: i, j
@@ -207,7 +204,6 @@ contains
     pure function padded(row) result(line)
       !> The row
       character(len=*), intent(in) :: row
-      !> The line
       character(len=:), allocatable :: line
       integer :: k
 

@@ -145,7 +145,6 @@ contains
   pure function bar(fraction)
     !> Part to fill
     real(wp), intent(in) :: fraction
-    !> The bar
     character(len=bar_length + 2) :: bar
     integer :: filled
 

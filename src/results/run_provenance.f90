@@ -56,7 +56,6 @@ contains
     character(len=*), intent(in) :: deck
     !> Number of ranks
     integer, intent(in) :: ranks
-    !> The provenance
     type(provenance_t) :: run
     character(len=8) :: date
     character(len=10) :: time

@@ -42,7 +42,6 @@ contains
   !> reduced stiffness then, towards the origin. Membrane forces are not reduced by delaminations.
   pure real(wp) function stiffened_duration(setup, scales, duration, deflection) result(stiffened)
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     !> Duration and largest deflection by the elastic impact
     real(wp), intent(in) :: duration, deflection

@@ -50,7 +50,6 @@ contains
 
   !> Runs a preliminary elastic impact by the average acceleration, which is generalised-alpha without damping.
   pure function run_elastic_impact(plate, impactor, law, step, max_steps, to_the_end) result(elastic)
-    !> Modes of the plate
     type(modal_plate_t), intent(in) :: plate
     type(impactor_parameters_t), intent(in) :: impactor
     type(indentation_law_t), intent(in) :: law
@@ -144,7 +143,6 @@ contains
   !> impactor at the end.
   pure function figures_of(elastic) result(figures)
     type(elastic_impact_t), intent(in) :: elastic
-    !> The figures
     real(wp) :: figures(5)
 
     figures = [elastic%peak, elastic%peak_time, elastic%duration, elastic%deflection, elastic%velocity]

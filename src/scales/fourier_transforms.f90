@@ -77,7 +77,6 @@ contains
     real(wp), intent(in) :: angle(:), weight(:)
     !> Number of sums, a power of two
     integer, intent(in) :: number
-    !> The sums
     real(wp) :: sums(number)
     complex(wp), allocatable :: grid(:)
     real(wp) :: bell(1 - spread_points:spread_points), narrow(1 - spread_points:spread_points)

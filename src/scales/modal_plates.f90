@@ -56,7 +56,6 @@ contains
     real(wp), intent(in) :: cutoff
     !> Shape without stress; flat if absent
     type(shallow_shape_t), intent(in), optional :: shape
-    !> The modes
     type(modal_plate_t) :: plate
     real(wp), allocatable :: x(:, :), y(:, :)
     real(wp), allocatable :: frequency(:), weight(:), wave_number(:, :)

@@ -49,7 +49,6 @@ contains
 
   !> A plate at rest.
   pure function start_response(plate, step, steps, to_the_end) result(self)
-    !> Modes of the plate
     type(modal_plate_t), intent(in) :: plate
     !> Step
     real(wp), intent(in) :: step

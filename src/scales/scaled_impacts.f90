@@ -42,13 +42,11 @@ contains
   pure function largest_scaling(setup, scales, limit, bound) result(found)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     !> Largest factor
     real(wp), intent(in) :: limit
     !> Largest fraction permitted for both
     real(wp), intent(in) :: bound
-    !> The factor
     type(scaled_impact_t) :: found
     type(setup_elastic_impact_t) :: elastic
     type(elastic_impact_t) :: exact

@@ -84,7 +84,6 @@ contains
   pure function start_elastic_impact(setup, scales) result(elastic)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     type(setup_elastic_impact_t) :: elastic
 
@@ -102,7 +101,6 @@ contains
     real(wp), intent(in) :: end
     !> Side of the elements; 0: infinitely fine
     real(wp), intent(in) :: cell
-    !> The impacts
     type(elastic_impact_t) :: run
     type(modal_plate_t) :: plate
     integer :: steps
@@ -121,7 +119,6 @@ contains
     type(setup_elastic_impact_t), intent(in) :: self
     !> End of the run; 0: not known
     real(wp), intent(in) :: end
-    !> The impacts
     type(elastic_impact_t) :: run
     real(wp) :: horizon
 
@@ -134,7 +131,6 @@ contains
   pure function expected_scales_of(setup, scales, step, end, edge, scaling) result(expected)
     !> The setup, with an impactor that has a velocity
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t), intent(in) :: scales
     !> Step and end of the run
     real(wp), intent(in) :: step, end

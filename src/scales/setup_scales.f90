@@ -56,7 +56,6 @@ contains
   pure function scales_of(setup) result(scales)
     !> The setup, checked
     type(setup_t), intent(in) :: setup
-    !> Its scales
     type(setup_scales_t) :: scales
     type(section_t) :: section, struck
     type(laminate_t) :: local
@@ -134,7 +133,6 @@ contains
     real(wp), intent(in) :: cutoff
     !> Factor of rotary and in-plane inertia, 1 if absent
     real(wp), intent(in), optional :: scaling
-    !> The modes
     type(modal_plate_t) :: plate
     type(section_t) :: section
     type(shallow_shape_t) :: shape

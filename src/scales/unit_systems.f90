@@ -68,7 +68,6 @@ contains
   pure function base_units(system) result(base)
     !> Index of the system
     integer, intent(in) :: system
-    !> The three
     real(wp) :: base(3)
 
     base = bases(:, system)
@@ -122,7 +121,6 @@ contains
     integer, intent(in) :: quantity
     !> Index of the system
     integer, intent(in) :: system
-    !> Its symbol
     character(len=:), allocatable :: name
 
     name = trim(unit_of(dimension_of(quantity), system))

@@ -33,7 +33,6 @@ contains
   subroutine find_force_change(model, operator, part, new, correction, error)
     !> Mesh, numbering and interfaces of the plate
     type(model_t), target, intent(in) :: model
-    !> The factored operator
     type(tangent_operator_t), target, intent(inout) :: operator
     !> Factor of the correction that will be applied
     real(wp), intent(in) :: part

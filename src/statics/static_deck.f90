@@ -9,10 +9,8 @@ module static_deck
 
   !> Name that checks across groups use.
   character(len=*), parameter, public :: static_group = 'static', key_dissipation = 'dissipation'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: static_group_row = &
     'static | optional | Quasi-static load steps under pressure and lines, or under the travel of an impactor.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: static_rows(*) = [character(len=key_row_length) :: &
     'static | steps | integer | 1 | - | 1 | >= 1, <= 100000 | &
       &Number of equal load steps.', &
@@ -25,7 +23,6 @@ contains
   !> Fills in the load steps.
   subroutine fill_static(settings, loading)
     type(settings_t), intent(in) :: settings
-    !> Receives them
     type(loading_t), intent(inout) :: loading
 
     loading%steps = settings%integer_of(static_group, 'steps')

@@ -12,10 +12,8 @@ module adapt_deck
   character(len=*), parameter, public :: adapt_group = 'adapt', key_growth_step = 'growth_step'
   !> Keys that determine the length of adaptive steps.
   character(len=*), parameter, public :: keys_of_lengths = 'rule tolerance stress_change'
-  !> Row of the group.
   character(len=group_row_length), parameter, public :: adapt_group_row = &
     'adapt | settings | Adaptive time step and the rule for renewing the factored stiffness.'
-  !> Rows of the keys.
   character(len=key_row_length), parameter, public :: adapt_rows(*) = [character(len=key_row_length) :: &
     'adapt | on | logical | 1 | - | .true. | .true. .false. | &
       &Whether the time step adapts; without the group: .false.', &
@@ -42,7 +40,6 @@ contains
   subroutine fill_adapt(settings, adapt)
     !> Keys in effect; receives the default without the group
     type(settings_t), intent(inout) :: settings
-    !> Receives them
     type(adapt_t), intent(inout) :: adapt
 
     if (.not. settings%has_group(adapt_group)) call settings%derive(adapt_group, 'on', '.false.', .false.)

@@ -48,7 +48,6 @@ contains
   subroutine start(self, model, stepping, linear_solver, resumed, error)
     class(implicit_stepper_t), intent(out) :: self
     type(model_t), intent(in) :: model
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> True: a state will be loaded, so that no initial state is computed

@@ -84,7 +84,6 @@ contains
   !> Updates the step length after an accepted step.
   pure subroutine accept(self, stepping, step, iterations, lag_iterations, stress_change)
     class(step_controller_t), intent(inout) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Step taken
     real(wp), intent(in) :: step
@@ -117,7 +116,6 @@ contains
   !> contact. All later steps are this one times a power of two, and an integer number of them reaches the first event.
   pure subroutine begin(self, stepping, remaining)
     class(step_controller_t), intent(inout) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Time to the first event
     real(wp), intent(in) :: remaining
@@ -142,7 +140,6 @@ contains
   !> tolerance.
   pure real(wp) function shortest(self, stepping, damaged)
     class(step_controller_t), intent(in) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> True once plies have failed or delaminations have grown
     logical, intent(in) :: damaged
@@ -154,7 +151,6 @@ contains
   !> Halves the step by the error of an accepted one, or doubles it if this saves more than the new factorization costs.
   pure subroutine adapt_to_error(self, stepping, step, error, remaining, is_over, gear, damaged)
     class(step_controller_t), intent(inout) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Step taken, and its error relative to the tolerance
     real(wp), intent(in) :: step, error
@@ -224,7 +220,6 @@ contains
   !> each step within the limit of growth.
   pure subroutine limit_by_fronts(self, stepping, ratio, extended)
     class(step_controller_t), intent(inout) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Largest ratio of energy release rate to its critical value in the step
     real(wp), intent(in) :: ratio
@@ -247,7 +242,6 @@ contains
   !> Doubles a step that was shortened because plies fail, once the lag of damage is small.
   pure subroutine limit_by_ply_damage(self, stepping, damage_lag)
     class(step_controller_t), intent(inout) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> Lag of damage in the last step, relative to its limit
     real(wp), intent(in) :: damage_lag
@@ -272,7 +266,6 @@ contains
   !> iterations have cost about as much as a factorization.
   pure logical function renewal_due(self, stepping, nonlinear, mass_ratio, deflection_change, thickness) result(due)
     class(step_controller_t), intent(in) :: self
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     !> True: the stiffness depends on the deflection
     logical, intent(in) :: nonlinear

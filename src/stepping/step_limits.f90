@@ -32,7 +32,6 @@ contains
   !> Largest ratio of a step to the previous one allowed by the integrators.
   pure real(wp) function growth_limit(model, stepping, controller) result(ratio)
     type(model_t), intent(in) :: model
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     type(step_controller_t), intent(in) :: controller
 

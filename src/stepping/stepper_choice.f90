@@ -12,7 +12,6 @@ contains
 
   !> Makes a stepper of the kind that the parameters ask for, not started.
   subroutine choose_stepper(stepping, stepper)
-    !> Parameters of steps
     type(stepping_t), intent(in) :: stepping
     class(stepper_t), allocatable, intent(out) :: stepper
 

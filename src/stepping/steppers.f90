@@ -59,7 +59,6 @@ module steppers
       import :: stepper_t, model_t, stepping_t, linear_solver_parameters_t, error_t
       class(stepper_t), intent(out) :: self
       type(model_t), intent(in) :: model
-      !> Parameters of steps
       type(stepping_t), intent(in) :: stepping
       type(linear_solver_parameters_t), intent(in) :: linear_solver
       !> True: a state will be loaded, so that no initial state is computed

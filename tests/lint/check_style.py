@@ -32,6 +32,8 @@ SPELLINGS = {
 }
 # Arguments with one meaning in all of the program, which need no documentation.
 COMMON_ARGUMENTS = {"self", "model", "deck", "settings", "problems", "now", "archive", "log", "error", "law"}
+# Arguments that their names explain where they have no documentation.
+NAMED_ARGUMENTS = {"group", "key", "name", "path", "word"}
 # A comment of a common argument that says more, such as what is changed in it, has more words than this.
 MAX_COMMON_WORDS = 4
 # Words that say nothing of an argument.
@@ -167,7 +169,7 @@ def needs_no_doc(text):
     """Whether name and type of an argument say what it is."""
     names, of_type = names_and_type(text)
     known = words_of(of_type.replace("_", " "))
-    return all(name in COMMON_ARGUMENTS or words_of(name.replace("_", " ")) <= known for name in names)
+    return all(name in COMMON_ARGUMENTS | NAMED_ARGUMENTS or words_of(name.replace("_", " ")) <= known for name in names)
 
 
 def is_redundant(text, doc):
