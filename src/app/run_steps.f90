@@ -44,10 +44,20 @@ contains
         return
       end if
       call record%observe(model, stepper%now, stepper%steps_between_stages())
-      if (modulo(stepper%now%step, steps) == 0 .or. stepper%now%time >= event) return
+      if (check_is_due(deck%output, stepper%now%step, steps) .or. stepper%now%time >= event) return
       if (row_is_due(deck%output, stepper%now%step)) return
     end do
   end subroutine advance_to_output
+
+  !> True: a check is due by the number of steps, and not before long by the next row, which is one, too.
+  pure logical function check_is_due(output, step, between)
+    type(output_t), intent(in) :: output
+    !> Accepted steps, and steps between two checks
+    integer, intent(in) :: step, between
+
+    check_is_due = modulo(step, between) == 0
+    if (.not. output%history_every > 0) check_is_due = check_is_due .and. output%steps_between_rows >= between
+  end function check_is_due
 
   !> True: a row of the history is due by the number of steps.
   pure logical function row_is_due(output, step)

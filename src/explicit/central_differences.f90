@@ -181,7 +181,11 @@ contains
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call change_length(self, model, v, 1)
-      call self%onsets%find(model, now%step, self%stacks, now%interfaces%cohesive, u)
+      if (self%onsets%is_due(now%step)) then
+        call self%store_history()
+        call self%onsets%find(model, self%stacks, now%interfaces%cohesive, u, self%laws_changed)
+        if (self%laws_changed .and. allocated(self%batches)) call self%batches%load(self%stacks%history)
+      end if
       call model%profile%leave()
       call model%halo%update(u)
     end associate
@@ -228,6 +232,7 @@ contains
     call self%rigs%circles%prepare(model, self%inertia%inverse(7, :))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
+    call self%store_history()
     if (allocated(self%batches)) deallocate (self%batches)
     self%prepared = self%steps
   end subroutine prepare
@@ -361,6 +366,7 @@ contains
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
+    call self%store_history()
     call archive%item('explicit/step', self%steps%now)
     call archive%item('explicit/step_before', self%steps%last)
     call archive%item('explicit/initial_work', self%initial_work)

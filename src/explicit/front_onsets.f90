@@ -28,6 +28,7 @@ module front_onsets
     !> Values of the points of the mesh that this rank needs, (7, points of the mesh)
     real(wp), allocatable, private :: values(:, :)
   contains
+    procedure :: is_due
     procedure :: find
   end type front_onsets_t
 
@@ -46,27 +47,35 @@ contains
     allocate (self%values(7, model%mesh%points()), source=0.0_wp)
   end function create_front_onsets
 
-  !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
-  subroutine find(self, model, step, stacks, cohesive, u)
-    class(front_onsets_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+  !> True in steps with a search.
+  pure logical function is_due(self, step)
+    class(front_onsets_t), intent(in) :: self
     !> Number of the step
     integer, intent(in) :: step
+
+    is_due = allocated(self%values) .and. modulo(step, steps_between_searches) == 0
+  end function is_due
+
+  !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
+  subroutine find(self, model, stacks, cohesive, u, found)
+    class(front_onsets_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
     type(interface_stacks_t), intent(inout) :: stacks
     !> The interfaces; receive the laws
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
+    !> True if there are such points on this rank; otherwise not changed
+    logical, intent(inout) :: found
     integer :: i
 
-    if (.not. allocated(self%values) .or. modulo(step, steps_between_searches) > 0) return
     if (cohesive%is_held) return
     call gather(self, model, stacks, cohesive, u)
     do i = 1, size(self%stencils%points)
       associate (p => self%stencils%points(i))
         if (cohesive%points(p)%damage > 0 .or. cohesive%by_energy(p) .or. .not. stacks%may_separate(p)) cycle
         if (model%setup%delaminations(model%zone(p))%growth_control /= growth_by_energy) cycle
-        call find_at(self, model, i, stacks, cohesive, u)
+        call find_at(self, model, i, stacks, cohesive, u, found)
       end associate
     end do
   end subroutine find
@@ -96,7 +105,7 @@ contains
   end subroutine gather
 
   !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
-  pure subroutine find_at(self, model, i, stacks, cohesive, u)
+  pure subroutine find_at(self, model, i, stacks, cohesive, u, found)
     type(front_onsets_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Index of the point among those with an interface
@@ -106,6 +115,8 @@ contains
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
+    !> Set to true if it has
+    logical, intent(inout) :: found
     real(wp) :: rate, largest, strength, opening
     integer :: d, direction
 
@@ -124,8 +135,9 @@ contains
       if (largest < onset_share) return
       call reduce_law(model%cohesive_laws(model%zone(p)), u(1:3, p), stacks%history%forces(:, p)/stacks%area(p), &
                       taken(self, of_jumps, near(behind, direction)), strength, opening)
-      if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
-        call stacks%begin_softening(model, cohesive, p, [strength, opening], u)
+      if (.not. (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1))) return
+      call stacks%begin_softening(model, cohesive, p, [strength, opening], u)
+      found = .true.
     end associate
   end subroutine find_at
 

@@ -39,7 +39,6 @@ module interface_stacks
     !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
-    procedure :: begin_step
     procedure :: damp
     !> Checkpoint.
     procedure :: visit
@@ -59,6 +58,10 @@ module interface_stacks
     real(wp), allocatable :: stiffness(:, :)
     !> Twice the energy of the undamaged interface at a node below which damage neither starts nor grows, (points)
     real(wp), allocatable :: min_onset(:)
+    !> Factor of the strengths with which it was found; 0: not yet, (points)
+    real(wp), allocatable, private :: strength(:)
+    !> True: it was found with damage held
+    logical, private :: is_held = .false.
     !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
     !> Square of the step times the compliance of the layers, diagonal and off-diagonal entries, along x, y and z, (3,
@@ -91,17 +94,6 @@ contains
               self%work(points), self%lost(2, points), source=0.0_wp)
     allocate (self%friction(points))
   end function create_jump_history
-
-  !> The last change of each jump is the earlier one of the step that begins. Its own, `change`, has no meaning until
-  !> the jump has moved: until then it is that of two steps before.
-  pure subroutine begin_step(self)
-    class(jump_history_t), intent(inout) :: self
-    real(wp), allocatable :: before(:, :)
-
-    call move_alloc(self%earlier, before)
-    call move_alloc(self%change, self%earlier)
-    call move_alloc(before, self%change)
-  end subroutine begin_step
 
   !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
   !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
@@ -172,7 +164,7 @@ contains
       self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
       self%area(inertia%dependents(i)) = 0
     end do
-    allocate (self%stiffness(2, points), self%min_onset(points), self%diagonal(3, points), &
+    allocate (self%stiffness(2, points), self%min_onset(points), self%strength(points), self%diagonal(3, points), &
               self%off_diagonal(3, points), self%factors(2, 3, points), source=0.0_wp)
     self%history = create_jump_history(points)
     do i = 1, model%distribution%owned
@@ -209,7 +201,7 @@ contains
     end do
   end function last_layer
 
-  !> Onset energies: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode. The
+  !> Onset energies where the strengths have changed: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode. The
   !> interfaces of a node below a clamp with a force do not separate: the clamp acts on one node of the mesh, which
   !> could not carry a force that lifts the upper layers.
   pure subroutine find_onsets(self, model, cohesive)
@@ -220,8 +212,11 @@ contains
     integer :: i
 
     if (.not. allocated(cohesive%cohesive)) return
+    if (self%is_held .neqv. cohesive%is_held) self%strength = 0
+    self%is_held = cohesive%is_held
     do i = 1, model%distribution%owned
-      if (model%zone(i) == 0) cycle
+      if (model%zone(i) == 0 .or. .not. abs(cohesive%strength(i) - self%strength(i)) > 0) cycle
+      self%strength(i) = cohesive%strength(i)
       law = cohesive%law_at(model, i)
       self%min_onset(i) = 2*self%area(i)*min(law%toughness_opening, law%toughness_shear)/law%failure_ratio
     end do

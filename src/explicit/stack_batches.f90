@@ -1,5 +1,6 @@
 !> Stacks of layers, several at a time: constants of stacks with the same number of layers and of the same kind, lane
-!> first, and the states of their surfaces.
+!> first, and what changes in a step besides the motion of the points: jumps, losses and surfaces. These stay with the
+!> batches, and are stored at the points where others need them there.
 module stack_batches
   use element_batches, only: lanes
   use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
@@ -11,7 +12,7 @@ module stack_batches
   use surface_friction, only: sliding_t
   implicit none
   private
-  public :: stack_batch_t, stack_batches_t, new_stack_batches, load_states, store_states
+  public :: stack_batch_t, stack_batches_t, new_stack_batches, store_points
 
   !> Constants of the surfaces, (lanes, n) each, of laws without flaws.
   type, public :: surface_lanes_t
@@ -26,42 +27,6 @@ module stack_batches
     !> True: surfaces do not penetrate each other
     logical, allocatable :: contact(:, :)
   end type surface_lanes_t
-
-  !> Stacks, and their constants in a step of the present length.
-  type :: stack_batch_t
-    !> Number of interfaces, and number of stacks
-    integer :: n = 0, members = 0
-    !> True: some interfaces are damaged. True: frames or lines constrain layers
-    logical :: damaged = .false., constrained = .false.
-    !> Stack and first point of each lane; others than those of the members are computed and not stored
-    integer :: stack(lanes) = 0, first(lanes) = 0
-    !> Height of the interface below each layer, (lanes, n)
-    real(wp), allocatable :: height(:, :)
-    !> Inverse inertia of the layers, (lanes, 7, n + 1)
-    real(wp), allocatable :: inverse(:, :, :)
-    !> Undamaged stiffness of shear and opening, force per jump, (lanes, 2, n)
-    real(wp), allocatable :: stiffness(:, :, :)
-    !> Square of the step times the compliance of the layers, diagonal and off-diagonal entries, (lanes, 3, n)
-    real(wp), allocatable :: diagonal(:, :, :), off_diagonal(:, :, :)
-    !> Factors of the tridiagonal systems of undamaged stacks, (lanes, 2, 3, n)
-    real(wp), allocatable :: factors(:, :, :, :)
-    !> Surfaces, of damaged stacks only
-    type(surface_lanes_t) :: surfaces
-  end type stack_batch_t
-
-  !> The batches of all stacks of this rank, in a step of the present length.
-  type :: stack_batches_t
-    !> The batches, with room for further ones
-    type(stack_batch_t), allocatable :: list(:)
-    !> Number of batches that have stacks, or had until these became damaged
-    integer :: filled = 0
-    !> Batch with free lanes for each number of layers and kind: 1 if constrained plus 2 if damaged; 0: none
-    integer, allocatable, private :: open(:, :)
-    !> Number of damaged stacks
-    integer, private :: damaged = 0
-  contains
-    procedure :: move_damaged
-  end type stack_batches_t
 
   !> Surfaces of an interface of damaged stacks, a value for each lane.
   type, public :: surface_states_t
@@ -83,14 +48,70 @@ module stack_batches
     real(wp) :: start(lanes, 3), last(lanes, 3), earlier(lanes, 3)
   end type surface_states_t
 
+  !> Jumps of stacks in earlier steps.
+  type, public :: jump_lanes_t
+    !> Change of the jumps in the last step and in the one before, and forces on them in the last step, (lanes, 3, n)
+    real(wp), allocatable :: last(:, :, :), earlier(:, :, :), forces(:, :, :)
+    !> Energy dissipated by contact, and algorithmic dissipation, (lanes, 2, n)
+    real(wp), allocatable :: lost(:, :, :)
+  contains
+    procedure :: load => load_jumps
+    procedure :: store => store_jumps
+  end type jump_lanes_t
+
+  !> Stacks, and their constants in a step of the present length.
+  type :: stack_batch_t
+    !> Number of interfaces, and number of stacks
+    integer :: n = 0, members = 0
+    !> True: some interfaces are damaged. True: frames or lines constrain layers
+    logical :: damaged = .false., constrained = .false.
+    !> Stack and first point of each lane; others than those of the members are computed and not stored
+    integer :: stack(lanes) = 0, first(lanes) = 0
+    !> Height of the interface below each layer, (lanes, n)
+    real(wp), allocatable :: height(:, :)
+    !> Inverse inertia of the layers, (lanes, 7, n + 1)
+    real(wp), allocatable :: inverse(:, :, :)
+    !> Undamaged stiffness of shear and opening, force per jump, (lanes, 2, n)
+    real(wp), allocatable :: stiffness(:, :, :)
+    !> Square of the step times the compliance of the layers, diagonal and off-diagonal entries, (lanes, 3, n)
+    real(wp), allocatable :: diagonal(:, :, :), off_diagonal(:, :, :)
+    !> Factors of the tridiagonal systems of undamaged stacks, (lanes, 2, 3, n)
+    real(wp), allocatable :: factors(:, :, :, :)
+    !> Surfaces, of damaged stacks only
+    type(surface_lanes_t) :: surfaces
+    !> Their states, (n)
+    type(surface_states_t), allocatable :: states(:)
+    !> Jumps in earlier steps
+    type(jump_lanes_t), allocatable :: jumps
+  end type stack_batch_t
+
+  !> The batches of all stacks of this rank, in a step of the present length.
+  type :: stack_batches_t
+    !> The batches, with room for further ones
+    type(stack_batch_t), allocatable :: list(:)
+    !> Number of batches that have stacks, or had until these became damaged
+    integer :: filled = 0
+    !> Batch with free lanes for each number of layers and kind: 1 if constrained plus 2 if damaged; 0: none
+    integer, allocatable, private :: open(:, :)
+    !> Number of damaged stacks
+    integer, private :: damaged = 0
+  contains
+    procedure :: move_damaged
+    procedure :: update_laws
+    procedure :: damp
+    procedure :: store
+    procedure :: load
+  end type stack_batches_t
+
 contains
 
   !> Batches of all stacks. Stacks of the same number of layers and of the same kind share batches.
-  pure function new_stack_batches(stacks, inertia, model, constrained) result(self)
+  pure function new_stack_batches(stacks, inertia, model, cohesive, constrained) result(self)
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(model_t), intent(in) :: model
+    type(cohesive_interfaces_t), intent(in) :: cohesive
     !> True for stacks with layers that frames or lines constrain
     logical, intent(in) :: constrained(:)
     type(stack_batches_t) :: self
@@ -101,37 +122,44 @@ contains
     allocate (self%list(2*(size(constrained)/lanes) + 6*layers), self%open(layers, 0:3))
     self%open = 0
     do i = 1, size(constrained)
-      call join(self, i, constrained(i), stacks, inertia, model)
+      call join(self, i, constrained(i), stacks, inertia, model, cohesive)
     end do
     self%damaged = count(stacks%damaged)
   end function new_stack_batches
 
   !> Moves stacks that have become damaged to batches of damaged stacks.
-  pure subroutine move_damaged(self, stacks, inertia, model)
+  pure subroutine move_damaged(self, stacks, inertia, model, cohesive)
     class(stack_batches_t), intent(inout) :: self
-    type(interface_stacks_t), intent(in) :: stacks
+    !> The stacks; receive the history of the jumps of these batches
+    type(interface_stacks_t), intent(inout) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(model_t), intent(in) :: model
+    type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: b, lane, i
 
     if (count(stacks%damaged) == self%damaged) return
     self%damaged = count(stacks%damaged)
     do b = 1, self%filled
       if (self%list(b)%damaged) cycle
+      associate (batch => self%list(b))
+        if (.not. any(stacks%damaged(batch%stack(:batch%members)))) cycle
+        call batch%jumps%store(batch%first, 1, batch%members, stacks%history)
+      end associate
       do lane = self%list(b)%members, 1, -1
         i = self%list(b)%stack(lane)
         if (.not. stacks%damaged(i)) cycle
         ! The last stack takes its lane.
-        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, model)
+        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, model, &
+                       cohesive)
         self%list(b)%members = self%list(b)%members - 1
-        call join(self, i, self%list(b)%constrained, stacks, inertia, model)
+        call join(self, i, self%list(b)%constrained, stacks, inertia, model, cohesive)
       end do
     end do
   end subroutine move_damaged
 
   !> Adds a stack to a batch with free lanes, or to a new one, which it fills.
-  pure subroutine join(self, i, constrained, stacks, inertia, model)
+  pure subroutine join(self, i, constrained, stacks, inertia, model, cohesive)
     type(stack_batches_t), intent(inout) :: self
     !> Index of the stack
     integer, intent(in) :: i
@@ -141,6 +169,7 @@ contains
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(model_t), intent(in) :: model
+    type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: last
 
     associate (open => self%open(stacks%layers(i), merge(1, 0, constrained) + merge(2, 0, stacks%damaged(i))))
@@ -154,7 +183,7 @@ contains
       end if
       associate (batch => self%list(open))
         batch%members = batch%members + 1
-        call set_lanes(batch, batch%members, last, i, stacks, inertia, model)
+        call set_lanes(batch, batch%members, last, i, stacks, inertia, model, cohesive)
       end associate
     end associate
   end subroutine join
@@ -171,8 +200,11 @@ contains
     self%damaged = damaged
     self%constrained = constrained
     allocate (self%height(lanes, n), self%inverse(lanes, 7, n + 1), self%stiffness(lanes, 2, n), &
-              self%diagonal(lanes, 3, n), self%off_diagonal(lanes, 3, n), self%factors(lanes, 2, 3, n))
+              self%diagonal(lanes, 3, n), self%off_diagonal(lanes, 3, n), self%factors(lanes, 2, 3, n), self%jumps)
+    allocate (self%jumps%last(lanes, 3, n), self%jumps%earlier(lanes, 3, n), self%jumps%forces(lanes, 3, n), &
+              self%jumps%lost(lanes, 2, n))
     if (.not. damaged) return
+    allocate (self%states(n))
     associate (its => self%surfaces)
       allocate (its%area(lanes, n), its%shear(lanes, n), its%opening(lanes, n), its%closing(lanes, n), &
                 its%toughness(lanes, n), its%failure_ratio(lanes, n), its%friction(lanes, n), its%contact(lanes, n))
@@ -180,7 +212,7 @@ contains
   end subroutine allocate_batch
 
   !> Sets the constants of lanes.
-  pure subroutine set_lanes(self, from, to, i, stacks, inertia, model)
+  pure subroutine set_lanes(self, from, to, i, stacks, inertia, model, cohesive)
     type(stack_batch_t), intent(inout) :: self
     !> First and last lane, and index of the stack
     integer, intent(in) :: from, to, i
@@ -188,6 +220,7 @@ contains
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(model_t), intent(in) :: model
+    type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: lane, p
 
     p = stacks%first(i)
@@ -202,6 +235,8 @@ contains
       self%factors(lane, :, :, :) = stacks%factors(:, :, p + 1:p + self%n)
       if (self%damaged) call set_surfaces(self%surfaces, lane, self%n, p, stacks, model)
     end do
+    call self%jumps%load(self%first, from, to, stacks%history)
+    if (self%damaged) call load_states(self, from, to, cohesive, stacks%history)
   end subroutine set_lanes
 
   !> Sets the surfaces of a lane.
@@ -229,20 +264,19 @@ contains
     end do
   end subroutine set_surfaces
 
-  !> Loads the surfaces of a damaged batch.
-  pure subroutine load_states(batch, cohesive, history, jumps, last, earlier, states)
-    type(stack_batch_t), intent(in) :: batch
+  !> Loads the states of the surfaces of lanes.
+  pure subroutine load_states(self, from, to, cohesive, history)
+    type(stack_batch_t), intent(inout) :: self
+    !> First and last lane
+    integer, intent(in) :: from, to
     type(cohesive_interfaces_t), intent(in) :: cohesive
     type(jump_history_t), intent(in) :: history
-    !> Jumps, and their change in the last step and in the one before
-    real(wp), dimension(lanes, 3, batch%n), intent(in) :: jumps, last, earlier
-    type(surface_states_t), intent(out) :: states(batch%n)
     integer :: lane, j, p
 
-    do j = 1, batch%n
-      associate (state => states(j))
-        do lane = 1, lanes
-          p = batch%first(lane) + j
+    do j = 1, self%n
+      associate (state => self%states(j))
+        do lane = from, to
+          p = self%first(lane) + j
           associate (point => cohesive%points(p), friction => history%friction(p))
             state%damage(lane) = point%damage
             state%dissipated(lane) = point%dissipated
@@ -251,39 +285,156 @@ contains
             state%steps(lane) = friction%steps
             state%rubbing(lane, :) = [friction%stored, friction%deficit]
           end associate
-          state%part(lane) = cohesive%opening(p)
-          state%failure_ratio(lane) = batch%surfaces%failure_ratio(lane, j)/cohesive%strength(p)**2
           state%sticking(lane, :) = history%sticking(:, p)
           state%work(lane) = history%work(p)
         end do
-        state%opening = state%part*batch%surfaces%opening(:, j)
-        state%start = jumps(:, :, j)
-        state%last = last(:, :, j)
-        state%earlier = earlier(:, :, j)
       end associate
     end do
+    call set_laws(self, from, to, cohesive)
   end subroutine load_states
 
-  !> Stores the surfaces of a damaged batch.
-  pure subroutine store_states(batch, states, cohesive, history)
+  !> Sets the reductions of the laws of lanes.
+  pure subroutine set_laws(self, from, to, cohesive)
+    type(stack_batch_t), intent(inout) :: self
+    !> First and last lane
+    integer, intent(in) :: from, to
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    integer :: lane, j, p
+
+    do j = 1, self%n
+      associate (state => self%states(j))
+        do lane = from, to
+          p = self%first(lane) + j
+          state%part(lane) = cohesive%opening(p)
+          state%opening(lane) = state%part(lane)*self%surfaces%opening(lane, j)
+          state%failure_ratio(lane) = self%surfaces%failure_ratio(lane, j)/cohesive%strength(p)**2
+        end do
+      end associate
+    end do
+  end subroutine set_laws
+
+  !> Updates the laws of all damaged stacks, after flaws or fronts may have reduced them.
+  pure subroutine update_laws(self, cohesive)
+    class(stack_batches_t), intent(inout) :: self
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    integer :: b
+
+    do b = 1, self%filled
+      if (self%list(b)%damaged) call set_laws(self%list(b), 1, lanes, cohesive)
+    end do
+  end subroutine update_laws
+
+  !> Stores damage and friction of the surfaces of a damaged batch at their points.
+  pure subroutine store_points(batch, states, cohesive)
     type(stack_batch_t), intent(in) :: batch
     type(surface_states_t), intent(in) :: states(batch%n)
     type(cohesive_interfaces_t), intent(inout) :: cohesive
-    type(jump_history_t), intent(inout) :: history
-    integer :: lane, j, p
+    integer :: lane, j
 
     do j = 1, batch%n
       associate (state => states(j))
         do lane = 1, batch%members
-          p = batch%first(lane) + j
-          cohesive%points(p) = cohesive_point_t(state%damage(lane), state%dissipated(lane), &
-                                                sliding_t(state%slip(lane, :), state%limit(lane), state%heat(lane)))
-          history%friction(p) = friction_history_t(nint(state%steps(lane)), state%rubbing(lane, 1), &
-                                                    state%rubbing(lane, 2))
-          history%sticking(:, p) = state%sticking(lane, :)
-          history%work(p) = state%work(lane)
+          cohesive%points(batch%first(lane) + j) = &
+            cohesive_point_t(state%damage(lane), state%dissipated(lane), &
+                             sliding_t(state%slip(lane, :), state%limit(lane), state%heat(lane)))
         end do
       end associate
     end do
-  end subroutine store_states
+  end subroutine store_points
+
+  !> Stores the history of all stacks at their points, except for the damage, which is there.
+  pure subroutine store(self, history)
+    class(stack_batches_t), intent(in) :: self
+    type(jump_history_t), intent(inout) :: history
+    integer :: b, lane, j, p
+
+    do b = 1, self%filled
+      associate (batch => self%list(b))
+        call batch%jumps%store(batch%first, 1, batch%members, history)
+        if (.not. batch%damaged) cycle
+        do j = 1, batch%n
+          do lane = 1, batch%members
+            p = batch%first(lane) + j
+            associate (state => batch%states(j))
+              history%friction(p) = friction_history_t(nint(state%steps(lane)), state%rubbing(lane, 1), &
+                                                       state%rubbing(lane, 2))
+              history%sticking(:, p) = state%sticking(lane, :)
+              history%work(p) = state%work(lane)
+            end associate
+          end do
+        end do
+      end associate
+    end do
+  end subroutine store
+
+  !> Loads the jumps of all stacks, after others have changed them at the points.
+  pure subroutine load(self, history)
+    class(stack_batches_t), intent(inout) :: self
+    type(jump_history_t), intent(in) :: history
+    integer :: b
+
+    do b = 1, self%filled
+      associate (batch => self%list(b))
+        call batch%jumps%load(batch%first, 1, lanes, history)
+      end associate
+    end do
+  end subroutine load
+
+  !> Reduces the work done in the last step, as `damp` of the history.
+  pure subroutine damp(self, ratio)
+    class(stack_batches_t), intent(inout) :: self
+    !> Factor of the work
+    real(wp), intent(in) :: ratio
+    integer :: b, j
+
+    do b = 1, self%filled
+      if (.not. self%list(b)%damaged) cycle
+      do j = 1, self%list(b)%n
+        associate (state => self%list(b)%states(j))
+          state%work = ratio*state%work
+          state%rubbing(:, 1) = ratio*state%rubbing(:, 1)
+        end associate
+      end do
+    end do
+  end subroutine damp
+
+  !> Loads the jumps of lanes from the points.
+  pure subroutine load_jumps(self, first, from, to, history)
+    class(jump_lanes_t), intent(inout) :: self
+    !> First point of each lane, and first and last lane
+    integer, intent(in) :: first(lanes), from, to
+    type(jump_history_t), intent(in) :: history
+    integer :: lane, j
+
+    do j = 1, size(self%last, 3)
+      do lane = from, to
+        associate (p => first(lane) + j)
+          self%last(lane, :, j) = history%change(:, p)
+          self%earlier(lane, :, j) = history%earlier(:, p)
+          self%forces(lane, :, j) = history%forces(:, p)
+          self%lost(lane, :, j) = history%lost(:, p)
+        end associate
+      end do
+    end do
+  end subroutine load_jumps
+
+  !> Stores the jumps of lanes at the points.
+  pure subroutine store_jumps(self, first, from, to, history)
+    class(jump_lanes_t), intent(in) :: self
+    !> First point of each lane, and first and last lane
+    integer, intent(in) :: first(lanes), from, to
+    type(jump_history_t), intent(inout) :: history
+    integer :: lane, j
+
+    do j = 1, size(self%last, 3)
+      do lane = from, to
+        associate (p => first(lane) + j)
+          history%change(:, p) = self%last(lane, :, j)
+          history%earlier(:, p) = self%earlier(lane, :, j)
+          history%forces(:, p) = self%forces(lane, :, j)
+          history%lost(:, p) = self%lost(lane, :, j)
+        end associate
+      end do
+    end do
+  end subroutine store_jumps
 end module stack_batches

@@ -20,7 +20,7 @@ module stack_solutions
   use stack_batches, only: stack_batch_t, surface_states_t
   use step_lengths, only: step_lengths_t
   use tridiagonal_systems, only: solve_factored, solve_tractions
-  use weighted_jumps, only: newest, past_jumps, past_openings
+  use weighted_jumps, only: newest, past_jumps_in_lanes, past_openings_in_lanes
   implicit none
   private
   public :: friction_t, energy_of, may_grow, solve_damaged, solve_intact
@@ -51,8 +51,14 @@ contains
     real(wp), intent(in) :: trial(lanes, 3, n)
     !> Forces on the jumps
     real(wp), intent(out) :: forces(lanes, 3, n)
+    integer :: j, k
 
-    forces = trial + past_jumps(start, last, earlier)/newest
+    do j = 1, n
+      do k = 1, 3
+        forces(:, k, j) = trial(:, k, j) &
+                          + past_jumps_in_lanes(start(:, k, j), last(:, k, j), earlier(:, k, j))/newest
+      end do
+    end do
     call solve_factored(n, factors, forces)
   end subroutine solve_intact
 
@@ -91,7 +97,7 @@ contains
         if (.not. grows(lane)) cycle
         associate (p => batch%first(lane) + j)
           call correct_force(cohesive%surfaces_of(model, p), cohesive%points(p), stacks%area(p), &
-                             stacks%history%work(p), states(j)%start(lane, :), jumps(lane, :, j), &
+                             states(j)%work(lane), states(j)%start(lane, :), jumps(lane, :, j), &
                              steps%kept*states(j)%last(lane, :), secant(lane, :, j), given(lane, :, j), grows(lane))
         end associate
       end do
@@ -121,13 +127,14 @@ contains
         secant(:, 1, j) = intact*batch%stiffness(:, 1, j)
         secant(:, 2, j) = intact*state%part*batch%stiffness(:, 2, j)
         do k = 1, 2
-          friction(j)%past(:, k) = past_jumps(state%start(:, k) - state%slip(:, k), state%sticking(:, k), &
-                                              state%sticking(:, k + 2))
-          given(:, k, j) = secant(:, 1, j)*past_jumps(state%start(:, k), state%last(:, k), state%earlier(:, k))
+          friction(j)%past(:, k) = past_jumps_in_lanes(state%start(:, k) - state%slip(:, k), state%sticking(:, k), &
+                                                       state%sticking(:, k + 2))
+          given(:, k, j) = secant(:, 1, j) &
+                           *past_jumps_in_lanes(state%start(:, k), state%last(:, k), state%earlier(:, k))
         end do
         given(:, 3, j) = secant(:, 2, j)*merge( &
-          past_openings(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), &
-          past_jumps(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), batch%surfaces%contact(:, j))
+          past_openings_in_lanes(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), &
+          past_jumps_in_lanes(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), batch%surfaces%contact(:, j))
         secant(:, :, j) = newest*secant(:, :, j)
       end associate
     end do

@@ -6,10 +6,12 @@
 !> of springs too stiff for the step decay by a factor r per step, and slow motions dissipate in proportion to the third
 !> power of the step. The conditions are derived in doc/theory/time_integration.md.
 module weighted_jumps
+  use element_batches, only: lanes
   use kinds, only: wp
   implicit none
   private
-  public :: memory, newest, past_weights, past_jumps, past_openings
+  public :: memory, newest, past_weights, past_jumps, past_openings, past_jumps_in_lanes, &
+            past_openings_in_lanes
 
   !> Factor per step by which motions of stiff springs decay, the spectral radius. With 0.5 and 0.8 instead of 0.9
   !> `energy_algorithmic` is up to 3 and 1.5 times larger, with the same areas and forces
@@ -45,4 +47,22 @@ contains
     past_openings = weights(1)*max(0.0_wp, start) + weights(2)*max(0.0_wp, start - change) &
                     + weights(3)*max(0.0_wp, start - change - earlier)
   end function past_openings
+
+  !> `past_jumps` for the lanes of a batch: here the elemental function is expanded and vectorized.
+  pure function past_jumps_in_lanes(start, change, earlier) result(past)
+    !> As there
+    real(wp), dimension(lanes), intent(in) :: start, change, earlier
+    real(wp) :: past(lanes)
+
+    past = past_jumps(start, change, earlier)
+  end function past_jumps_in_lanes
+
+  !> `past_openings` for the lanes of a batch.
+  pure function past_openings_in_lanes(start, change, earlier) result(past)
+    !> As there
+    real(wp), dimension(lanes), intent(in) :: start, change, earlier
+    real(wp) :: past(lanes)
+
+    past = past_openings(start, change, earlier)
+  end function past_openings_in_lanes
 end module weighted_jumps

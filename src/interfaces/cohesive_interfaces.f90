@@ -228,7 +228,9 @@ contains
     totals = 0
     if (.not. allocated(self%cohesive)) return
     do i = 1, model%distribution%owned
-      if (self%cohesive(i)) call sums(model%zone(i))%add(model%contact_area(i)*values(i))
+      ! Most values are zero.
+      if (self%cohesive(i) .and. .not. abs(values(i)) <= 0) &
+        call sums(model%zone(i))%add(model%contact_area(i)*values(i))
     end do
     totals = totals_of(model%communicator, sums)*model%mesh%multiplicity
   end function total_in_zones

@@ -67,9 +67,10 @@ contains
         associate (volume => area(element)*(plies(ply)%z_bottom - plies(ply)%z_top), &
                    state => states%accepted(states%offset(element) + ply))
           do mode = 1, energy_modes
-            call energies(mode)%add(volume*state%dissipated(mode))
+            if (.not. abs(state%dissipated(mode)) <= 0) call energies(mode)%add(volume*state%dissipated(mode))
           end do
-          call energies(energy_modes + 1)%add(volume*energy_of_shear(bands(ply), state))
+          if (bands(ply)%permanent_shear) &
+            call energies(energy_modes + 1)%add(volume*energy_of_shear(bands(ply), state))
         end associate
       end do
     end do

@@ -15,6 +15,7 @@ module crack_band_sections
   use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
+  use loaded_plies, only: loaded_plies_t, new_loaded_plies
   use loading_rates, only: loading_rates_t, new_loading_rates
   use mean_sections, only: mean_sections_t, new_mean_sections
   use composite_plates, only: composite_plate_t
@@ -67,6 +68,10 @@ module crack_band_sections
     real(wp), allocatable, private :: limits(:, :)
     !> True for elements with damage in the trial, (elements)
     logical, allocatable :: touched(:)
+    !> True for elements whose trial may differ from the accepted state, (elements)
+    logical, allocatable, private :: pending(:)
+    !> Plies that may soften
+    type(loaded_plies_t), private :: loaded
   contains
     procedure :: soften
     procedure :: needs_joined_strains
@@ -125,7 +130,7 @@ contains
     self%onset = self%onset - [(norm2(self%plies(i)%free_strain), i=1, size(self%plies))]
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
-    allocate (self%touched(model%elements%elements), source=.false.)
+    allocate (self%touched(model%elements%elements), self%pending(model%elements%elements), source=.false.)
     allocate (self%limits(2, model%elements%elements))
     do i = 1, model%elements%elements
       associate (place => model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
@@ -136,6 +141,8 @@ contains
         self%limits(:, i) = [minval(self%onset(first:last)), maxval(self%height(first:last))]
       end associate
     end do
+    if (.not. (allocated(self%rates) .or. allocated(self%volumes))) &
+      self%loaded = new_loaded_plies(self%plies, self%bands, self%states, self%onset, self%height)
   end function new_crack_band_sections
 
   !> Law of a ply in an element, with the strength of its fibres there.
@@ -214,35 +221,98 @@ contains
     real(wp), intent(inout) :: stiffness(lanes, 21)
     !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
-    real(wp) :: sizes(lanes, 2), moments(lanes, moment_values), bound
-    logical :: has_moments, changed
+    real(wp) :: moments(lanes, moment_values)
+    logical :: strained(lanes), loaded(lanes), changed
     integer :: lane, element
 
-    sizes = strain_sizes(weight, strains)
-    has_moments = .false.
-    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
-      element = first_element(b) + lane - 1
-      if (allocated(self%volumes)) call self%volumes%clear(self%states, element)
-      bound = sizes(lane, 1) + self%limits(2, element)*sizes(lane, 2)
-      if (self%joined%shares(element)) bound = self%joined%bound_of(element)
-      if (.not. self%touched(element) .and. bound < self%limits(1, element)) cycle
-      if (.not. has_moments) moments = strain_moments(weight, strains)
-      has_moments = .true.
-      changed = self%keeps_damage
-      if (.not. self%keeps_damage) &
-        call soften_element(self, element, moments_from(moments(lane, :)), stiffness(lane, :), changed)
-      if (.not. changed) cycle
-      if (allocated(self%signs)) then
-        self%tensile(lane, :, b) = resultants_without_strain(self%plies, self%bands, self%states, element, .false.)
-      else if (present(free)) then
-        free(lane, :) = resultants_without_strain(self%plies, self%bands, self%states, element, .true.)
-      end if
-    end do
+    if (allocated(self%volumes)) call clear_stresses(self, b)
+    strained = are_strained(self, b, strain_sizes(weight, strains))
+    if (any(strained)) then
+      moments = strain_moments(weight, strains)
+      loaded = strained
+      if (.not. self%keeps_damage) loaded = are_loaded(self, b, strained, moments)
+      do lane = 1, lanes
+        if (.not. loaded(lane)) cycle
+        element = first_element(b) + lane - 1
+        changed = self%keeps_damage
+        if (.not. self%keeps_damage) &
+          call soften_element(self, element, moments_from(moments(lane, :)), stiffness(lane, :), changed)
+        if (.not. changed) cycle
+        if (allocated(self%signs)) then
+          self%tensile(lane, :, b) = resultants_without_strain(self%plies, self%bands, self%states, element, .false.)
+        else if (present(free)) then
+          free(lane, :) = resultants_without_strain(self%plies, self%bands, self%states, element, .true.)
+        end if
+      end do
+      self%stiffness(:, :, b) = stiffness
+    end if
     if (allocated(self%signs)) free = self%tensile(:, :, b) + &
       signed_resultants(self%signs, self%plies, self%bands, self%states, self%joined, self%touched, b, weight, strains)
     if (present(free)) self%free(:, :, b) = free
-    if (has_moments) self%stiffness(:, :, b) = stiffness
   end subroutine soften
+
+  !> Sets the stresses of a batch, on which the strengths of fibres depend, to zero.
+  pure subroutine clear_stresses(self, b)
+    class(crack_band_sections_t), intent(inout) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    integer :: element
+
+    do element = first_element(b), min(first_element(b + 1) - 1, size(self%touched))
+      call self%volumes%clear(self%states, element)
+    end do
+  end subroutine clear_stresses
+
+  !> True for elements with damage, or with strains with which it may start.
+  pure function are_strained(self, b, sizes) result(strained)
+    class(crack_band_sections_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> The result of `strain_sizes`
+    real(wp), intent(in) :: sizes(lanes, 2)
+    !> One for each lane
+    logical :: strained(lanes)
+    real(wp) :: bound
+    integer :: lane, element
+
+    strained = .false.
+    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
+      element = first_element(b) + lane - 1
+      bound = sizes(lane, 1) + self%limits(2, element)*sizes(lane, 2)
+      if (self%joined%shares(element)) bound = self%joined%bound_of(element)
+      strained(lane) = self%touched(element) .or. .not. bound < self%limits(1, element)
+    end do
+  end function are_strained
+
+  !> Of these, the elements whose plies may lose stiffness, or have a trial that differs from the accepted state.
+  pure function are_loaded(self, b, strained, moments) result(loaded)
+    class(crack_band_sections_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> The result of `are_strained`
+    logical, intent(in) :: strained(lanes)
+    !> That of `strain_moments`
+    real(wp), intent(in) :: moments(lanes, moment_values)
+    !> One for each lane
+    logical :: loaded(lanes)
+    real(wp) :: joined(lanes, moment_values)
+    real(wp), allocatable :: means(:)
+    integer :: lane, element
+
+    joined = moments
+    do lane = 1, lanes
+      element = first_element(b) + lane - 1
+      if (.not. strained(lane)) cycle
+      if (.not. self%joined%shares(element)) cycle
+      means = self%joined%means_of(element)
+      joined(lane, :) = means(:moment_values)
+    end do
+    loaded = self%loaded%may_soften(b, joined)
+    do lane = 1, lanes
+      if (strained(lane)) loaded(lane) = loaded(lane) .or. self%pending(first_element(b) + lane - 1)
+    end do
+    loaded = loaded .and. strained
+  end function are_loaded
 
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness, changed)
@@ -264,6 +334,7 @@ contains
 
     loses = .false.
     self%touched(element) = .false.
+    self%pending(element) = .true.
     joined = moments
     if (self%joined%shares(element)) then
       means = self%joined%means_of(element)
@@ -324,8 +395,12 @@ contains
     integer :: element
 
     if (allocated(self%rates)) call self%rates%accept()
-    do element = 1, size(self%touched)
-      if (self%touched(element)) call self%states%accept(element)
+    do element = 1, size(self%pending)
+      if (.not. self%pending(element)) cycle
+      self%pending(element) = .false.
+      if (.not. self%touched(element)) cycle
+      call self%states%accept(element)
+      call self%loaded%update(element, self%bands, self%states)
     end do
   end subroutine commit
 
@@ -426,7 +501,9 @@ contains
     if (allocated(self%volumes)) call self%volumes%visit(archive)
     if (.not. archive%loading) return
     if (allocated(self%volumes)) self%bands%along(1) = self%volumes%strengths()
+    self%pending = .false.
     do element = 1, size(self%touched)
+      call self%loaded%update(element, self%bands, self%states)
       self%touched(element) = self%states%damaged(element)
       if (self%touched(element) .and. allocated(self%signs)) self%tensile(lane_of(element), :, batch_of(element)) = &
         resultants_without_strain(self%plies, self%bands, self%states, element, .false.)

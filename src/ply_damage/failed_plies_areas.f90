@@ -26,6 +26,7 @@ contains
     areas = 0
     if (.not. model%setup%ply_damage%is_present) return
     do i = 1, model%elements%elements
+      if (.not. failures%may_have_failed(i)) cycle
       area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
       associate (plies => model%stacks(model%stack(i))%number)
         do k = 1, size(plies)
@@ -50,6 +51,7 @@ contains
     counts = 0
     if (.not. model%setup%ply_damage%is_present) return
     do element = 1, model%elements%elements
+      if (.not. failures%may_have_failed(element)) cycle
       associate (plies => model%stacks(model%stack(element))%number)
         do k = 1, size(plies)
           where (failures%failed(plies(k), element)) counts = counts + model%mesh%multiplicity

@@ -14,6 +14,7 @@ module explicit_steppers
   use models, only: model_t
   use separated_elements, only: separate_unequal, visit_separated
   use setups, only: setup_t
+  use short_numbers, only: short_text
   use single_rank_equilibria, only: equilibrate_initial_stresses
   use states, only: new_state
   use step_intervals, only: interval_of_checks, interval_of_stages
@@ -277,9 +278,26 @@ contains
                     counted(to_text(self%unknowns), 'unknown')//', '// &
                     counted(to_text(model%communicator%size), 'rank')//shares//'.'), &
              line_t('Stable step '//rounded_text(2/self%method%frequency)//' by element '// &
-                    to_text(self%method%element)//', shorter during contact; steps are at most '// &
+                    to_text(self%method%element)//' '//place_of(model, self%method%element)// &
+                    ', shorter during contact; steps are at most '// &
                     rounded_text(self%method%parameters%step_factor)//' of it.')]
   end function model_sentences
+
+  !> Where an element is.
+  pure function place_of(model, element) result(place)
+    type(model_t), intent(in) :: model
+    !> Element of the mesh
+    integer, intent(in) :: element
+    !> Plies and middle
+    character(len=:), allocatable :: place
+    integer :: plies(2), at(2)
+
+    plies = model%mesh%plies_of(element)
+    at = model%mesh%place_of(model%mesh%element_cell(element))
+    place = 'of plies '//to_text(plies(1))//' to '//to_text(plies(2))//' at x = '// &
+            short_text(sum(model%mesh%along(1)%ends(at(1)))/2)//', y = '// &
+            short_text(sum(model%mesh%along(2)%ends(at(2)))/2)
+  end function place_of
 
   !> The method as the subject of a sentence.
   pure function method_name(self) result(words)
