@@ -4,7 +4,7 @@
 module drawn_strengths
   use band_states, only: band_states_t
   use kinds, only: long, wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use murmur_hashes, only: murmur3, uniform_of
   use plies, only: ply_t
   use ply_damage_parameters, only: ply_damage_t
@@ -24,7 +24,7 @@ contains
 
   !> Strengths of a model's plies. An element has that of its weakest square.
   function new_drawn_strengths(model, plies, states, joined) result(self)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Plies of the different laminates, one after the other
     type(ply_t), intent(in) :: plies(:)
     !> States of the plies of all elements
@@ -97,7 +97,7 @@ contains
 
   !> The squares of an element; elements that share their damage have one strength, that of all their squares.
   pure function squares_of(model, element, joined) result(squares)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Element of this rank
     integer, intent(in) :: element
     !> True along x and y if it shares its damage with the element beyond its side

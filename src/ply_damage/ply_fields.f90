@@ -107,7 +107,7 @@ contains
 
   !> Tensile strength of the fibres of a ply in each element.
   pure function strengths_in(model, bands, ply) result(strengths)
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     !> Softening plies
     type(crack_band_sections_t), intent(in) :: bands
     !> Ply of the laminate
