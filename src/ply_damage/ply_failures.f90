@@ -278,7 +278,7 @@ contains
   !> depend on the rate. Collective.
   real(wp) function mean_strengthening(self, model) result(factor)
     class(ply_failure_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    class(composite_plate_t), intent(in) :: model
     real(wp) :: totals(2)
 
     factor = 0
