@@ -567,6 +567,12 @@ def check_stiffened(implam, folder, _):
               f"{error:.1e}")
         require(abs(stress / strain / expected - 1) < BLADES_CARRY, "The blades do not carry their part of the load.")
         require(error < CLOSED_BESIDE_BLADES, "The ledger does not close.")
+        summary = json.loads((folder / f"{COMPRESSION}_summary.json").read_text(encoding="utf-8"))
+        strength, share = summary["residual_strength"], SKIN_MODULUS / expected
+        require(abs(summary["failure_load"] / (strength * AREA) - 1) < 1e-9, "The load is not stress times area.")
+        # The modulus of the skin has four digits.
+        require(abs(summary["skin_stress_at_strength"] / (strength * share) - 1) < 1e-4,
+                "The stress of the skin is not that of its share of the stiffness.")
 
 
 def check_coupon(implam, folder, _):
