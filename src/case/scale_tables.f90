@@ -72,7 +72,9 @@ contains
       call put('time steps in the rise time', scales%contact_time/deck%stepping%time%step, bare)
       call put('bending wavelength at first contact', scales%wave_length, length)
       call put('elements in a wavelength', scales%wave_length/o%edge, bare)
-      call put('expected peak force (undamaged plate, linear strains)', o%force, force)
+      call put(trim(merge('expected peak force (undamaged, without stringers)   ', &
+                          'expected peak force (undamaged plate, linear strains)', size(deck%stringers) > 0)), &
+               o%force, force)
       call put('expected indentation', o%indentation, length)
       call put('expected deflection over thickness', o%deflection/scales%thickness, bare)
       call put('expected number of contacts', real(o%contacts, wp), bare)

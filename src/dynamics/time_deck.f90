@@ -26,8 +26,8 @@ module time_deck
     'time | end | real | 1 | time | = by &case accuracy, central differences: after the contact | > 0 | &
       &End of the run.', &
     'time | until | choice | 1 | - | ''end'' | end failure | &
-      &failure: a compression by lines ends once the plate has failed, as told by has_failed of the summary, at the &
-      &latest at end.', &
+      &failure: a compression by lines ends once the plate has failed (has_failed of the summary), at the latest at &
+      &end.', &
     'time | step | real | 1 | time | = by &case accuracy, central differences: the stable one | > 0 | &
       &Initial time step, constant unless steps are adaptive; central differences limit it to the stable step.', &
     'time | step_min | real | 1 | time | = step/1024 | > 0 | &

@@ -3,10 +3,10 @@ module end_sections
   use kinds, only: wp
   use laminate_parameters, only: laminate_t
   use packed_matrices, only: inverse, unpacked
-  use ply_zones, only: ply_zones_t
   use roundings, only: rounding
   use setups, only: setup_t
   use stacking, only: section_of, section_t, stacked_plies
+  use stiffened_sections, only: edges_across
   implicit none
   private
   public :: skin_share
@@ -56,27 +56,6 @@ contains
                   modulus_of(setup, setup%zones%laminate_of(setup%laminate, setup%zones%at(point)), along)
     end do
   end function end_stiffness
-
-  !> Edges of the plate and of its zones across a direction, ascending.
-  pure function edges_across(zones, length, direction) result(lines)
-    type(ply_zones_t), intent(in) :: zones
-    !> Length of the plate along the direction
-    real(wp), intent(in) :: length
-    !> 1 for x, 2 for y
-    integer, intent(in) :: direction
-    real(wp), allocatable :: lines(:)
-    real(wp), allocatable :: edges(:)
-    integer :: i
-
-    edges = [-length, length]/2
-    if (allocated(zones%doublers)) edges = [edges, [(zones%doublers(i)%edges(direction), i=1, size(zones%doublers))]]
-    if (allocated(zones%drops)) edges = [edges, [(zones%drops(i)%edges(direction), i=1, size(zones%drops))]]
-    allocate (lines(0))
-    do while (any(edges < huge(edges)))
-      lines = [lines, minval(edges)]
-      where (edges <= minval(edges)) edges = huge(edges)
-    end do
-  end function edges_across
 
   !> Axial stiffness per width of a laminate without lateral force, the inverse of the first or fourth compliance.
   pure real(wp) function modulus_of(setup, laminate, along) result(modulus)

@@ -15,6 +15,7 @@ module setup_scales
   use setups, only: setup_t
   use mean_stiffnesses, only: in_bending
   use stacking, only: section_t, stacked_plies, section_of
+  use stiffened_sections, only: bays_of, is_stiffened, plate_part_t, section_of_part, whole_part
   use support_parameters, only: window_none, window_rectangle, window_circle
   use threshold_forces, only: effective_bending_stiffness, threshold_force
   implicit none
@@ -71,8 +72,9 @@ contains
     scales%plate_mass = section%mass(1)*product(setup%plate%length)
     plate = modal_plate_of(free_span(setup), free_edges(setup), section%stiffness, [1.0_wp, 0.0_wp, 0.0_wp], &
                            loaded_side(setup), all_modes, shape_of(setup))
-    bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
+    bent = first_frequency(plate)
     if (section%mass(1) > 0) scales%first_period = 2*pi*sqrt(section%mass(1))/bent
+    if (is_stiffened(setup) .and. section%mass(1) > 0) scales%first_period = stiffened_period(setup)
     scales%compliance = sum(plate%weight/plate%frequency**2, mask=plate%frequency >= bent)
     if (allocated(setup%delaminations)) &
       scales%threshold = growth_threshold(setup, effective_bending_stiffness(struck%stiffness))
@@ -86,6 +88,46 @@ contains
       scales%wave_length = 2*pi*(scales%bending/scales%area_mass)**0.25_wp*sqrt(scales%contact_time/pi)
     end associate
   end function scales_of
+
+  !> First frequency of bending.
+  pure real(wp) function first_frequency(plate) result(bent)
+    type(modal_plate_t), intent(in) :: plate
+
+    bent = minval(plate%frequency, mask=plate%frequency > 1.0e-6_wp*maxval(plate%frequency))
+  end function first_frequency
+
+  !> Period of the first bending mode of a plate with stringers, doublers or ply drops: the longest one of the entire
+  !> plate and of the bays between its stringers.
+  pure real(wp) function stiffened_period(setup) result(period)
+    type(setup_t), intent(in) :: setup
+    type(plate_part_t) :: whole
+    type(plate_part_t), allocatable :: bays(:)
+    integer :: i
+
+    whole = whole_part(free_span(setup), free_edges(setup))
+    bays = bays_of(setup, whole)
+    period = period_of(whole, .true.)
+    do i = 1, size(bays)
+      period = max(period, period_of(bays(i), .false.))
+    end do
+
+  contains
+
+    !> Period of a part of the plate.
+    pure real(wp) function period_of(part, with_stringers) result(of_part)
+      !> The plate, or one of its bays
+      type(plate_part_t), intent(in) :: part
+      !> False: without its stringers
+      logical, intent(in) :: with_stringers
+      type(section_t) :: section
+      type(modal_plate_t) :: plate
+
+      section = section_of_part(setup, part, with_stringers)
+      plate = modal_plate_of(part%length(), part%edges, section%stiffness, section%mass, minval(part%length()), &
+                             all_modes, shape_of(setup))
+      of_part = 2*pi/first_frequency(plate)
+    end function period_of
+  end function stiffened_period
 
   !> Bending section of the plate: mean over its area where it has doublers or ply drops.
   pure function bending_section(setup) result(section)

@@ -44,8 +44,8 @@ module step_columns
     'work_external | real | energy | Work so far of pressure and lines, and of the force that moves an impactor &
       &with a prescribed travel.', &
     'step_length | real | time | Length of the step; 0 in a static analysis.', &
-    'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged laminate around the struck point, used by &
-      &rule = ''stress_rate'' of &adapt.']
+    'stress | real | pressure | Bending stress 6 M/h^2 of the undamaged plies around the struck point, with those of &
+      &doublers, used by rule = ''stress_rate'' of &adapt.']
 
   !> Iterations.
   character(len=result_row_length), parameter, public :: iteration_rows(*) = [character(len=result_row_length) :: &

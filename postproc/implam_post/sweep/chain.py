@@ -18,7 +18,7 @@ from implam_post.sweep.runs import Sweep
 from implam_post.sweep.table import FIGURES, RUN_COLUMNS, Table, add_columns, figures_in, no_figures
 
 # Groups of the first deck that are copied to the second one, as the damage depends on them.
-SHARED = ("material", "laminate", "doubler", "ply_drop", "ply_damage", "delamination", "thermal")
+SHARED = ("material", "laminate", "doubler", "ply_drop", "stringer", "ply_damage", "delamination", "thermal")
 # Groups whose swept keys are also set in the second deck, since mesh and plate are those of the first run.
 _SET_TOO = ("mesh", "plate")
 # Figures of a second run that is another impact, in columns `second_NAME`.

@@ -13,8 +13,11 @@ from matplotlib.collections import LineCollection, PolyCollection
 from implam_post.io.fields import read_fields
 from implam_post.io.history import History
 from implam_post.io.section import section_at
+from implam_post.laminate.sections import Material, Ply
+from implam_post.laminate.zones import Doubler, PlyDrop, Rectangle, Zones
 from implam_post.plot import command as plot
 from implam_post.plot.section import dent_of, section_figure
+from implam_post.plot.section_drawing import Plate
 from implam_post.plot.style import PictureStyle, lay_out
 from tests.io.test_fields import write_fields
 from tests.plot.test_pictures import DECK
@@ -174,6 +177,29 @@ class SectionTest(unittest.TestCase):
         with h5py.File(self.path, "a") as file:
             del file["provenance"]
         self.assertIsNone(section_figure(read_fields(self.path), SI))
+
+
+class LayerTest(unittest.TestCase):
+    """The plies of layers at places with doublers and ply drops, and their depths."""
+
+    def test_layers(self) -> None:
+        """Plies of rigid doublers belong to the outermost layer, those that may come off are a layer."""
+        material = Material(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.3)
+        ply, area = Ply(material, 0.0, 0.25), Rectangle((0.0, 0.0), (2.0, 2.0))
+        pad = Doubler("pad", "back", area, (ply, ply))
+        cases = (((pad,), (), 1, 4, (1, 2, 3, 4, 5, 6), 0.0), ((pad,), (), 1, 2, (1, 2), 0.0),
+                 ((pad,), (), 3, 4, (3, 4, 5, 6), 0.5), ((pad._replace(face="front"),), (), 1, 2, (5, 6, 1, 2), -0.5),
+                 ((pad._replace(may_separate=True),), (), 1, 4, (1, 2, 3, 4), 0.0),
+                 ((pad._replace(may_separate=True),), (), 5, 4, (5, 6), 1.0),
+                 ((), (PlyDrop((1,), area, "back"),), 1, 4, (2, 3, 4), 0.25))
+        for doublers, drops, first, last, plies, depth in cases:
+            with self.subTest(plies):
+                plate = Plate(Zones([ply] * 4, doublers, drops))
+                layer = plate.layer(np.zeros(2), first, last)
+                self.assertEqual(layer.plies, plies)
+                np.testing.assert_allclose(layer.depths, depth + 0.25 * np.arange(len(plies) + 1), atol=1e-12)
+                self.assertEqual(plate.layer(np.array([3.0, 0.0]), first, min(last, 4)).plies,
+                                 tuple(range(first, last + 1)))
 
 
 if __name__ == "__main__":
