@@ -222,11 +222,8 @@ contains
   !> Solves for a correction by the tangent, and for the impactor's force.
   subroutine find_correction(self, at, tolerance, error)
     class(dynamic_step_t), intent(inout) :: self
-    !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at
-    !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
-    !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
     type(tangent_product_t) :: tangent
     logical :: converged

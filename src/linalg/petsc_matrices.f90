@@ -162,9 +162,7 @@ contains
   !> Product of the matrix as it was assembled last with a vector. Collective.
   subroutine multiply(self, vector, product, error)
     class(petsc_matrix_t), intent(inout) :: self
-    !> Owned part of the vector
     real(wp), intent(in) :: vector(:)
-    !> Owned part of the product
     real(wp), intent(out) :: product(:)
     type(error_t), allocatable, intent(inout) :: error
     integer :: ierr(3)

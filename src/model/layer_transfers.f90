@@ -174,7 +174,6 @@ contains
   subroutine real_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     real(wp), intent(inout) :: value
 
     if (self%loading) then
@@ -188,7 +187,6 @@ contains
   subroutine integer_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     integer, intent(inout) :: value
     real(wp) :: number
 
@@ -201,7 +199,6 @@ contains
   subroutine logical_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     logical, intent(inout) :: value
     integer :: number
 
@@ -214,7 +211,6 @@ contains
   subroutine reals_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     real(wp), allocatable, intent(inout) :: value(:)
 
     if (self%loading) then
@@ -228,7 +224,6 @@ contains
   subroutine integers_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     integer, allocatable, intent(inout) :: value(:)
     real(wp), allocatable :: numbers(:)
 
@@ -241,7 +236,6 @@ contains
   subroutine table_item(self, name, value)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     real(wp), allocatable, intent(inout) :: value(:, :)
 
     if (self%loading) then
@@ -256,11 +250,8 @@ contains
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(layer_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
-    !> Number of columns of the global field
     integer, intent(in) :: global_columns
-    !> The field
     real(wp), intent(inout) :: value(:, :)
     type(field_mapping_t), intent(in) :: mapping
 

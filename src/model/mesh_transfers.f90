@@ -61,11 +61,8 @@ contains
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(mesh_transfer_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> Global columns of the leading columns of `value`, which this rank owns
     integer, intent(in) :: columns(:)
-    !> Number of columns of the global field
     integer, intent(in) :: global_columns
-    !> The field
     real(wp), intent(inout) :: value(:, :)
     type(field_mapping_t), intent(in) :: mapping
     integer :: item, i

@@ -192,7 +192,6 @@ contains
   subroutine real_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     real(wp), intent(inout) :: value
     real(wp), allocatable :: found(:)
 
@@ -208,7 +207,6 @@ contains
   subroutine integer_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     integer, intent(inout) :: value
     integer, allocatable :: found(:)
 
@@ -224,7 +222,6 @@ contains
   subroutine logical_item(self, name, value)
     class(checkpoint_archive_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> The item
     logical, intent(inout) :: value
     integer :: number
 
@@ -293,11 +290,8 @@ contains
   subroutine field(self, name, columns, global_columns, value, mapping)
     class(checkpoint_archive_t), intent(inout) :: self
     character(len=*), intent(in) :: name
-    !> Global columns (from 1) of the leading columns of `value`
     integer, intent(in) :: columns(:)
-    !> Number of columns of the global field
     integer, intent(in) :: global_columns
-    !> The field
     real(wp), intent(inout) :: value(:, :)
     !> A checkpoint has the mesh of its run
     type(field_mapping_t), intent(in) :: mapping

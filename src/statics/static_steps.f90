@@ -109,11 +109,8 @@ contains
   !> Solves for a correction, with a new factorization if the tangent may have changed.
   subroutine find_correction(self, at, tolerance, error)
     class(static_step_t), intent(inout) :: self
-    !> The iteration; receives the correction
     type(newton_iteration_t), intent(inout) :: at
-    !> Required reduction of the residual
     real(wp), intent(in) :: tolerance
-    !> Set if a solve fails or numbers are not finite
     type(error_t), allocatable, intent(inout) :: error
 
     at%negative_curvature = .false.

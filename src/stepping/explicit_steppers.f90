@@ -65,7 +65,6 @@ contains
     type(model_t), intent(in) :: model
     type(stepping_t), intent(in) :: stepping
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> True: a state will be loaded, so that no initial state is computed
     logical, intent(in) :: resumed
     !> Set if there is no initial equilibrium
     type(error_t), allocatable, intent(out) :: error
@@ -95,12 +94,10 @@ contains
   !> step, so that it does not pass the layered cells ahead of it between checks. Collective.
   subroutine advance_with_layers(self, model, linear_solver, event, switched, error)
     class(explicit_stepper_t), intent(inout) :: self
-    !> The model; receives larger zones
     type(model_t), intent(inout) :: model
     type(linear_solver_parameters_t), intent(in) :: linear_solver
     !> Time that must not be exceeded
     real(wp), intent(in) :: event
-    !> True if layers were inserted
     logical, intent(out) :: switched
     !> Set if the model cannot be built
     type(error_t), allocatable, intent(out) :: error
@@ -118,12 +115,9 @@ contains
 
   !> Gives new layers the motion of the single plate, and computes their forces. Collective.
   subroutine take_layers(self, model, transfer, error)
-    !> The stepper with the loaded state
     class(explicit_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Map of points and elements from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
-    !> Set if the motion has become unstable
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: before
 
@@ -312,7 +306,6 @@ contains
   pure function energy_remedy(self, setup, created) result(words)
     class(explicit_stepper_t), intent(in) :: self
     type(setup_t), intent(in) :: setup
-    !> True: energy was created; false: dissipated
     logical, intent(in) :: created
     character(len=:), allocatable :: words
 

@@ -50,9 +50,7 @@ contains
     type(model_t), intent(in) :: model
     type(stepping_t), intent(in) :: stepping
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> True: a state will be loaded, so that no initial state is computed
     logical, intent(in) :: resumed
-    !> Set if the solver cannot be set up
     type(error_t), allocatable, intent(out) :: error
 
     self%stepping = stepping
@@ -76,9 +74,7 @@ contains
   subroutine advance(self, model, event, error)
     class(implicit_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
-    !> Set if the smallest step failed
     type(error_t), allocatable, intent(out) :: error
     real(wp) :: step, shortest
 
@@ -126,14 +122,10 @@ contains
   !> extensible zone is repeated with more layers. Collective.
   subroutine advance_with_layers(self, model, linear_solver, event, switched, error)
     class(implicit_stepper_t), intent(inout) :: self
-    !> The model; receives larger zones
     type(model_t), intent(inout) :: model
     type(linear_solver_parameters_t), intent(in) :: linear_solver
-    !> Time, or load factor, that must not be exceeded
     real(wp), intent(in) :: event
-    !> True if layers were inserted
     logical, intent(out) :: switched
-    !> Set if the smallest step fails or the model cannot be built
     type(error_t), allocatable, intent(out) :: error
     type(step_memory_t) :: memory
     real(wp) :: extents(2, size(model%mesh%zones))
@@ -160,10 +152,8 @@ contains
 
   !> Gives new layers the motion of the single plate, and computes forces and energies. Collective.
   subroutine take_layers(self, model, transfer, error)
-    !> The stepper with the loaded state
     class(implicit_stepper_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Map of points and elements from the former mesh
     type(layer_transfer_t), intent(in) :: transfer
     !> Never set: forces are computed without a solution
     type(error_t), allocatable, intent(out) :: error
@@ -177,7 +167,6 @@ contains
     class(implicit_stepper_t), intent(inout) :: self
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
-    !> Set if the operator cannot be factorized again
     type(error_t), allocatable, intent(out) :: error
 
     call self%now%visit(archive, model)
@@ -232,7 +221,6 @@ contains
   pure function energy_remedy(self, setup, created) result(words)
     class(implicit_stepper_t), intent(in) :: self
     type(setup_t), intent(in) :: setup
-    !> True: energy was created; false: dissipated
     logical, intent(in) :: created
     character(len=:), allocatable :: words
 

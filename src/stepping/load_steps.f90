@@ -31,7 +31,6 @@ contains
   !> The first step has the length given in the deck.
   subroutine start(self, stepper, model, error)
     class(load_steps_t), intent(in) :: self
-    !> The stepper, its state in equilibrium
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     type(error_t), allocatable, intent(inout) :: error
@@ -43,16 +42,12 @@ contains
   !> Tries one load step.
   subroutine try(self, stepper, model, event, step, converged, error)
     class(load_steps_t), intent(in) :: self
-    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Load factor that must not be exceeded
     real(wp), intent(in) :: event
-    !> Step tried
     real(wp), intent(out) :: step
-    !> True if equilibrium was reached
     logical, intent(out) :: converged
-    !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     type(static_step_t) :: by_load
 
@@ -96,7 +91,6 @@ contains
   !> Finds the ratio of energy release rate to toughness at fronts; under load steps they do not grow.
   subroutine complete_trial(self, stepper, model)
     class(load_steps_t), intent(in) :: self
-    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 
@@ -108,14 +102,10 @@ contains
   !> Each step is first tried with the length given in the deck.
   subroutine choose_next(self, stepper, model, step, change, extended)
     class(load_steps_t), intent(in) :: self
-    !> The stepper, the step accepted
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Step taken
     real(wp), intent(in) :: step
-    !> Change of the struck point's stress over the largest so far
     real(wp), intent(in) :: change
-    !> True: delaminations have grown
     logical, intent(in) :: extended
 
     stepper%controller%target = 1.0_wp/model%setup%loading%steps

@@ -32,7 +32,6 @@ contains
   !> Integrator, first step, and the acceleration under the initial loads.
   subroutine start(self, stepper, model, error)
     class(motion_steps_t), intent(in) :: self
-    !> The stepper, its state in equilibrium
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Set if the mass matrix is singular
@@ -51,16 +50,12 @@ contains
   !> Tries one time step.
   subroutine try(self, stepper, model, event, step, converged, error)
     class(motion_steps_t), intent(in) :: self
-    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
     !> Time that must not be exceeded
     real(wp), intent(in) :: event
-    !> Step tried
     real(wp), intent(out) :: step
-    !> True if equilibrium was reached
     logical, intent(out) :: converged
-    !> Set if the solver fails for good
     type(error_t), allocatable, intent(out) :: error
     type(dynamic_step_t) :: problem
     logical :: factor_is_due
@@ -112,7 +107,6 @@ contains
   !> Records that surfaces are glued once the impactor moves back (unloading = 'glued').
   subroutine complete_trial(self, stepper, model)
     class(motion_steps_t), intent(in) :: self
-    !> The state accepted, the trial state and the step control
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
 
@@ -125,14 +119,10 @@ contains
   !> Length of the next step by iterations, error, damage and growth.
   subroutine choose_next(self, stepper, model, step, change, extended)
     class(motion_steps_t), intent(in) :: self
-    !> The stepper, the step accepted
     class(implicit_steps_t), intent(inout) :: stepper
     type(model_t), intent(in) :: model
-    !> Step taken
     real(wp), intent(in) :: step
-    !> Change of the struck point's stress over the largest so far
     real(wp), intent(in) :: change
-    !> True: delaminations have grown
     logical, intent(in) :: extended
     integer :: lag_iterations
 

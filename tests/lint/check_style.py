@@ -34,6 +34,8 @@ SPELLINGS = {
 COMMON_ARGUMENTS = {"self", "model", "deck", "settings", "problems", "now", "archive", "log", "error", "law"}
 # Arguments that their names explain where they have no documentation.
 NAMED_ARGUMENTS = {"group", "key", "name", "path", "word"}
+# Names in a list of arguments that are none of those to document.
+NO_ARGUMENTS = {"", "*", "self", "this"}
 # A comment of a common argument that says more, such as what is changed in it, has more words than this.
 MAX_COMMON_WORDS = 4
 # Words that say nothing of an argument.
@@ -191,12 +193,26 @@ def doc_above(lines, line):
     return " ".join(text.lstrip()[2:].strip() for text in lines[first : line - 1])
 
 
+def deferred_arguments(checkers):
+    """The sets of two or more arguments of abstract interfaces, which document them for all procedures with these."""
+    found, inside = set(), False
+    for statement in (statement for checker in checkers for statement in statements(checker.lines)):
+        if re.match(r"(abstract|end)\s*interface\b", statement.text):
+            inside = statement.text.startswith("abstract")
+        procedure = PROCEDURE.match(statement.text) if inside and not statement.text.startswith("end") else None
+        arguments = frozenset(split_top(procedure.group(4) or "")) - NO_ARGUMENTS if procedure else ()
+        if len(arguments) > 1:
+            found.add(arguments)
+    return found
+
+
 class Checker:
     """Reads the statements of one file and collects breaches."""
 
     def __init__(self, path):
         """Read the file."""
         self.path = path
+        self.deferred = set()
         self.lines = path.read_text(encoding="utf-8").splitlines()
         self.breaches = []
         self.scopes = []
@@ -283,7 +299,7 @@ class Checker:
         if unit:
             self.open_unit(unit, statement)
         elif procedure and not text.startswith("end"):
-            arguments = {a for a in split_top(procedure.group(4) or "") if a not in ("", "*", "self", "this")}
+            arguments = set(split_top(procedure.group(4) or "")) - NO_ARGUMENTS
             self.require_doc(statement, f"{procedure.group(1)} {procedure.group(2)}")
             self.scopes.append(Scope("procedure", statement.line, procedure.group(2), arguments))
         elif MODULE_PROCEDURE.match(text) and (not inner or inner.kind != "interface"):
@@ -362,7 +378,8 @@ class Checker:
                 if initialised(entity):
                     self.report(statement.line, f"{name} is initialised where it is declared, so it is saved")
         if scope.kind == "procedure" and scope.arguments.intersection(names):
-            if not needs_no_doc(statement.text):
+            is_deferred = frozenset(scope.arguments) in self.deferred and self.scopes[-2].kind != "interface"
+            if not (is_deferred or needs_no_doc(statement.text)):
                 self.require_doc(statement, f"argument {', '.join(names)}")
             elif is_redundant(statement.text, doc_above(self.lines, statement.line)) and statement.documented:
                 self.report(statement.line, f"the documentation of {names[0]} says no more than name and type")
@@ -405,6 +422,9 @@ def main(arguments):
         files = sorted(p for p in Path(argument).rglob("*") if p.suffix in SUFFIXES)
         count += len(files)
         checkers = [Checker(path) for path in files]
+        deferred = deferred_arguments(checkers) if whole else set()
+        for checker in checkers:
+            checker.deferred = deferred
         breaches += [breach for checker in checkers for breach in checker.check(whole)]
         breaches += large_types([found for checker in checkers for found in checker.types])
         breaches += folder_breaches(argument, files) if whole else []

@@ -40,6 +40,16 @@ module good
       import :: thing_t, wp
       class(thing_t), intent(in) :: self
     end function measure
+
+    !> Sets the extents of a thing.
+    subroutine set_extents(self, length, width)
+      import :: thing_t, wp
+      class(thing_t), intent(inout) :: self
+      !> Along x
+      real(wp), intent(in) :: length
+      !> Along y
+      real(wp), intent(in) :: width
+    end subroutine set_extents
   end interface
 
 contains
@@ -78,6 +88,14 @@ contains
     end associate
   end function double
 
+  !> Sets the extents of a square.
+  subroutine set_square(self, length, width)
+    class(thing_t), intent(inout) :: self
+    real(wp), intent(in) :: length, width
+
+    self%size = max(length, width)
+  end subroutine set_square
+
   !> Sizes of things.
   subroutine list(thing, sizes, log)
     class(thing_t), intent(in) :: thing
@@ -113,6 +131,7 @@ BREACHES = {
     "component doc": ("    !> Size\n", "", "component size has no"),
     "procedure doc": ("  !> Twice a value.\n", "", "function double has no"),
     "interface doc": ("    !> Area of a thing.\n", "", "function measure has no"),
+    "argument doc of an interface": ("      !> Along x\n", "", "argument length has no"),
     "argument doc": ("    !> The value\n", "", "argument value has no"),
     "plain comment is no doc": ("    !> The value\n", "    ! The value\n", "argument value has no"),
     "doc of an argument of another type": ("    !> Sizes, m\n", "", "argument sizes has no"),

@@ -32,12 +32,12 @@ program write_energy
   call start_mpi(communicator)
   call get_command_argument(1, path)
   call read_deck(trim(path), deck, problems)
-  call create_model(deck%setup_t, communicator, model, error)
+  call create_model(deck%setup, communicator, model, error)
   if (allocated(error)) stop 2
   allocate (bent(5, size(model%distribution%points)), force(5, size(model%distribution%points)), source=0.0_wp)
   do i = 1, size(bent, 2)
     associate (node => model%mesh%point_node(model%distribution%points(i)))
-      x = model%mesh%node_coordinates(:, node)/deck%plate%length
+      x = model%mesh%node_coordinates(:, node)/deck%setup%plate%length
       bent(:, i) = [1e-5_wp*x(2), 2e-5_wp*x(1), 1e-3_wp*(1 - x(1)**2)*(1 - x(2)**2), 1e-2_wp*x(1), -1e-2_wp*x(2)]
     end associate
   end do

@@ -37,7 +37,7 @@ program parallel_solvers
   call start_mpi(communicator)
   call read_deck_everywhere(path, communicator, deck, problems)
   call start_petsc(communicator, options, error)
-  if (.not. allocated(error)) call create_model(deck%setup_t, communicator, model, error)
+  if (.not. allocated(error)) call create_model(deck%setup, communicator, model, error)
   if (allocated(error)) error stop 'There is no such model.'
   ! PETSc reports its errors, as without Implam's own handler.
   call PetscPopErrorHandler(ierr)
