@@ -32,6 +32,7 @@ contains
 
   !> A number between 0 and 1, neither of them, that grows with the hash.
   elemental real(wp) function uniform_of(hash)
+    !> From 0 to 2^32 - 1
     integer(long), intent(in) :: hash
 
     uniform_of = (hash + 0.5_wp)/(mask + 1.0_wp)
@@ -39,6 +40,7 @@ contains
 
   !> Product of two words, its low 32 bits.
   elemental integer(long) function product_of(a, b) result(low)
+    !> The words
     integer(long), intent(in) :: a, b
     integer(long) :: upper
 
@@ -48,7 +50,9 @@ contains
 
   !> A word rotated to the left.
   elemental integer(long) function turned(word, bits)
+    !> The word
     integer(long), intent(in) :: word
+    !> By how much
     integer, intent(in) :: bits
 
     turned = ior(iand(ishft(word, bits), mask), ishft(word, bits - 32))

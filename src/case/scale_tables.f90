@@ -1,5 +1,5 @@
-!> The table of `implam check` and of the log: scales of the setup and expected results. If &case gives units, values are
-!> in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
+!> The table of `implam check` and of the log: scales of the setup and expected results. If &case gives units, values
+!> are in mm, ms, N, J, kg, MPa, otherwise in those of the deck with their dimension.
 module scale_tables
   use deck_contents, only: deck_t
   use kinds, only: wp

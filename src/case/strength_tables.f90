@@ -1,5 +1,5 @@
-!> The part of the table of `implam check` and of the log on strengths: in place, by the stressed volume or by position, by
-!> the strain rate, and the fracture energy of fibres.
+!> The part of the table of `implam check` and of the log on strengths: in place, by the stressed volume or by position,
+!> by the strain rate, and the fracture energy of fibres.
 module strength_tables
   use deck_contents, only: deck_t
   use deck_fibre_strengths, only: block_volumes, fibre_factors, scatter_of

@@ -76,8 +76,8 @@ contains
     end do
   end function dissipated_so_far
 
-  !> Volume of plies with a cracked matrix, and its integral of the factor of their strengths by the strain rate, as exact
-  !> sums.
+  !> Volume of plies with a cracked matrix, and its integral of the factor of their strengths by the strain rate, as
+  !> exact sums.
   pure function strengthened_so_far(states, plies, area) result(sums)
     !> States of the plies
     type(band_states_t), intent(in) :: states

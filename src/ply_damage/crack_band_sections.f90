@@ -4,7 +4,7 @@
 !> the element.
 module crack_band_sections
   use archives, only: archive_t
-  use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain, strengthened_so_far
+  use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain
   use band_states, only: band_states_t, new_band_states
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, create_crack_band, soften_band, &
                          degraded_elasticity, is_damaged, stiffness_lost, tensile_stress
@@ -53,9 +53,9 @@ module crack_band_sections
     !> Resultants of stress-free strains with the moduli in tension, where plies have E1c, (lanes, 7, batches)
     real(wp), allocatable, private :: tensile(:, :, :)
     !> Plies of the different laminates, one after the other
-    type(ply_t), allocatable, private :: plies(:)
+    type(ply_t), allocatable :: plies(:)
     !> Their laws
-    type(crack_band_t), allocatable, private :: bands(:)
+    type(crack_band_t), allocatable :: bands(:)
     !> Sides along x and y of each element with those that share its state, (2, elements)
     real(wp), allocatable :: sides(:, :)
     !> Area of each element, (elements)
@@ -82,9 +82,7 @@ module crack_band_sections
     procedure :: update_strengths
     procedure :: dissipation_sums
     procedure :: dissipated
-    procedure :: strengthened
     procedure :: elasticity
-    procedure :: fibre_strength
     procedure :: visit
   end type crack_band_sections_t
 
@@ -117,9 +115,11 @@ contains
     end if
     self%states = new_band_states(model)
     self%joined = find_joined_elements(model)
-    if (model%setup%ply_damage%scatters()) &
+    self%onset = [(onset_strain(self%bands(i)), i=1, size(self%bands))]
+    if (model%setup%ply_damage%scatters()) then
       self%drawn = new_drawn_strengths(model, self%plies, self%states, self%joined%joined)
-    self%onset = [(onset_strain(weakest_law(self, i)), i=1, size(self%bands))]
+      self%onset = [(onset_strain(self%drawn%law(self%bands(i), self%states, i)), i=1, size(self%bands))]
+    end if
     self%height = max(abs(self%plies%z_top), abs(self%plies%z_bottom))
     if (model%setup%ply_damage%weibull_modulus > 0 .and. .not. allocated(self%drawn)) then
       self%volumes = new_stressed_volumes(model, self%bands, self%states)
@@ -144,25 +144,6 @@ contains
     if (.not. (allocated(self%rates) .or. allocated(self%volumes))) &
       self%loaded = new_loaded_plies(self%plies, self%bands, self%states, self%onset, self%height)
   end function new_crack_band_sections
-
-  !> Law of a ply in an element, with the strength of its fibres there.
-  pure type(crack_band_t) function law_of(self, ply, at) result(band)
-    class(crack_band_sections_t), intent(in) :: self
-    !> The ply, and the place of its state
-    integer, intent(in) :: ply, at
-
-    band = self%bands(ply)
-    if (allocated(self%drawn)) band%along(1) = band%along(1)*self%drawn%factor(at)
-  end function law_of
-
-  !> Law of a ply with the smallest strength of its fibres on this rank.
-  pure type(crack_band_t) function weakest_law(self, ply) result(band)
-    class(crack_band_sections_t), intent(in) :: self
-    integer, intent(in) :: ply
-
-    band = self%bands(ply)
-    if (allocated(self%drawn)) band%along(1) = band%along(1)*self%drawn%smallest(self%states, ply)
-  end function weakest_law
 
   !> True for a batch with elements that share their state.
   pure logical function needs_joined_strains(self, b)
@@ -376,14 +357,17 @@ contains
     type(band_strains_t), intent(in) :: strains
     !> The accepted state with the present permanent strain; receives the damage
     type(band_state_t), intent(inout) :: new
+    type(crack_band_t) :: law
     real(wp) :: normal(2), factor
 
     factor = 1
+    law = self%bands(ply)
     associate (at => self%states%offset(element) + ply, sides => self%sides(:, element))
+      if (allocated(self%drawn)) law%along(1) = law%along(1)*self%drawn%factor(at)
       if (allocated(self%rates)) call self%rates%find_factor(at, self%plies(ply), self%bands(ply), moments, factor)
       ! Mean width of the elements normal to a straight crack.
       normal = abs([self%plies(ply)%cosine, self%plies(ply)%sine])
-      call soften_band(law_of(self, ply, at), [dot_product(normal, sides), dot_product(normal, sides([2, 1]))], strains, &
+      call soften_band(law, [dot_product(normal, sides), dot_product(normal, sides([2, 1]))], strains, &
                        self%states%accepted(at), new, factor)
       if (allocated(self%volumes)) self%volumes%stress(at) = tensile_stress(self%bands(ply), strains, new)
     end associate
@@ -451,15 +435,6 @@ contains
     energies = dissipated_so_far(self%states, self%plies, self%bands, self%area, self%touched)
   end function dissipated
 
-  !> Volume of this rank's plies with a cracked matrix, and its integral of the factor of their strengths by the strain
-  !> rate, as exact sums.
-  pure function strengthened(self) result(sums)
-    class(crack_band_sections_t), intent(in) :: self
-    type(exact_sum_t) :: sums(2)
-
-    sums = strengthened_so_far(self%states, self%plies, self%area)
-  end function strengthened
-
   !> Reduced elastic constants of a ply of an element.
   pure function elasticity(self, ply, element)
     class(crack_band_sections_t), intent(in) :: self
@@ -474,19 +449,6 @@ contains
       if (self%touched(element)) elasticity = degraded_elasticity(band, self%states%trial(at))
     end associate
   end function elasticity
-
-  !> Tensile strength of the fibres of a ply of an element.
-  pure real(wp) function fibre_strength(self, ply, element) result(strength)
-    class(crack_band_sections_t), intent(in) :: self
-    !> Number of the ply, and element of this rank whose cell has it
-    integer, intent(in) :: ply, element
-    type(crack_band_t) :: law
-    integer :: at
-
-    at = self%states%at(ply, element)
-    law = law_of(self, at - self%states%offset(element), at)
-    strength = law%along(1)
-  end function fibre_strength
 
   !> Saves or loads the accepted state.
   subroutine visit(self, archive, model)

@@ -1,8 +1,9 @@
-!> Tensile strengths of fibres that are drawn once by position, theory (M33): the plies are divided into squares, and the
-!> strength of a square is a random number of the seed, the ply and the place of the square. A strength is thus no
+!> Tensile strengths of fibres that are drawn once by position, theory (M33): the plies are divided into squares, and
+!> the strength of a square is a random number of the seed, the ply and the place of the square. A strength is thus no
 !> state: restarts, other ranks, other layers and another mesh find the same one.
 module drawn_strengths
   use band_states, only: band_states_t
+  use crack_bands, only: crack_band_t
   use kinds, only: long, wp
   use composite_plates, only: composite_plate_t
   use murmur_hashes, only: murmur3, uniform_of
@@ -17,7 +18,7 @@ module drawn_strengths
     !> Tensile strength over XT, at the places of the states
     real(wp), allocatable :: factor(:)
   contains
-    procedure :: smallest
+    procedure :: law
   end type drawn_strengths_t
 
 contains
@@ -49,13 +50,16 @@ contains
     end associate
   end function new_drawn_strengths
 
-  !> Smallest strength of a ply over XT in the elements of this rank.
-  pure real(wp) function smallest(self, states, ply)
+  !> Law of a ply with its smallest strength in the elements of this rank.
+  pure type(crack_band_t) function law(self, band, states, ply)
     class(drawn_strengths_t), intent(in) :: self
+    !> Its law with XT
+    type(crack_band_t), intent(in) :: band
     !> States of the plies of all elements
     type(band_states_t), intent(in) :: states
     !> The ply, among those of the different laminates
     integer, intent(in) :: ply
+    real(wp) :: smallest
     integer :: element
 
     smallest = 1
@@ -63,7 +67,9 @@ contains
       if (ply >= states%range(1, element) .and. ply <= states%range(2, element)) &
         smallest = min(smallest, self%factor(states%offset(element) + ply))
     end do
-  end function smallest
+    law = band
+    law%along(1) = law%along(1)*smallest
+  end function law
 
   !> Strength of a square over XT. Weibull's distribution in which XT is the mean of specimens of the reference volume.
   pure real(wp) function square_strength(damage, volume, hash) result(factor)
@@ -80,6 +86,7 @@ contains
 
   !> Random number of the weakest square: the largest one, as strengths fall with it.
   pure integer(long) function weakest_of(seed, ply, squares) result(hash)
+    !> Of the deck
     integer, intent(in) :: seed
     !> Number of the ply
     integer, intent(in) :: ply

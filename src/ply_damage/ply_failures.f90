@@ -57,7 +57,6 @@ module ply_failures
     procedure :: measure_lag
     procedure :: total_dissipation
     procedure :: stressed_volume
-    procedure :: mean_strengthening
     procedure :: strained_plies
     procedure :: carried_by_cracks
     procedure :: failed
@@ -273,19 +272,6 @@ contains
     if (.not. allocated(self%bands)) return
     if (allocated(self%bands%volumes)) volume = self%bands%volumes%volume_at_failure(ply)
   end function stressed_volume
-
-  !> Mean factor of the strengths of cracked matrix by the strain rate; 0: no matrix has cracked, or strengths do not
-  !> depend on the rate. Collective.
-  real(wp) function mean_strengthening(self, model) result(factor)
-    class(ply_failure_t), intent(in) :: self
-    class(composite_plate_t), intent(in) :: model
-    real(wp) :: totals(2)
-
-    factor = 0
-    if (.not. model%setup%has_rates()) return
-    totals = totals_of(model%communicator, self%bands%strengthened())
-    if (totals(1) > 0) factor = totals(2)/totals(1)
-  end function mean_strengthening
 
   !> Plies of an element with their permanent strains.
   pure function strained_plies(self, model, element) result(plies)

@@ -28,8 +28,8 @@ module ply_fields
       &than in tension, else 0; only where plies soften.', &
     'ply_N_damage_fibre'//damaged//'Relative loss of E1 of ply N, 0 to 1.', &
     'ply_N_damage_matrix'//damaged//'Relative loss of E2 of ply N, 0 to 1.', &
-    'ply_N_fibre_strength | cells | pressure | '//field_ply_damage//' | &ply_damage | Tensile strength of the fibres of &
-      &ply N that scatters from place to place; only with strength_seed.', &
+    'ply_N_fibre_strength | cells | pressure | '//field_ply_damage//' | &ply_damage | Tensile strength of the fibres &
+      &of ply N that scatters from place to place; only with strength_seed.', &
     'ply_N_sigma11'//middle//'Stress along the fibres in the mid-plane of ply N.', &
     'ply_N_sigma22'//middle//'Stress across the fibres in the mid-plane of ply N.', &
     'ply_N_tau12'//middle//'In-plane shear stress, in the mid-plane of ply N.', &
@@ -114,11 +114,13 @@ contains
     integer, intent(in) :: ply
     !> (1, elements)
     real(wp) :: strengths(1, model%elements%elements)
-    integer :: element
+    integer :: element, at
 
     strengths = 0
     do element = 1, size(strengths, 2)
-      if (model%stacks(model%stack(element))%has(ply)) strengths(1, element) = bands%fibre_strength(ply, element)
+      if (.not. model%stacks(model%stack(element))%has(ply)) cycle
+      at = bands%states%at(ply, element)
+      strengths(1, element) = bands%bands(at - bands%states%offset(element))%along(1)*bands%drawn%factor(at)
     end do
   end function strengths_in
 

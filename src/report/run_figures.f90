@@ -1,6 +1,8 @@
 !> Results for the summary that are computed at the end of a run, in addition to its record.
 module run_figures
+  use band_energies, only: strengthened_so_far
   use compressed_damage, only: compressed_damage_t, between_supports, damage_of
+  use crack_band_sections, only: crack_band_sections_t
   use delamination_parameters, only: toughnesses
   use dent_depths, only: dent_depth
   use end_sections, only: skin_share
@@ -12,6 +14,7 @@ module run_figures
   use plate_loads, only: loaded_plate_t
   use ply_damage_parameters, only: failure_modes
   use projected_areas, only: area_rules, projected_areas_of
+  use rank_totals, only: totals_of
   use states, only: state_t
   use threshold_forces, only: effective_bending_stiffness, patch_factor, threshold_force
   implicit none
@@ -74,7 +77,7 @@ contains
     figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)
     figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plies)]
-    figures%strengthening = now%plies%mean_strengthening(model)
+    if (model%setup%has_rates()) figures%strengthening = mean_strengthening(model, now%plies%bands)
     along = pressed_axis(model)
     if (along > 0) then
       figures%compressed = damage_of(model, now, along)
@@ -95,6 +98,18 @@ contains
       if (starter > 0) figures%starter_threshold = figures%threshold(1)*patch_factor(patch, starter**2)
     end associate
   end subroutine find_figures
+
+  !> Mean factor of the strengths of cracked matrix by the strain rate; 0: no matrix has cracked. Collective.
+  real(wp) function mean_strengthening(model, bands) result(factor)
+    type(model_t), intent(in) :: model
+    !> The plies
+    type(crack_band_sections_t), intent(in) :: bands
+    real(wp) :: totals(2)
+
+    factor = 0
+    totals = totals_of(model%communicator, strengthened_so_far(bands%states, bands%plies, bands%area))
+    if (totals(1) > 0) factor = totals(2)/totals(1)
+  end function mean_strengthening
 
   !> End of a run.
   pure function ending_of(error) result(ending)
