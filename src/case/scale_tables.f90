@@ -73,7 +73,8 @@ contains
       call put('bending wavelength at first contact', scales%wave_length, length)
       call put('elements in a wavelength', scales%wave_length/o%edge, bare)
       call put(trim(merge('expected peak force (undamaged, without stringers)   ', &
-                          'expected peak force (undamaged plate, linear strains)', size(deck%stringers) > 0)), &
+                          'expected peak force (undamaged plate, linear strains)', &
+                          size(deck%setup%stringers) > 0)), &
                o%force, force)
       call put('expected indentation', o%indentation, length)
       call put('expected deflection over thickness', o%deflection/scales%thickness, bare)

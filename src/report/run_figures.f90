@@ -101,7 +101,7 @@ contains
 
   !> Mean factor of the strengths of cracked matrix by the strain rate; 0: no matrix has cracked. Collective.
   real(wp) function mean_strengthening(model, bands) result(factor)
-    type(model_t), intent(in) :: model
+    class(loaded_plate_t), intent(in) :: model
     !> The plies
     type(crack_band_sections_t), intent(in) :: bands
     real(wp) :: totals(2)
