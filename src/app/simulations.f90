@@ -311,7 +311,7 @@ contains
     row_due = row_is_due(self%deck%output, self%stepper%now%step) .or. self%stepper%now%time >= end_of(self)
     fields_due = .false.
     checkpoint_due = .false.
-    if (at_event) then
+    if (at_event .or. has_ended_by_failure(self)) then
       closest = self%stepper%smallest_step
       if (self%history_clock%strikes_at(self%stepper%now%time, closest)) row_due = .true.
       fields_due = self%fields_clock%strikes_at(self%stepper%now%time, closest)

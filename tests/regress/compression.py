@@ -62,8 +62,9 @@ LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 1e-3, 1e-6
 # A plate within that of the impact, narrower than its delaminations, on cells of its own.
 CUT = ["plate%length=40e-3, 18e-3", "support%window=36e-3, 16e-3", "mesh%elements=9, 10", "mesh%lines_x=18e-3",
        "mesh%lines_y=8e-3", "line%at=20e-3", "line%displacement=-0.1e-3", "time%end=0.4e-3"]
-# Where the plate is struck beside its centre, in y.
-ASIDE = 6e-3
+# Where the plate is struck beside its centre, in y. Relative to the largest value up to half of the run, of an impact and
+# its mirror image. Measured: 3.3e-10 in the stress.
+ASIDE, MIRRORED = 6e-3, 1e-7
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
 # Modulus of [0/90]s; blades on the back of the panel: distance from its middle and axial stiffness. The load of this
@@ -463,6 +464,10 @@ def check_until(implam, folder, launcher):
     check_restart(implam, folder, reference)
     require(filecmp.cmp(press(implam, folder, settings, [*launcher, "2"]), reference, shallow=False),
             "The history of two ranks differs.")
+    path = press(implam, folder, [*settings[:1], "output%fields_every=0.1e-3", "output%checkpoint_at_end=.true."])
+    shutil.copy(path, reference)
+    go_on(implam, folder)
+    require(filecmp.cmp(path, reference, shallow=False), "The restart of an ended run adds rows.")
     check = run([implam, "check", deck_of(folder, IMPACT, ["time%until='failure'"])], EXIT_DECK, folder)
     require("until" in check and "&line" in check, f"A deck without compressed ends: {check}")
 
@@ -494,7 +499,7 @@ def check_aside(implam, folder, _):
         here, there = (history[name][:len(history[name]) // 2] for history in histories)
         difference = max(abs(a - b) for a, b in zip(here, there, strict=True)) / max(map(abs, here))
         print(f"{name}: {difference:.1e}")
-        require(difference < ROUNDED, f"{name} differs from that of the mirrored impact.")
+        require(difference < MIRRORED, f"{name} differs from that of the mirrored impact.")
 
 
 def check_closing(implam, folder, _):
