@@ -1,5 +1,4 @@
-!> Central differences: explicit motion of the layers, with interface tractions that are implicit at each node. No
-!> global system is solved.
+!> Central differences: explicit motion of layers, with interface tractions implicit at each node, no global system.
 !>
 !> Velocities are those at the middle of steps, from the forces F at the start of a step,
 !>   v(n+1/2) = v(n-1/2) + h M^-1 (F(n) - B^T lambda(n)),   u(n+1) = u(n) + h v(n+1/2),
@@ -9,6 +8,7 @@ module central_differences
   use archives, only: archive_t
   use batch_strains, only: depends_on_slopes
   use central_difference_parameters, only: central_difference_parameters_t
+  use cohesive_interfaces, only: cohesive_interfaces_t
   use field_mappings, only: motion_field
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
   use front_onsets, only: front_onsets_t, create_front_onsets
@@ -43,8 +43,7 @@ module central_differences
   !> steps.
   real(wp), parameter :: event_tolerance = 1.0e-3_wp
 
-  !> Data of the method that are not part of the state. They are many because nodes, stacks, lines, rigs and impactor
-  !> each move by a rule of their own.
+  !> Data of the method that are not part of the state, many because each of nodes, lines and impactor has a rule.
   type, extends(nodal_steps_t) :: central_difference_t
     !> Parameters of central differences
     type(central_difference_parameters_t) :: parameters
@@ -181,11 +180,7 @@ contains
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call change_length(self, model, v, 1)
-      if (self%onsets%is_due(now%step)) then
-        call self%store_history()
-        call self%onsets%find(model, self%stacks, now%interfaces%cohesive, u, self%laws_changed)
-        if (self%laws_changed .and. allocated(self%batches)) call self%batches%load(self%stacks%history)
-      end if
+      if (self%onsets%is_due(now%step)) call soften_at_fronts(self, model, now%interfaces%cohesive, u)
       call model%profile%leave()
       call model%halo%update(u)
     end associate
@@ -197,6 +192,27 @@ contains
     call self%find_forces(model, now)
     call add_loads(self, model, now, load_factors)
   end subroutine advance
+
+  !> Reduces the laws of points whose energy release rate has reached the onset. Collective.
+  subroutine soften_at_fronts(self, model, cohesive, u)
+    type(central_difference_t), intent(inout) :: self
+    type(model_t), intent(in) :: model
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> Unknowns, (5, points)
+    real(wp), intent(in) :: u(:, :)
+    real(wp), allocatable :: factors(:, :)
+    integer, allocatable :: points(:)
+    integer :: i
+
+    call self%onsets%find(model, self%stacks, cohesive, u, points, factors)
+    if (size(points) == 0) return
+    call self%store_history()
+    do i = 1, size(points)
+      call self%stacks%begin_softening(model, cohesive, points(i), factors(:, i), u)
+    end do
+    call self%batches%load(self%stacks%history)
+    self%laws_changed = .true.
+  end subroutine soften_at_fronts
 
   !> Records the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
   !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the change is

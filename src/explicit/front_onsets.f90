@@ -56,26 +56,33 @@ contains
     is_due = allocated(self%values) .and. modulo(step, steps_between_searches) == 0
   end function is_due
 
-  !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
-  subroutine find(self, model, stacks, cohesive, u, found)
+  !> Finds undamaged points at which the energy release rate has reached the onset, with the factors of their laws.
+  !> Collective.
+  subroutine find(self, model, stacks, cohesive, u, points, factors)
     class(front_onsets_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    type(interface_stacks_t), intent(inout) :: stacks
-    !> The interfaces; receive the laws
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    type(interface_stacks_t), intent(in) :: stacks
+    type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
-    !> True if there are such points on this rank; otherwise not changed
-    logical, intent(inout) :: found
+    !> The points of this rank
+    integer, allocatable, intent(out) :: points(:)
+    !> Factors of their strengths and of the stiffness of opening, (2, n)
+    real(wp), allocatable, intent(out) :: factors(:, :)
+    real(wp) :: found(2)
     integer :: i
 
+    allocate (points(0), factors(2, 0))
     if (cohesive%is_held) return
     call gather(self, model, stacks, cohesive, u)
     do i = 1, size(self%stencils%points)
       associate (p => self%stencils%points(i))
         if (cohesive%points(p)%damage > 0 .or. cohesive%by_energy(p) .or. .not. stacks%may_separate(p)) cycle
         if (model%setup%delaminations(model%zone(p))%growth_control /= growth_by_energy) cycle
-        call find_at(self, model, i, stacks, cohesive, u, found)
+        call find_at(self, model, i, stacks, u, found)
+        if (.not. (found(1) < cohesive%strength(p) .or. (found(2) < 1 .and. .not. cohesive%strength(p) < 1))) cycle
+        points = [points, p]
+        factors = reshape([factors, found], [2, size(points)])
       end associate
     end do
   end subroutine find
@@ -104,22 +111,22 @@ contains
     call self%stencils%exchange%update(self%values)
   end subroutine gather
 
-  !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
-  pure subroutine find_at(self, model, i, stacks, cohesive, u, found)
+  !> Factors of the law of a point at which the energy release rate has reached the onset in one of the directions of
+  !> growth; 1 if it has not.
+  pure subroutine find_at(self, model, i, stacks, u, factors)
     type(front_onsets_t), intent(in) :: self
     type(model_t), intent(in) :: model
     !> Index of the point among those with an interface
     integer, intent(in) :: i
-    type(interface_stacks_t), intent(inout) :: stacks
-    !> The interfaces; receive the law
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    type(interface_stacks_t), intent(in) :: stacks
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
-    !> Set to true if it has
-    logical, intent(inout) :: found
-    real(wp) :: rate, largest, strength, opening
+    !> Of the strengths and of the stiffness of opening
+    real(wp), intent(out) :: factors(2)
+    real(wp) :: rate, largest
     integer :: d, direction
 
+    factors = 1
     associate (p => self%stencils%points(i), near => self%stencils%near(:, :, i))
       largest = 0
       direction = 0
@@ -134,10 +141,7 @@ contains
       end do
       if (largest < onset_share) return
       call reduce_law(model%cohesive_laws(model%zone(p)), u(1:3, p), stacks%history%forces(:, p)/stacks%area(p), &
-                      taken(self, of_jumps, near(behind, direction)), strength, opening)
-      if (.not. (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1))) return
-      call stacks%begin_softening(model, cohesive, p, [strength, opening], u)
-      found = .true.
+                      taken(self, of_jumps, near(behind, direction)), factors(1), factors(2))
     end associate
   end subroutine find_at
 

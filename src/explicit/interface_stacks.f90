@@ -201,9 +201,9 @@ contains
     end do
   end function last_layer
 
-  !> Onset energies where the strengths have changed: N Y = G_c, and the toughness of a mixture of modes is at least that of the weaker pure mode. The
-  !> interfaces of a node below a clamp with a force do not separate: the clamp acts on one node of the mesh, which
-  !> could not carry a force that lifts the upper layers.
+  !> Onset energies where the strengths have changed: N Y = G_c, and the toughness of a mixture of modes is at least
+  !> that of the weaker pure mode. The interfaces of a node below a clamp with a force do not separate: the clamp acts
+  !> on one node of the mesh, which could not carry a force that lifts the upper layers.
   pure subroutine find_onsets(self, model, cohesive)
     class(interface_stacks_t), intent(inout) :: self
     type(model_t), intent(in) :: model

@@ -9,8 +9,8 @@ module stack_motions
   use models, only: model_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: jump_lanes_t, new_stack_batches, stack_batch_t, stack_batches_t, store_points, &
-                           surface_states_t
+  use stack_batches, only: new_stack_batches, stack_batch_t, stack_batches_t
+  use stack_lanes, only: jump_lanes_t, store_points, surface_states_t
   use stack_solutions, only: friction_t, solve_damaged, solve_intact
   use stack_updates, only: may_start, start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
@@ -66,7 +66,7 @@ contains
     call move_alloc(nodes%batches, batches)
     if (allocated(batches)) then
       call batches%move_damaged(nodes%stacks, nodes%inertia, model, cohesive)
-      if (nodes%laws_changed) call batches%update_laws(cohesive)
+      if (nodes%laws_changed) call batches%update_laws(nodes%stacks, cohesive)
     else
       batches = new_stack_batches(nodes%stacks, nodes%inertia, model, cohesive, are_constrained(nodes))
     end if
@@ -136,7 +136,7 @@ contains
       if (batch%damaged) then
         call update_damaged(batch, states, steps, model, cohesive, change, tractions, jumps%forces, friction, &
                             jumps%lost)
-        call store_points(batch, states, cohesive)
+        call store_points(states, batch%first, batch%members, cohesive)
       else
         call update_intact(batch, steps, start, change, jumps%last, tractions, jumps%forces, jumps%lost)
       end if
@@ -297,12 +297,10 @@ contains
     real(wp), intent(in) :: u(:, :)
     !> The jumps of the batch
     type(jump_lanes_t), intent(inout) :: jumps
-    real(wp) :: min_onset(lanes, batch%n)
     logical :: starts(lanes)
     integer :: lane
 
-    call take(1, size(stacks%min_onset), stacks%min_onset, batch%first + 1, batch%n, min_onset)
-    starts = may_start(batch, min_onset, displacement)
+    starts = may_start(batch, batch%min_onset, displacement)
     if (.not. any(starts)) return
     do lane = 1, batch%members
       if (.not. starts(lane)) cycle

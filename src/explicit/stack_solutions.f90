@@ -17,10 +17,11 @@ module stack_solutions
   use kinds, only: wp
   use models, only: model_t
   use roundings, only: rounding
-  use stack_batches, only: stack_batch_t, surface_states_t
+  use stack_batches, only: stack_batch_t
+  use stack_lanes, only: surface_states_t
   use step_lengths, only: step_lengths_t
   use tridiagonal_systems, only: solve_factored, solve_tractions
-  use weighted_jumps, only: newest, past_jumps_in_lanes, past_openings_in_lanes
+  use weighted_jumps, only: newest, past_jumps_in_lanes, past_openings_in_lanes, past_weights
   implicit none
   private
   public :: friction_t, energy_of, may_grow, solve_damaged, solve_intact
@@ -51,14 +52,9 @@ contains
     real(wp), intent(in) :: trial(lanes, 3, n)
     !> Forces on the jumps
     real(wp), intent(out) :: forces(lanes, 3, n)
-    integer :: j, k
 
-    do j = 1, n
-      do k = 1, 3
-        forces(:, k, j) = trial(:, k, j) &
-                          + past_jumps_in_lanes(start(:, k, j), last(:, k, j), earlier(:, k, j))/newest
-      end do
-    end do
+    ! `past_jumps`, expanded here to be vectorized.
+    forces = trial + (past_weights(1)*start - past_weights(2)*last - past_weights(3)*earlier)/newest
     call solve_factored(n, factors, forces)
   end subroutine solve_intact
 

@@ -11,7 +11,8 @@ module stack_updates
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use models, only: model_t
-  use stack_batches, only: stack_batch_t, surface_states_t
+  use stack_batches, only: stack_batch_t
+  use stack_lanes, only: surface_states_t
   use stack_solutions, only: energy_of, friction_t, may_grow
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: memory

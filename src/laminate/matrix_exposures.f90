@@ -132,17 +132,31 @@ contains
   end function plane_exposure
 
   !> True if stresses crack the matrix on a plane. Planes are evaluated only where an upper bound of their exposures
-  !> reaches 1.
+  !> reaches 1, and by squares: with the linear part l of its exposure, `exposure_of`, a plane cracks if the square of
+  !> the rest reaches that of 1 - l.
   pure logical function cracks_on_a_plane(strengths, stress) result(cracks)
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
+    real(wp) :: across, tension, normal(planes), excess(planes)
+    integer :: i
+    ! Of the inclinations of the planes.
+    real(wp), parameter :: cosines(planes) = [(cos(pi*i/planes), i=1, planes)], &
+                           sines(planes) = [(sin(pi*i/planes), i=1, planes)]
 
-    associate (s => strengths%shear, s22 => stress(2), s23 => abs(stress(5)))
-      cracks = (max(0.0_wp, s22) + s23)/strengths%tension + (abs(s22)/2 + s23)/(action_plane(strengths)*s) + &
-               (abs(stress(3)) + abs(stress(4)))/s >= 1
-      if (cracks) cracks = plane_exposure(strengths, stress, 1.0_wp) >= 1
+    across = action_plane(strengths)*strengths%shear
+    associate (s => strengths%shear, s22 => stress(2), s23 => stress(5), yt => strengths%tension)
+      cracks = (max(0.0_wp, s22) + abs(s23))/yt + (abs(s22)/2 + abs(s23))/across &
+               + (abs(stress(3)) + abs(stress(4)))/s >= 1
+      if (.not. cracks) return
+      tension = (1 - inclination_tension*yt/s)/yt
+      normal = (s22*cosines + 2*s23*sines)*cosines
+      excess = ((s23*(cosines - sines)*(cosines + sines) - s22*sines*cosines)/across)**2 &
+               + ((stress(3)*cosines + stress(4)*sines)/s)**2 &
+               + (merge(tension, inclination_compression/s, normal >= 0)*normal)**2 &
+               - max(0.0_wp, 1 - merge(inclination_tension, inclination_compression, normal >= 0)/s*normal)**2
     end associate
+    cracks = any(excess >= 0)
   end function cracks_on_a_plane
 
   !> Exposure of one plane.

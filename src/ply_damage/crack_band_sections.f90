@@ -31,8 +31,7 @@ module crack_band_sections
   private
   public :: crack_band_sections_t, new_crack_band_sections
 
-  !> The plies of this rank's elements. It has many components because each effect that a deck may leave out has its
-  !> own.
+  !> The plies of this rank's elements, with a component for each effect because a deck may leave it out.
   type, extends(section_law_t) :: crack_band_sections_t
     !> Damage and energies of the plies
     type(band_states_t) :: states
@@ -64,8 +63,8 @@ module crack_band_sections
     type(joined_elements_t) :: joined
     !> Strain below which damage does not start in each ply, and distance of its outer face from the middle surface
     real(wp), allocatable, private :: onset(:), height(:)
-    !> The smallest onset and the largest distance of each element's plies, (2, elements)
-    real(wp), allocatable, private :: limits(:, :)
+    !> The smallest onset and the largest distance of each element's plies, (lanes, 2, batches)
+    real(wp), allocatable, private :: limits(:, :, :)
     !> True for elements with damage in the trial, (elements)
     logical, allocatable :: touched(:)
     !> True for elements whose trial may differ from the accepted state, (elements)
@@ -131,14 +130,14 @@ contains
     self%stiffness = model%elements%stiffness
     allocate (self%sides(2, model%elements%elements), self%area(model%elements%elements))
     allocate (self%touched(model%elements%elements), self%pending(model%elements%elements), source=.false.)
-    allocate (self%limits(2, model%elements%elements))
+    allocate (self%limits(lanes, 2, model%elements%batches), source=0.0_wp)
     do i = 1, model%elements%elements
       associate (place => model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
         self%area(i) = model%mesh%cell_area(place)
         self%sides(:, i) = model%mesh%cell_sides(place)*merge(2, 1, self%joined%joined(:, i))
       end associate
       associate (first => self%states%range(1, i), last => self%states%range(2, i))
-        self%limits(:, i) = [minval(self%onset(first:last)), maxval(self%height(first:last))]
+        self%limits(lane_of(i), :, batch_of(i)) = [minval(self%onset(first:last)), maxval(self%height(first:last))]
       end associate
     end do
     if (.not. (allocated(self%rates) .or. allocated(self%volumes))) &
@@ -174,7 +173,7 @@ contains
       associate (first => self%states%range(1, element), last => self%states%range(2, element), &
                  offset => self%states%offset(element))
         call self%joined%accumulate_strains(element, moments(lane, :), &
-                                            sizes(lane, 1) + self%limits(2, element)*sizes(lane, 2), first, &
+                                            sizes(lane, 1) + self%limits(lane, 2, b)*sizes(lane, 2), first, &
                                             self%plies(first:last), self%bands(first:last), &
                                             self%states%accepted(offset + first:offset + last))
       end associate
@@ -202,28 +201,29 @@ contains
     real(wp), intent(inout) :: stiffness(lanes, 21)
     !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
-    real(wp) :: moments(lanes, moment_values)
+    real(wp) :: sizes(lanes, 2), moments(lanes, moment_values)
     logical :: strained(lanes), loaded(lanes), changed
-    integer :: lane, element
+    integer :: first, last, lane
 
-    if (allocated(self%volumes)) call clear_stresses(self, b)
-    strained = are_strained(self, b, strain_sizes(weight, strains))
-    if (any(strained)) then
+    first = first_element(b)
+    last = min(first + lanes - 1, size(self%touched))
+    if (allocated(self%volumes)) call self%volumes%clear(self%states, first, last)
+    sizes = strain_sizes(weight, strains)
+    strained = .not. self%joined%joined_bounds(b, sizes(:, 1) + self%limits(:, 2, b)*sizes(:, 2)) < self%limits(:, 1, b)
+    strained(:last - first + 1) = strained(:last - first + 1) .or. self%touched(first:last)
+    if (any(strained(:last - first + 1))) then
       moments = strain_moments(weight, strains)
-      loaded = strained
-      if (.not. self%keeps_damage) loaded = are_loaded(self, b, strained, moments)
-      do lane = 1, lanes
-        if (.not. loaded(lane)) cycle
-        element = first_element(b) + lane - 1
+      loaded = self%loaded%may_soften(b, self%joined%joined_moments(b, moments))
+      do lane = 1, last - first + 1
+        if (.not. strained(lane)) cycle
         changed = self%keeps_damage
-        if (.not. self%keeps_damage) &
-          call soften_element(self, element, moments_from(moments(lane, :)), stiffness(lane, :), changed)
+        if (.not. (changed .or. loaded(lane) .or. self%pending(first + lane - 1))) cycle
+        if (.not. changed) call soften_element(self, first + lane - 1, moments_from(moments(lane, :)), &
+                                               stiffness(lane, :), changed)
         if (.not. changed) cycle
-        if (allocated(self%signs)) then
-          self%tensile(lane, :, b) = resultants_without_strain(self%plies, self%bands, self%states, element, .false.)
-        else if (present(free)) then
-          free(lane, :) = resultants_without_strain(self%plies, self%bands, self%states, element, .true.)
-        end if
+        if (present(free)) free(lane, :) = resultants_without_strain(self%plies, self%bands, self%states, &
+                                                                     first + lane - 1, .not. allocated(self%signs))
+        if (allocated(self%signs)) self%tensile(lane, :, b) = free(lane, :)
       end do
       self%stiffness(:, :, b) = stiffness
     end if
@@ -231,69 +231,6 @@ contains
       signed_resultants(self%signs, self%plies, self%bands, self%states, self%joined, self%touched, b, weight, strains)
     if (present(free)) self%free(:, :, b) = free
   end subroutine soften
-
-  !> Sets the stresses of a batch, on which the strengths of fibres depend, to zero.
-  pure subroutine clear_stresses(self, b)
-    class(crack_band_sections_t), intent(inout) :: self
-    !> Number of the batch
-    integer, intent(in) :: b
-    integer :: element
-
-    do element = first_element(b), min(first_element(b + 1) - 1, size(self%touched))
-      call self%volumes%clear(self%states, element)
-    end do
-  end subroutine clear_stresses
-
-  !> True for elements with damage, or with strains with which it may start.
-  pure function are_strained(self, b, sizes) result(strained)
-    class(crack_band_sections_t), intent(in) :: self
-    !> Number of the batch
-    integer, intent(in) :: b
-    !> The result of `strain_sizes`
-    real(wp), intent(in) :: sizes(lanes, 2)
-    !> One for each lane
-    logical :: strained(lanes)
-    real(wp) :: bound
-    integer :: lane, element
-
-    strained = .false.
-    do lane = 1, min(lanes, size(self%touched) - first_element(b) + 1)
-      element = first_element(b) + lane - 1
-      bound = sizes(lane, 1) + self%limits(2, element)*sizes(lane, 2)
-      if (self%joined%shares(element)) bound = self%joined%bound_of(element)
-      strained(lane) = self%touched(element) .or. .not. bound < self%limits(1, element)
-    end do
-  end function are_strained
-
-  !> Of these, the elements whose plies may lose stiffness, or have a trial that differs from the accepted state.
-  pure function are_loaded(self, b, strained, moments) result(loaded)
-    class(crack_band_sections_t), intent(in) :: self
-    !> Number of the batch
-    integer, intent(in) :: b
-    !> The result of `are_strained`
-    logical, intent(in) :: strained(lanes)
-    !> That of `strain_moments`
-    real(wp), intent(in) :: moments(lanes, moment_values)
-    !> One for each lane
-    logical :: loaded(lanes)
-    real(wp) :: joined(lanes, moment_values)
-    real(wp), allocatable :: means(:)
-    integer :: lane, element
-
-    joined = moments
-    do lane = 1, lanes
-      element = first_element(b) + lane - 1
-      if (.not. strained(lane)) cycle
-      if (.not. self%joined%shares(element)) cycle
-      means = self%joined%means_of(element)
-      joined(lane, :) = means(:moment_values)
-    end do
-    loaded = self%loaded%may_soften(b, joined)
-    do lane = 1, lanes
-      if (strained(lane)) loaded(lane) = loaded(lane) .or. self%pending(first_element(b) + lane - 1)
-    end do
-    loaded = loaded .and. strained
-  end function are_loaded
 
   !> Damage of the plies of one element under trial strains, and its section.
   pure subroutine soften_element(self, element, moments, stiffness, changed)

@@ -26,7 +26,7 @@ contains
     areas = 0
     if (.not. model%setup%ply_damage%is_present) return
     do i = 1, model%elements%elements
-      if (.not. failures%may_have_failed(i)) cycle
+      if (.not. may_have_failed(failures, i)) cycle
       area = model%mesh%cell_area(model%mesh%place_of(model%mesh%element_cell(model%distribution%elements(i))))
       associate (plies => model%stacks(model%stack(i))%number)
         do k = 1, size(plies)
@@ -51,7 +51,7 @@ contains
     counts = 0
     if (.not. model%setup%ply_damage%is_present) return
     do element = 1, model%elements%elements
-      if (.not. failures%may_have_failed(element)) cycle
+      if (.not. may_have_failed(failures, element)) cycle
       associate (plies => model%stacks(model%stack(element))%number)
         do k = 1, size(plies)
           where (failures%failed(plies(k), element)) counts = counts + model%mesh%multiplicity
@@ -62,4 +62,14 @@ contains
       call model%communicator%sum(counts(mode))
     end do
   end function failed_counts
+
+  !> False for elements without failed plies.
+  pure logical function may_have_failed(failures, element)
+    type(ply_failure_t), intent(in) :: failures
+    !> Element of this rank
+    integer, intent(in) :: element
+
+    may_have_failed = .true.
+    if (allocated(failures%bands)) may_have_failed = failures%bands%touched(element)
+  end function may_have_failed
 end module failed_plies_areas

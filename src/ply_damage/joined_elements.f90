@@ -11,7 +11,7 @@ module joined_elements
   use archives, only: archive_t
   use column_exchanges, only: column_exchange_t, new_column_exchange
   use crack_bands, only: band_state_t, band_strains_t, crack_band_t, flow_band
-  use element_batches, only: batch_of
+  use element_batches, only: batch_of, first_element, lanes
   use field_mappings, only: area_field
   use kinds, only: wp
   use layered_meshes, only: layered_mesh_t
@@ -52,7 +52,8 @@ module joined_elements
     procedure :: separate
     procedure :: visit
     procedure :: means_of
-    procedure :: bound_of
+    procedure :: joined_bounds
+    procedure :: joined_moments
   end type joined_elements_t
 
 contains
@@ -330,18 +331,46 @@ contains
     strains%shear_square = means(moment_values + number)
   end subroutine find_elastic_strains
 
-  !> Upper bound of the strains of all plies of an element and those joined with it.
-  pure real(wp) function bound_of(self, element) result(bound)
+  !> Upper bounds of the strains of all plies of a batch, and of all elements with a common state.
+  pure function joined_bounds(self, b, bounds) result(joined)
     class(joined_elements_t), intent(in) :: self
-    !> Element of this rank that shares its state
-    integer, intent(in) :: element
-    integer :: i
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Of each element
+    real(wp), intent(in) :: bounds(lanes)
+    real(wp) :: joined(lanes)
+    integer :: lane, i
 
-    associate (parts => self%parts(:, self%number(element)))
-      bound = self%moments(moment_values + 1, parts(1))
-      do i = 2, most
-        if (parts(i) > 0) bound = max(bound, self%moments(moment_values + 1, parts(i)))
-      end do
-    end associate
-  end function bound_of
+    joined = bounds
+    if (.not. self%concerned(b)) return
+    do lane = 1, min(lanes, size(self%number) - first_element(b) + 1)
+      if (.not. self%shares(first_element(b) + lane - 1)) cycle
+      associate (parts => self%parts(:, self%number(first_element(b) + lane - 1)))
+        joined(lane) = self%moments(moment_values + 1, parts(1))
+        do i = 2, most
+          if (parts(i) > 0) joined(lane) = max(joined(lane), self%moments(moment_values + 1, parts(i)))
+        end do
+      end associate
+    end do
+  end function joined_bounds
+
+  !> Moments of the strains of a batch, means over all elements with a common state.
+  pure function joined_moments(self, b, moments) result(joined)
+    class(joined_elements_t), intent(in) :: self
+    !> Number of the batch
+    integer, intent(in) :: b
+    !> Of each element, from `strain_moments`
+    real(wp), intent(in) :: moments(lanes, moment_values)
+    real(wp) :: joined(lanes, moment_values)
+    real(wp), allocatable :: means(:)
+    integer :: lane
+
+    joined = moments
+    if (.not. self%concerned(b)) return
+    do lane = 1, min(lanes, size(self%number) - first_element(b) + 1)
+      if (.not. self%shares(first_element(b) + lane - 1)) cycle
+      means = self%means_of(first_element(b) + lane - 1)
+      joined(lane, :) = means(:moment_values)
+    end do
+  end function joined_moments
 end module joined_elements

@@ -15,7 +15,8 @@ module loaded_plies
   private
   public :: loaded_plies_t, new_loaded_plies
 
-  !> A ply of each element of a batch. Its rows are zero where an element has fewer plies.
+  !> A ply of each element of a batch. Its values are zero where an element has fewer plies. It has many components
+  !> because each is a factor that strains or laws would give again in every step.
   type :: ply_lanes_t
     !> Squares and product of the cosine and sine of its angle
     real(wp) :: cosine(lanes) = 0, sine(lanes) = 0, product(lanes) = 0

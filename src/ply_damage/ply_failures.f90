@@ -60,7 +60,6 @@ module ply_failures
     procedure :: strained_plies
     procedure :: carried_by_cracks
     procedure :: failed
-    procedure :: may_have_failed
     procedure :: failed_in_elements
     procedure :: elasticity
     procedure :: elasticities
@@ -219,16 +218,6 @@ contains
     end if
   end function failed
 
-  !> False for elements without failed plies, where nothing need be asked of each ply.
-  pure logical function may_have_failed(self, element)
-    class(ply_failure_t), intent(in) :: self
-    !> Element of this rank
-    integer, intent(in) :: element
-
-    may_have_failed = .true.
-    if (allocated(self%bands)) may_have_failed = self%bands%touched(element)
-  end function may_have_failed
-
   !> Failed modes of a ply in all elements.
   pure function failed_in_elements(self, model, ply) result(failed)
     class(ply_failure_t), intent(in) :: self
@@ -241,7 +230,6 @@ contains
 
     failed = .false.
     do element = 1, size(failed, 2)
-      if (.not. self%may_have_failed(element)) cycle
       if (model%stacks(model%stack(element))%has(ply)) failed(:, element) = self%failed(ply, element)
     end do
   end function failed_in_elements

@@ -144,15 +144,15 @@ contains
     end associate
   end function volume_at_failure
 
-  !> Sets the stresses of an element to zero.
-  pure subroutine clear(self, states, element)
+  !> Sets the stresses of some elements to zero.
+  pure subroutine clear(self, states, first, last)
     class(stressed_volumes_t), intent(inout) :: self
     !> Damage of the plies
     type(band_states_t), intent(in) :: states
-    !> Element of this rank
-    integer, intent(in) :: element
+    !> First and last element of this rank
+    integer, intent(in) :: first, last
 
-    self%stress(states%offset(element) + states%range(1, element):states%offset(element) + states%range(2, element)) = 0
+    self%stress(states%offset(first) + states%range(1, first):states%offset(last) + states%range(2, last)) = 0
   end subroutine clear
 
   !> Volumes of the accepted state. Collective.

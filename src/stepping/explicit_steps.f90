@@ -55,6 +55,7 @@ contains
     type(state_t), intent(inout) :: now
 
     call now%hold_damage(.false.)
+    method%laws_changed = .true.
     if (model%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
   end subroutine release_damage
 
