@@ -1,4 +1,4 @@
-"""Runs without E1c and with E1c = E1 have the same history, to the last bit.
+"""The same run in another way: runs without E1c and with E1c = E1, to the last bit.
 Usage: one_modulus.py IMPLAM FOLDER
 
 Explicit and implicit steps of softening plies, load steps, and sudden failure."""
