@@ -40,7 +40,6 @@ contains
 
   !> Product of two words, its low 32 bits.
   elemental integer(long) function product_of(a, b) result(low)
-    !> The words
     integer(long), intent(in) :: a, b
     integer(long) :: upper
 
@@ -50,7 +49,6 @@ contains
 
   !> A word rotated to the left.
   elemental integer(long) function turned(word, bits)
-    !> The word
     integer(long), intent(in) :: word
     !> By how much
     integer, intent(in) :: bits

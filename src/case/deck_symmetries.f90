@@ -55,8 +55,8 @@ contains
         call report(s, problems, impactor_group, key_at, 'the struck point is not on the lines of symmetry = '// &
                     name// &
                   '; use ''none''.')
-      if (deck%setup%ply_damage%scatters()) call report(s, problems, ply_damage_group, key_seed, 'strengths that scatter '// &
-        'from place to place have no image under symmetry = '//name//'; use ''none''.')
+      if (deck%setup%ply_damage%scatters()) call report(s, problems, ply_damage_group, key_seed, &
+        'strengths that scatter from place to place have no image under symmetry = '//name//'; use ''none''.')
       call check_starters(deck, name, problems)
       if (.not. supports_are_symmetric(deck, symmetry) .and. .not. problems%concern(support_group)) &
         call report(s, problems, support_group, key_clamps, 'clamps have no image under symmetry = '//name// &

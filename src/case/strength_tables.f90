@@ -102,8 +102,8 @@ contains
       end do
     end do
     if (deck%setup%ply_damage%scatters()) call append(lines, table_line( &
-      'coefficient of variation of XT in squares of '//read_as(deck, deck%setup%ply_damage%strength_length, length)//' '// &
-      unit_of(deck, length), read_as(deck, 100*scatter_of(deck%setup%ply_damage%weibull_modulus), percent), '%'))
+      'coefficient of variation of XT in squares of '// &
+      read_as(deck, deck%setup%ply_damage%strength_length, length)//' '//unit_of(deck, length), read_as(deck, 100*scatter_of(deck%setup%ply_damage%weibull_modulus), percent), '%'))
   end function volume_lines
 
   !> Strain rate that the impact is expected to have, and the factor of the matrix strengths of each material at that
@@ -135,16 +135,19 @@ contains
     type(ply_t), allocatable :: plies(:)
     real(wp), allocatable :: blocks(:)
     logical, allocatable :: is_thick(:)
+    real(wp) :: metre
     integer :: place, ply
 
     allocate (lines(0))
     if (system_named(deck%case%units) == 0 .or. .not. deck%setup%ply_damage%is_present) return
     plies = stacked_plies(deck%setup%laminate, deck%setup%materials)
+    metre = product(base_units(system_named(deck%case%units))**length%exponents)
     do place = 1, size(deck%setup%materials)
-      if (.not. deck%setup%materials(place)%toughness(1) > 0 .or. first_alike(deck%setup%materials, place) /= place) cycle
+      if (first_alike(deck%setup%materials, place) /= place) cycle
+      if (.not. deck%setup%materials(place)%toughness(1) > 0) cycle
       blocks = [(block_thickness(plies, ply), ply=1, size(plies))]
       blocks = pack(blocks, plies%material == place)
-      is_thick = blocks*product(base_units(system_named(deck%case%units))**length%exponents) >= thick_block*(1 - rounding)
+      is_thick = blocks*metre >= thick_block*(1 - rounding)
       call append_line(pack(blocks, .not. is_thick), .false.)
       call append_line(pack(blocks, is_thick), .true.)
     end do
