@@ -103,7 +103,8 @@ contains
     end do
     if (deck%setup%ply_damage%scatters()) call append(lines, table_line( &
       'coefficient of variation of XT in squares of '// &
-      read_as(deck, deck%setup%ply_damage%strength_length, length)//' '//unit_of(deck, length), read_as(deck, 100*scatter_of(deck%setup%ply_damage%weibull_modulus), percent), '%'))
+      read_as(deck, deck%setup%ply_damage%strength_length, length)//' '//unit_of(deck, length), &
+      read_as(deck, 100*scatter_of(deck%setup%ply_damage%weibull_modulus), percent), '%'))
   end function volume_lines
 
   !> Strain rate that the impact is expected to have, and the factor of the matrix strengths of each material at that
