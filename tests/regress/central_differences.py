@@ -56,9 +56,9 @@ MODELS = {"breaking": ("../small/breaking_rounds.nml", [EXPLICIT]), "layers": ("
                                                      "ply_damage%weibull_modulus=41",
                                                      "ply_damage%reference_volume=3750e-9", "material%XT=1000e6"]),
           # Two moduli along the fibres, and strengths of fibres that scatter.
-          "scattered": ("../small/crack_bands.nml", [EXPLICIT, "time%end=150e-6", "plate%symmetry='none'",
+          "scattered": ("../small/crack_bands.nml", [EXPLICIT, "time%end=40e-6", "plate%symmetry='none'",
                                                      "mesh%elements=16, 12", "material%E1c=100e9",
-                                                     "material%XT=800e6", "ply_damage%weibull_modulus=10",
+                                                     "material%XT=60e6", "ply_damage%weibull_modulus=10",
                                                      "ply_damage%reference_volume=3750e-9",
                                                      "ply_damage%strength_seed=3",
                                                      "ply_damage%strength_length=1e-3"]),
