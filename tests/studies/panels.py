@@ -140,7 +140,7 @@ def main():
     runner.add_argument("--folder", type=Path, default=Path("results/panels"))
     table = commands.add_parser("table")
     for command in (runner, table):
-        command.add_argument("--panel", action="append", choices=list(read_panels()))
+        command.add_argument("--panel", action="extend", nargs="+", choices=list(read_panels()))
     commands.add_parser("page").add_argument("--check", action="store_true")
     options = parser.parse_args()
     if options.command == "run":
