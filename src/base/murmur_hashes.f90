@@ -40,6 +40,7 @@ contains
 
   !> Product of two words, its low 32 bits.
   elemental integer(long) function product_of(a, b) result(low)
+    !> 32 bits each count
     integer(long), intent(in) :: a, b
     integer(long) :: upper
 

@@ -102,25 +102,20 @@ contains
   !> Exposure after Puck with transverse shear: the largest of all planes along the fibres (Puck, Schuermann, 1998;
   !> theory (D5) and (D6)). The ratio of inclination to strength is the same for shear along and across the fibres, as
   !> in modes A, B and C, which are reproduced without transverse shear.
-  pure real(wp) function plane_exposure(strengths, stress, enough) result(exposure)
+  pure real(wp) function plane_exposure(strengths, stress) result(exposure)
     type(matrix_strengths_t), intent(in) :: strengths
     !> s11, s22, s12, s13, s23
     real(wp), intent(in) :: stress(5)
-    !> Exposure at which the search ends; absent: all planes are evaluated
-    real(wp), intent(in), optional :: enough
-    real(wp) :: c, s, normal, along, across, strength_across, limit
+    real(wp) :: c, s, normal, along, across, strength_across
     integer :: i
     ! Of the inclinations of the planes.
     real(wp), parameter :: cosines(planes) = [(cos(pi*i/planes), i=1, planes)], &
                            sines(planes) = [(sin(pi*i/planes), i=1, planes)]
 
-    limit = huge(limit)
-    if (present(enough)) limit = enough
     exposure = 0
     strength_across = action_plane(strengths)*strengths%shear
     associate (s22 => stress(2), s23 => stress(5))
       do i = 1, planes
-        if (exposure >= limit) exit
         c = cosines(i)
         s = sines(i)
         normal = s22*c**2 + 2*s23*s*c

@@ -6,15 +6,15 @@ module crack_band_sections
   use archives, only: archive_t
   use band_energies, only: dissipated_in_trial, dissipated_so_far, resultants_without_strain
   use band_states, only: band_states_t, new_band_states
-  use crack_bands, only: band_state_t, band_strains_t, crack_band_t, create_crack_band, soften_band, &
+  use crack_bands, only: band_state_t, band_strains_t, crack_band_t, soften_band, &
                          degraded_elasticity, is_damaged, stiffness_lost, tensile_stress
   use crack_band_limits, only: may_soften, onset_strain
   use drawn_strengths, only: drawn_strengths_t, new_drawn_strengths
   use element_batches, only: batch_of, first_element, lane_of, lanes
   use exact_sums, only: exact_sum_t
-  use in_situ_strengths, only: material_in_place
   use joined_elements, only: joined_elements_t, find_elastic_strains, find_joined_elements
   use kinds, only: wp
+  use laminate_laws, only: find_laws
   use loaded_plies, only: loaded_plies_t, new_loaded_plies
   use loading_rates, only: loading_rates_t, new_loading_rates
   use mean_sections, only: mean_sections_t, new_mean_sections
@@ -65,11 +65,13 @@ module crack_band_sections
     real(wp), allocatable, private :: onset(:), height(:)
     !> The smallest onset and the largest distance of each element's plies, (lanes, 2, batches)
     real(wp), allocatable, private :: limits(:, :, :)
+    !> True: strengths of a ply are not those of its law everywhere and at all times
+    logical, private :: strengths_vary = .false.
     !> True for elements with damage in the trial, (elements)
     logical, allocatable :: touched(:)
     !> True for elements whose trial may differ from the accepted state, (elements)
     logical, allocatable, private :: pending(:)
-    !> Plies that may soften
+    !> Plies that may soften; without a ply: any, where strengths vary
     type(loaded_plies_t), private :: loaded
   contains
     procedure :: soften
@@ -91,17 +93,9 @@ contains
   function new_crack_band_sections(model) result(self)
     class(composite_plate_t), intent(in) :: model
     type(crack_band_sections_t) :: self
-    integer :: i, ply
+    integer :: i
 
-    allocate (self%plies(0), self%bands(0))
-    do i = 1, size(model%laminates)
-      associate (plies => model%laminates(i)%plies, setup => model%setup)
-        self%plies = [self%plies, plies]
-        self%bands = [self%bands, [(create_crack_band(material_in_place(plies, ply, setup%materials, &
-                                                                        setup%ply_damage), setup%ply_damage), &
-                                    ply=1, size(plies))]]
-      end associate
-    end do
+    call find_laws(model, self%plies, self%bands)
     if (allocated(model%free)) then
       self%free = model%free
     else if (model%setup%ply_damage%permanent_shear .or. model%setup%ply_damage%crack_closure &
@@ -140,7 +134,8 @@ contains
         self%limits(lane_of(i), :, batch_of(i)) = [minval(self%onset(first:last)), maxval(self%height(first:last))]
       end associate
     end do
-    if (.not. (allocated(self%rates) .or. allocated(self%volumes))) &
+    self%strengths_vary = allocated(self%rates) .or. allocated(self%volumes) .or. allocated(self%drawn)
+    if (.not. self%strengths_vary) &
       self%loaded = new_loaded_plies(self%plies, self%bands, self%states, self%onset, self%height)
   end function new_crack_band_sections
 
@@ -191,15 +186,10 @@ contains
   subroutine soften(self, b, weight, strains, stiffness, free)
     !> The plies; store the trial state
     class(crack_band_sections_t), intent(inout) :: self
-    !> Number of the batch
     integer, intent(in) :: b
-    !> Area of each Gauss point
     real(wp), intent(in) :: weight(lanes, 9)
-    !> Strains exx, eyy, gxy, kxx, kyy, kxy (lane, point, component)
     real(wp), intent(in) :: strains(lanes, 9, 6)
-    !> Section stiffness
     real(wp), intent(inout) :: stiffness(lanes, 21)
-    !> Resultants of stress-free strains
     real(wp), intent(inout), optional :: free(lanes, 7)
     real(wp) :: sizes(lanes, 2), moments(lanes, moment_values)
     logical :: strained(lanes), loaded(lanes), changed
@@ -269,8 +259,7 @@ contains
           ! The bound of `strain_sizes` for one ply.
           if (is_damaged(old) .or. .not. membrane + self%height(ply)*curvature < self%onset(ply)) then
             call find_elastic_strains(ply, self%plies(ply), self%bands(ply), moments, joined, means, new, strains)
-            if (allocated(self%rates) .or. allocated(self%volumes) .or. allocated(self%drawn) .or. &
-                may_soften(self%bands(ply), strains, old)) &
+            if (self%strengths_vary .or. may_soften(self%bands(ply), strains, old)) &
               call soften_ply(self, element, ply, joined, strains, new)
           end if
           loses = loses .or. any(abs(stiffness_lost(new) - before) > 0)
