@@ -21,9 +21,9 @@ module line_columns
 
   !> Columns of a plate whose ends are compressed or pulled by lines.
   character(len=result_row_length), parameter, public :: end_rows(*) = [character(len=result_row_length) :: &
-    'far_field_stress | real | pressure | Load, that of doublers and stringers included, over the width of the plate &
-      &and the thickness of its laminate, positive in compression, the mean of the ends that lines displace; only with &
-      &lines that displace ends of the plate.', &
+    'far_field_stress | real | pressure | Load, also of doublers and stringers, over width and thickness of the &
+      &laminate, positive in compression, mean of the ends displaced; only with lines that displace ends of the &
+      &plate.', &
     'shortening | real | length | Reduction of the distance between the ends of the plate.', &
     'nominal_strain | real | - | Shortening over the length of the plate.']
 

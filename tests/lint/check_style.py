@@ -171,7 +171,8 @@ def needs_no_doc(text):
     """Whether name and type of an argument say what it is."""
     names, of_type = names_and_type(text)
     known = words_of(of_type.replace("_", " "))
-    return all(name in COMMON_ARGUMENTS | NAMED_ARGUMENTS or words_of(name.replace("_", " ")) <= known for name in names)
+    return all(name in COMMON_ARGUMENTS | NAMED_ARGUMENTS or words_of(name.replace("_", " ")) <= known
+               for name in names)
 
 
 def is_redundant(text, doc):

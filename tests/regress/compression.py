@@ -62,8 +62,8 @@ LOST_BY_MAPPING, CLOSED_AFTER_MAPPING = 1e-3, 1e-6
 # A plate within that of the impact, narrower than its delaminations, on cells of its own.
 CUT = ["plate%length=40e-3, 18e-3", "support%window=36e-3, 16e-3", "mesh%elements=9, 10", "mesh%lines_x=18e-3",
        "mesh%lines_y=8e-3", "line%at=20e-3", "line%displacement=-0.1e-3", "time%end=0.4e-3"]
-# Where the plate is struck beside its centre, in y. Relative to the largest value up to half of the run, of an impact and
-# its mirror image. Measured: 3.3e-10 in the stress.
+# Where the plate is struck beside its centre, in y. Relative to the largest value up to half of the run, of an impact
+# and its mirror image. Measured: 3.3e-10 in the stress.
 ASIDE, MIRRORED = 6e-3, 1e-7
 # By CalculiX 2.20: see input/verify/framed_panel.nml.
 EIGENVALUE, BEYOND = 438.4e6, 451.9e6
@@ -453,7 +453,8 @@ def check_until(implam, folder, launcher):
     rows = path.read_text(encoding="utf-8").splitlines()
     first = next(i for i, line in enumerate(rows) if not line.startswith("#"))
     # The hash in the comments is that of the deck.
-    require(rows[first:] == full[first:len(rows)] and len(rows) < len(full), "The rows differ from those of the full run.")
+    require(rows[first:] == full[first:len(rows)] and len(rows) < len(full),
+            "The rows differ from those of the full run.")
     stress = read_history(path)["far_field_stress"]
     require(stress[-1] < 0.7 * max(stress) <= min(stress[stress.index(max(stress)):-1]),
             "The run does not end at the first row after the failure.")
@@ -594,7 +595,8 @@ def main(trial, implam, folder, launcher):
     trials = {"chain": check_chain, "again": check_again, "ranks": check_ranks, "whole": check_whole,
               "buckling": check_buckling, "bent": check_bent, "closing": check_closing, "moduli": check_moduli,
               "stiffened": check_stiffened, "coupon": check_coupon, "refused": check_refused, "mapped": check_mapped,
-              "mapped_ranks": check_mapped, "until": check_until, "aside": check_aside, "cut": check_cut, "cut_ranks": check_cut}
+              "mapped_ranks": check_mapped, "until": check_until, "aside": check_aside, "cut": check_cut,
+              "cut_ranks": check_cut}
     trials[trial](implam, Path(folder).resolve(), launcher)
 
 

@@ -1,9 +1,10 @@
 """Strengths of fibres that scatter: those of the formula, after an impact, and on other cells of a plate cut from it.
 Usage: drawn_strengths.py IMPLAM FOLDER
 
-The strengths in the fields are found again by theory (M33) with a hash written a second time: of the struck plate and of
-a plate cut from it beside its centre, on other cells, in the run that starts from the impact. A run with another seed,
-which has other strengths, cannot start from it, nor one from a plate cut beside its centre, whose place is not known."""
+The strengths in the fields are found again by theory (M33) with a hash written a second time: of the struck plate and
+of a plate cut from it beside its centre, on other cells, in the run that starts from the impact. A run with
+another seed, which has other strengths, cannot start from it, nor one from a plate cut beside its centre, whose place
+is not known."""
 
 import math
 import shutil
@@ -19,7 +20,8 @@ KEYS = [f"ply_damage%weibull_modulus={MODULUS}", f"ply_damage%strength_seed={SEE
         f"ply_damage%strength_length={SIDE}", "plate%symmetry='none'"]
 CUT_AT = (6e-3, -3e-3)
 CUT = ["plate%length=40e-3, 24e-3", "support%window=36e-3, 20e-3", "mesh%elements=18, 11", "mesh%lines_x=18e-3",
-       "mesh%lines_y=10e-3", "line%at=20e-3", "line%displacement=-0.01e-3", "line%rise=0.01e-3", "time%settle=0.02e-3", "time%end=0.04e-3",
+       "mesh%lines_y=10e-3", "line%at=20e-3", "line%displacement=-0.01e-3", "line%rise=0.01e-3", "time%settle=0.02e-3",
+        "time%end=0.04e-3",
        "initial_state%cut_at=6e-3, -3e-3"]
 # Cells over the full impact plate.
 IMPACT = ["mesh%elements=20, 16"]

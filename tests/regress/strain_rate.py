@@ -54,7 +54,8 @@ def check(implam, folder):
         print(f"{name}: mean factor of the summary {mean:.4f}")
         # Later plies crack at higher rates, as the beam collapses. Measured: 2.6 %.
         require(0 <= mean/factor - 1 < 0.04, f"{name}: the summary has {mean}, not {factor}.")
-        require(strengthening_of(folder_of / "slow") == 1, f"{name}: the summary has a factor below the reference rate.")
+        require(strengthening_of(folder_of / "slow") == 1,
+                f"{name}: the summary has a factor below the reference rate.")
 
 
 def strengthening_of(folder):

@@ -22,8 +22,10 @@ def compression_rows(run: Run, style: PictureStyle, undamaged: float | None = No
         rows.append(("retained fraction of the undamaged strength", f"{summary['residual_strength'] / undamaged:.3f}",
                      f"of {style.shown('stress', undamaged, 4)}"))
     if "failure_load" in summary:
-        rows += [("failure load", style.shown("force", summary["failure_load"], 4), "of laminate, doublers and stringers"),
-                 ("stress of the laminate at the strength", style.shown("stress", summary["skin_stress_at_strength"], 4),
+        rows += [("failure load", style.shown("force", summary["failure_load"], 4),
+                  "of laminate, doublers and stringers"),
+                 ("stress of the laminate at the strength",
+                  style.shown("stress", summary["skin_stress_at_strength"], 4),
                   "by its share in the axial stiffness of the section")]
     for label, key, dimension in _ROWS:
         value = summary.get(key)
