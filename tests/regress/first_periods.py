@@ -42,7 +42,7 @@ TRIALS = {
     "low blades": (SQUARE + " edges='simple' in_plane='free'", "elements=16, 16", ALLOY + blades(6e-3), 4.2),
     "pad": ("length=0.3, 0.2 edges='simple' in_plane='free'", "elements=18, 15", ALLOY + PAD, 5.1),
 }
-# Relative. Measured: -9 to +7 % with stringers, -8 and -10 % with doublers alone. Of the skin alone the panel has +80 %.
+# Relative. Measured: -9 to +7 % with stringers, -8 and -10 % with doublers. Of the skin alone the panel has +80 %.
 ALLOWED = 0.12
 
 
