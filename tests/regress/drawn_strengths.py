@@ -65,7 +65,7 @@ def check_fields(path, origin, joined):
             found = np.asarray(last[f"cells/ply_{ply}_fibre_strength"]).ravel()
             for cell, value in zip(cells, found, strict=True):
                 low, high = points[cell, :2].min(axis=0), points[cell, :2].max(axis=0)
-                if value == 0 or joined and np.any(np.minimum(abs(low), abs(high)) < 1e-9):
+                if value == 0 or (joined and np.any(np.minimum(abs(low), abs(high)) < 1e-9)):
                     continue
                 expected = strength(ply, low + origin, high + origin)
                 require(abs(value - expected) < 1e-12 * expected, f"{path}: {value} at {low}, not {expected}.")
