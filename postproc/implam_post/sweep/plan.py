@@ -64,8 +64,8 @@ MAX_CASES = 100_000
 COLUMNS = ("case", "impact_energy", "peak_force", "peak_force_time", "contact_duration", "max_deflection",
            "rebound_velocity", "absorbed_energy", "delaminated_area", "first_growth_force", "first_growth_time",
            "dent_depth", "projected_area", "residual_strength", "shortening_at_strength", "failure_load",
-           "skin_stress_at_strength", "effective_modulus", "has_failed", "failure_code", "exit_code", "cpu_time", "version",
-           "folder")
+           "skin_stress_at_strength", "effective_modulus", "has_failed", "failure_code", "exit_code", "cpu_time",
+           "version", "folder")
 _TABLES = ("grid", "list", "samples", "derived")
 VARIANT = "variant"
 _SAMPLES = {"number": None, "seed": 1, "method": "random"}
