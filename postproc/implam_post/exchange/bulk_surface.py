@@ -10,6 +10,8 @@ from implam_post.io.errors import DeckError
 
 # Largest distance of a grid from the surface, over the rise and over the size of the panel.
 _NEAR_RISE, _NEAR_SIZE = 1e-3, 1e-5
+# Distances over the size of the panel that are round-off.
+_ROUND_OFF = 1e-9
 # Largest component of a normal of the elements along the axis of a cylinder.
 _ALONG_AXIS = 1e-3
 # Longest arc over radius: the rise of a shallow shell is at most an eighth of its span (src/mesh/plate_deck.f90).
@@ -64,7 +66,9 @@ def surface_of(quads: Sequence[Quadrilateral], points: Mapping[int, np.ndarray],
                                      _cylinder(quads, normal, places, struck_last)) if surface is not None]
     if not found:
         raise _no_surface(quads)
-    error, surface = min(found, key=lambda each: each[0])
+    # Three grids along an arc lie on both surfaces: they are then those of a cylinder.
+    least = _ROUND_OFF * np.ptp(places, axis=0).max()
+    error, surface = min(found, key=lambda each: (max(each[0], least), not each[1].is_rolled))
     rise = max(abs(curvature) * np.ptp(places @ surface.axes[axis])**2 / 8
                for axis, curvature in enumerate(surface.curvatures))
     if error > max(_NEAR_RISE * rise, _NEAR_SIZE * np.ptp(places, axis=0).max()):
