@@ -276,6 +276,8 @@ def check_opening(implam, folder):
     require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens the interface under it.")
 
 
+SCATTER = ["plate%symmetry='none'", "ply_damage%weibull_modulus=41", "ply_damage%strength_seed=1",
+           "ply_damage%strength_length=1e-3"]
 STRINGER = ["stringer%name='web'", "stringer%height=10e-3", "stringer%thickness=1e-3", "stringer%E=70e9",
             "stringer%density=1600"]
 
@@ -304,9 +306,10 @@ def check_table(implam, folder):
     rows = table_of(implam, "fields")
     for choice in sorted({row[3] for row in rows} - {"-"}):
         deck = "crack_bands" if choice == "ply_damage" else "damage"  # some fields are of softening plies only
-        stringer = STRINGER if choice == "displacement" else []  # others only with stringers
+        # Others only with strengths that scatter, or with stringers.
+        more = {"ply_damage": SCATTER, "displacement": STRINGER}.get(choice, [])
         history_path = run_deck(implam, write_deck(folder / choice, f"../small/{deck}.nml",
-                                                   [f"output%fields='{choice}'", "time%end=20e-6", *stringer]))
+                                                   [f"output%fields='{choice}'", "time%end=20e-6", *more]))
         expected = {name: (place, unit, meaning) for name, place, unit, its_choice, _, meaning in rows
                     if its_choice in ("-", choice)}
         found = fields_of(history_path)
