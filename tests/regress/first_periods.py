@@ -1,5 +1,5 @@
-"""Period of the first bending mode that `implam check` prints, of plates with stringers and doublers.
-Usage: first_periods.py IMPLAM FOLDER
+"""Vibration under a sudden pressure: the period of the first bending mode that `implam check` prints, of plates with
+stringers and doublers. Usage: first_periods.py IMPLAM FOLDER
 
 The computed period is that of the vibration under a pressure applied at once, without damping: the largest peak of the
 spectrum of the deflection at the centre, or at the middle of a bay."""
