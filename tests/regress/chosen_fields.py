@@ -276,8 +276,8 @@ def check_opening(implam, folder):
     require(np.max(opening[pressed]) < 1e-3 * np.max(held), "A load from above opens the interface under it.")
 
 
-SCATTER = ["plate%symmetry='none'", "ply_damage%weibull_modulus=41", "ply_damage%strength_seed=1",
-           "ply_damage%strength_length=1e-3"]
+SCATTER = ["plate%symmetry='none'", "ply_damage%weibull_modulus=41", "ply_damage%reference_volume=3750e-9",
+           "ply_damage%strength_seed=1", "ply_damage%strength_length=1e-3"]
 STRINGER = ["stringer%name='web'", "stringer%height=10e-3", "stringer%thickness=1e-3", "stringer%E=70e9",
             "stringer%density=1600"]
 
