@@ -52,8 +52,9 @@ def check(implam, folder):
         _, _, unchanged = run(implam, folder_of / "slow", [*settings, "material%reference_rate=1e3"])
         require(rows(unchanged) == rows(path), f"{name}: strengths have changed below the reference rate.")
         print(f"{name}: mean factor of the summary {mean:.4f}")
-        # Later plies crack at higher rates, as the beam collapses. Measured: 2.6 %.
-        require(0 <= mean/factor - 1 < 0.04, f"{name}: the summary has {mean}, not {factor}.")
+        # The summary's mean is over all cracks until the end, the closed form is of the first one. Measured: 2.6 % by
+        # central differences, 3.3 % by implicit steps.
+        require(abs(mean/factor - 1) < 0.04, f"{name}: the summary has {mean}, not {factor}.")
         require(strengthening_of(folder_of / "slow") == 1,
                 f"{name}: the summary has a factor below the reference rate.")
 
