@@ -116,10 +116,10 @@ contains
     shortest = huge(shortest)
     do i = 1, size(deck%setup%delaminations)
       associate (d => deck%setup%delaminations(i))
-        if (d%law /= law_cohesive .or. .not. d%strength_shear > 0 .or. d%below_ply < 1) cycle
+        if (d%law /= law_cohesive .or. .not. d%strength_shear > 0) cycle
         if (d%bonds_doublers()) then
           if (any(d%doublers == 0)) cycle
-        else if (d%below_ply >= size(deck%setup%laminate%angle)) then
+        else if (d%below_ply < 1 .or. d%below_ply >= size(deck%setup%laminate%angle)) then
           cycle
         end if
         if (grows_by_energy(deck, d)) shortest = min(shortest, shear_zone_length(zone_of_any_cells(deck, d)))
@@ -197,11 +197,14 @@ contains
     type(process_zone_t) :: zone
     type(ply_t), allocatable :: plies(:), layer(:)
     real(wp) :: toughness(2), bending(6)
+    integer :: above
 
     plies = in_bending(plies_around(deck, delamination))
-    layer = plies(:delamination%below_ply)
+    above = delamination%below_ply
+    if (delamination%is_on_front()) above = size(plies) - size(deck%setup%laminate%material)
+    layer = plies(:above)
     zone%thickness = thickness_of(layer)
-    if (thickness_of(plies(delamination%below_ply + 1:)) < zone%thickness) layer = plies(delamination%below_ply + 1:)
+    if (thickness_of(plies(above + 1:)) < zone%thickness) layer = plies(above + 1:)
     zone%thickness = thickness_of(layer)
     bending = bending_moduli(layer)
     zone%modulus = largest_modulus(bending)

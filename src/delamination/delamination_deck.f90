@@ -6,7 +6,7 @@ module delamination_deck
   use deck_remarks, only: report, remark, are_clear
   use deck_settings, only: settings_t
   use deck_vocabulary, only: group_row_length, key_row_length
-  use doubler_bonds, only: check_bonds, is_bond, new_bond, weaker_beside
+  use doubler_bonds, only: check_bonds, is_bond, is_front_bond, new_bond, weaker_beside
   use delamination_parameters, only: delamination_t, law_front, law_cohesive, default_starter, toughnesses, &
                                      toughness_objection, release_two_state, release_vcct, growth_equilibrium, &
                                      growth_one_per_step, growth_by_strength, &
@@ -97,7 +97,8 @@ module delamination_deck
 
 contains
 
-  !> All interfaces, in the order of the deck, the bond of doublers last.
+  !> All interfaces from the struck face down: the bond of doublers on it, those between plies in the order of the deck,
+  !> the bond of doublers on the back.
   subroutine fill_delaminations(settings, length, strengths, of_doublers, between, zones, delaminations)
     !> Keys in effect; receives defaults
     type(settings_t), intent(inout) :: settings
@@ -115,6 +116,7 @@ contains
     integer :: place, i
 
     allocate (delaminations(0))
+    call add_bonds(on_front=.true.)
     do place = 1, settings%groups_named(group)
       if (is_bond(settings, place)) cycle
       below = plies_above(settings, place, between)
@@ -125,13 +127,23 @@ contains
         call add(next)
       end do
     end do
-    do place = 1, settings%groups_named(group)
-      if (.not. is_bond(settings, place)) cycle
-      call new_bond(settings, place, size(strengths, 2), zones, next)
-      call add(next)
-    end do
+    call add_bonds(on_front=.false.)
 
   contains
+
+    !> Adds the bonds of doublers on a face.
+    subroutine add_bonds(on_front)
+      !> True for the struck face
+      logical, intent(in) :: on_front
+      integer :: place
+
+      do place = 1, settings%groups_named(group)
+        if (.not. is_bond(settings, place)) cycle
+        if (is_front_bond(settings, place, zones) .neqv. on_front) cycle
+        call new_bond(settings, place, size(strengths, 2), zones, next)
+        call add(next)
+      end do
+    end subroutine add_bonds
 
     !> Adds an interface with its properties.
     subroutine add(next)
@@ -282,7 +294,7 @@ contains
     end do
     call check_bonds(settings, zones, delaminations, problems)
     do i = 2, size(delaminations)
-      if (delaminations(i)%bonds_doublers()) exit
+      if (delaminations(i)%bonds_doublers() .or. delaminations(i - 1)%bonds_doublers()) cycle
       if (delaminations(i)%below_ply <= delaminations(i - 1)%below_ply .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i)%group) .and. &
           are_clear(settings, problems, group, key_below_ply, delaminations(i - 1)%group)) &
@@ -342,7 +354,8 @@ contains
     call check_law(settings, delamination, place, problems)
     ! Without a position of the interface, or without the laminate, its adjacent plies are not known, and their
     ! strengths are the defaults.
-    if (delamination%below_ply < 1 .or. problems%concern(laminate_group)) return
+    if (problems%concern(laminate_group)) return
+    if (delamination%below_ply < 1 .and. .not. delamination%bonds_doublers()) return
     if (.not. delamination%strength_opening > 0) call require('strength_opening', 'or YT of the materials.')
     if (.not. delamination%strength_shear > 0) call require(key_strength_shear, 'or S12 of the materials.')
 

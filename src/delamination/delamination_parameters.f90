@@ -28,7 +28,7 @@ module delamination_parameters
   !> One interface that may delaminate. It has many components because two laws share
   !> one group of the deck.
   type :: delamination_t
-    !> The interface lies below this ply
+    !> The interface lies below this ply; 0 with doublers: it is their bond to the struck face
     integer :: below_ply = 0
     !> The bond of doublers: their indices, 0 for an unknown name; unallocated: an interface between plies of the
     !> laminate
@@ -93,6 +93,7 @@ module delamination_parameters
     real(wp) :: smoothing = 0
   contains
     procedure :: bonds_doublers
+    procedure :: is_on_front
   end type delamination_t
 
   !> Smallest number of cells over which a front is smoothed. On stepped discs rates then scatter by 2 to 7 % about
@@ -112,6 +113,13 @@ contains
 
     bonds_doublers = allocated(self%doublers)
   end function bonds_doublers
+
+  !> True for the bond of doublers on the struck face.
+  pure logical function is_on_front(self)
+    class(delamination_t), intent(in) :: self
+
+    is_on_front = self%bonds_doublers() .and. self%below_ply == 0
+  end function is_on_front
 
   !> Values of these keys.
   pure function law_of(delamination) result(numbers)

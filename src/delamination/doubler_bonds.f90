@@ -6,13 +6,13 @@ module doubler_bonds
   use delamination_parameters, only: delamination_t
   use interface_places, only: delamination_group, key_below_ply
   use kinds, only: wp
-  use ply_zone_parameters, only: front_face
+  use ply_zone_parameters, only: back_face, front_face
   use ply_zones, only: ply_zones_t
   use text, only: line_t, to_text
   use zone_deck, only: doubler_group
   implicit none
   private
-  public :: check_bonds, is_bond, names_of_doublers, new_bond, weaker_beside
+  public :: check_bonds, is_bond, is_front_bond, names_of_doublers, new_bond, weaker_beside
 
   !> Name of the key.
   character(len=*), parameter, public :: key_bond = 'doubler'
@@ -46,7 +46,7 @@ contains
 
     names = settings%texts_of(group, key_bond, place)
     bond%group = place
-    bond%below_ply = plies
+    bond%below_ply = merge(0, plies, is_front_bond(settings, place, zones))
     allocate (bond%doublers(size(names)), source=0)
     allocate (bond%beside(0))
     if (.not. allocated(zones%doublers)) return
@@ -54,11 +54,32 @@ contains
       do k = 1, size(zones%doublers)
         if (zones%doublers(k)%name /= names(i)%text) cycle
         bond%doublers(i) = k
-        bond%beside = [bond%beside, plies + 1 + plies_of(zones, k - 1)]
+        if (zones%doublers(k)%face == front_face) then
+          bond%beside = [bond%beside, plies + plies_of(zones, k)]
+        else
+          bond%beside = [bond%beside, plies + 1 + plies_of(zones, k - 1)]
+        end if
         zones%doublers(k)%is_cohesive = .true.
       end do
     end do
   end subroutine new_bond
+
+  !> True for a group of the bond of doublers of which the first is on the struck face.
+  pure logical function is_front_bond(settings, place, zones)
+    type(settings_t), intent(in) :: settings
+    !> Index of the group
+    integer, intent(in) :: place
+    type(ply_zones_t), intent(in) :: zones
+    type(line_t), allocatable :: names(:)
+    integer :: k
+
+    is_front_bond = .false.
+    if (.not. (is_bond(settings, place) .and. allocated(zones%doublers))) return
+    names = settings%texts_of(group, key_bond, place)
+    do k = 1, size(zones%doublers)
+      if (zones%doublers(k)%name == names(1)%text) is_front_bond = zones%doublers(k)%face == front_face
+    end do
+  end function is_front_bond
 
   !> Number of plies of the first doublers.
   pure integer function plies_of(zones, doublers) result(plies)
@@ -86,7 +107,7 @@ contains
     associate (plies => size(strengths, 2))
       if (interface%bonds_doublers()) then
         if (plies == 0) return
-        weaker = strengths(:, plies)
+        weaker = strengths(:, merge(1, plies, interface%is_on_front()))
         do i = 1, size(interface%beside)
           if (interface%beside(i) - plies <= size(of_doublers, 2)) &
             weaker = min(weaker, of_doublers(:, interface%beside(i) - plies))
@@ -105,7 +126,7 @@ contains
     type(delamination_t), intent(in) :: delaminations(:)
     type(problems_t), intent(inout) :: problems
     integer :: i, place
-    logical :: known
+    logical :: known(2)
 
     do place = 1, settings%groups_named(group)
       if (.not. are_clear(settings, problems, group, key_below_ply//' '//key_bond, place)) cycle
@@ -119,13 +140,16 @@ contains
     known = .false.
     do i = 1, size(delaminations)
       if (.not. delaminations(i)%bonds_doublers()) cycle
-      if (known) then
-        call report(settings, problems, group, key_bond, 'the bond of doublers has been given before; name all '// &
-                    'doublers in one group.', delaminations(i)%group)
-      else if (.not. problems%concern(doubler_group)) then
-        call check_bond(settings, zones, delaminations(i), problems)
-      end if
-      known = .true.
+      associate (face => merge(front_face, back_face, delaminations(i)%is_on_front()))
+        if (known(face)) then
+          call report(settings, problems, group, key_bond, 'the bond of doublers on the '// &
+                      trim(merge('struck face', 'back       ', face == front_face))//' has been given before; '// &
+                      'name all doublers of a face in one group.', delaminations(i)%group)
+        else if (.not. problems%concern(doubler_group)) then
+          call check_bond(settings, zones, delaminations(i), problems)
+        end if
+        known(face) = .true.
+      end associate
     end do
   end subroutine check_bonds
 
@@ -145,9 +169,9 @@ contains
         call refuse(key_bond, 'no &doubler is named '''//names(i)%text//''''//allowed_names(zones))
       else if (any(bond%doublers(:i - 1) == bond%doublers(i))) then
         call refuse(key_bond, 'doubler '''//names(i)%text//''' is named twice.')
-      else if (zones%doublers(bond%doublers(i))%face == front_face) then
-        call refuse(key_bond, 'doubler '''//names(i)%text//''' is on the struck face, where the bond is rigid; '// &
-                    'allowed: doublers with face = ''back''.')
+      else if ((zones%doublers(bond%doublers(i))%face == front_face) .neqv. bond%is_on_front()) then
+        call refuse(key_bond, 'doubler '''//names(i)%text//''' is on the other face than '''//names(1)%text// &
+                    '''; give the doublers of each face a group of their own.')
       end if
     end do
     if (settings%text_of(group, 'law', bond%group) == 'front') &

@@ -39,9 +39,10 @@ contains
       associate (interface => delaminations(i))
         ! A deck that is not yet checked may name a ply that does not exist.
         place = findloc(number, interface%below_ply, dim=1)
+        if (interface%is_on_front()) place = findloc(number, 1, dim=1) - 1
         if (place < 1 .or. place > size(strengths, 2)) cycle
         if (interface%bonds_doublers()) then
-          if (.not. any(interface%beside == number(place + 1))) cycle
+          if (.not. any(interface%beside == number(merge(place, place + 1, interface%is_on_front())))) cycle
         end if
         if (interface%strength_shear > 0) strengths(1, place) = interface%strength_shear
         if (interface%strength_opening > 0) strengths(2, place) = interface%strength_opening

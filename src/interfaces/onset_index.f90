@@ -116,7 +116,7 @@ contains
     real(wp), allocatable :: all(:)
     type(ply_stack_t) :: joined
     type(unit_stresses_t) :: unit
-    integer :: places(2), i
+    integer :: places(2), place, i
 
     associate (first => self%stacks%plies(1, element), last => self%stacks%plies(2, element), &
                force => self%stacks%force(:, element), gradient => self%stacks%gradient(:, :, element), &
@@ -132,9 +132,11 @@ contains
       end if
       indices = 0
       do i = 1, size(indices)
-        associate (place => own%stack%place(range(1) + i - 1) - places(1) + 1)
-          if (place >= 1 .and. place <= size(all)) indices(i) = all(place)
-        end associate
+        place = own%stack%place(range(1) + i - 1)
+        ! The bond on the struck face is above the first ply of the laminate.
+        if (range(1) + i == 1) place = own%stack%place(1) - 1
+        place = place - places(1) + 1
+        if (place >= 1 .and. place <= size(all)) indices(i) = all(place)
       end do
     end associate
   end function indices

@@ -28,11 +28,9 @@ module layer_maps
 contains
 
   !> The map of a rank's points.
-  pure function create_layer_map(mesh, distribution, interface_heights) result(self)
+  pure function create_layer_map(mesh, distribution) result(self)
     type(layered_mesh_t), intent(in) :: mesh
     type(distribution_t), intent(in) :: distribution
-    !> Height of each zone's interface
-    real(wp), intent(in) :: interface_heights(:)
     type(layer_map_t) :: self
     integer :: i, point
 
@@ -43,7 +41,7 @@ contains
       point = distribution%points(i)
       if (mesh%point_zone(point) == 0) cycle
       self%above(i) = distribution%local(point - 1)
-      self%height(i) = interface_heights(mesh%point_zone(point))
+      self%height(i) = mesh%zones(mesh%point_zone(point))%height
     end do
   end function create_layer_map
 

@@ -12,10 +12,12 @@ module layered_meshes
   !> A rectangle in which the plies above and below an interface have unknowns of their own, or the cells in which the
   !> bond of doublers has.
   type :: zone_t
-    !> The interface lies below this ply
+    !> The interface lies below this ply; 0: doublers are bonded to the struck face
     integer :: below_ply = 0
     !> First and last column of cells, then of rows
     integer :: columns(2) = 0, rows(2) = 0
+    !> Height z of the interface
+    real(wp) :: height = 0
     !> True for the cells with doublers, (cells); unallocated: an interface between plies of the laminate. The edges of
     !> doublers are free: both layers have points there
     logical, allocatable :: bonded(:)
@@ -67,7 +69,9 @@ module layered_meshes
     procedure :: is_below
     procedure :: lower_point
     procedure :: in_zone
-    procedure :: bonds_doubler
+    procedure :: is_bond
+    procedure :: is_doubler
+    procedure :: is_under_doubler
     !> Area of a zone, and length of its mean cell.
     procedure :: zone_area
     procedure :: mean_cell
@@ -186,6 +190,7 @@ contains
           if (zone <= size(self%zones)) then
             if (.not. self%in_zone(zone, cell)) cycle
             range(2) = self%zones(zone)%below_ply
+            range(1) = min(range(1), range(2))
           end if
           elements = elements + 1
           if (pass == 1) cycle
@@ -249,14 +254,15 @@ contains
   end function is_top
 
   !> True for an element whose upper face is the interface of a zone.
-  pure logical function is_below(self, element, zone)
+  elemental logical function is_below(self, element, zone)
     class(layered_mesh_t), intent(in) :: self
     !> Element
     integer, intent(in) :: element
     !> Index of the zone
     integer, intent(in) :: zone
 
-    is_below = self%layers(self%element_layer(element))%plies(1) - 1 == self%zones(zone)%below_ply
+    is_below = .not. self%is_top(element) .and. &
+               self%layers(self%element_layer(element))%plies(1) - 1 == self%zones(zone)%below_ply
   end function is_below
 
   !> True for a cell of a zone.
@@ -272,15 +278,39 @@ contains
     end if
   end function in_zone
 
-  !> True for a point of the layer of a doubler.
-  pure logical function bonds_doubler(self, point)
+  !> True for a point whose upper face is the bond of a doubler.
+  pure logical function is_bond(self, point)
     class(layered_mesh_t), intent(in) :: self
     !> The point
     integer, intent(in) :: point
 
-    bonds_doubler = self%point_zone(point) > 0
-    if (bonds_doubler) bonds_doubler = allocated(self%zones(self%point_zone(point))%bonded)
-  end function bonds_doubler
+    is_bond = self%point_zone(point) > 0
+    if (is_bond) is_bond = allocated(self%zones(self%point_zone(point))%bonded)
+  end function is_bond
+
+  !> True for a point of the layer of a doubler: below its bond on the back, above it on the struck face.
+  pure logical function is_doubler(self, point)
+    class(layered_mesh_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: point
+
+    is_doubler = self%is_bond(point)
+    if (is_doubler) then
+      is_doubler = self%zones(self%point_zone(point))%below_ply > 0
+    else if (self%point_zone(point) == 0) then
+      is_doubler = self%is_under_doubler(self%point_node(point))
+    end if
+  end function is_doubler
+
+  !> True for a node with a doubler bonded to the struck face by an interface.
+  pure logical function is_under_doubler(self, node)
+    class(layered_mesh_t), intent(in) :: self
+    !> Node
+    integer, intent(in) :: node
+
+    is_under_doubler = self%first_point(node) + 1 < self%first_point(node + 1)
+    if (is_under_doubler) is_under_doubler = self%zones(self%point_zone(self%first_point(node) + 1))%below_ply == 0
+  end function is_under_doubler
 
   !> Point of a node in the layer below a zone's interface; 0: the node has none.
   pure integer function lower_point(self, node, zone) result(point)

@@ -3,10 +3,11 @@ module layered_zones
   use cell_grids, only: cells_along, cells_from_struck
   use cell_lines, only: cell_line_t
   use layered_meshes, only: zone_t
+  use plies, only: ply_t
   use setups, only: setup_t
   implicit none
   private
-  public :: zones_of
+  public :: find_heights, zones_of
 
 contains
 
@@ -38,6 +39,19 @@ contains
       end associate
     end do
   end function zones_of
+
+  !> Finds the height of each interface.
+  pure subroutine find_heights(skin, zones)
+    !> Plies of the laminate
+    type(ply_t), intent(in) :: skin(:)
+    type(zone_t), intent(inout) :: zones(:)
+    integer :: i
+
+    do i = 1, size(zones)
+      zones(i)%height = skin(1)%z_top
+      if (zones(i)%below_ply > 0) zones(i)%height = skin(zones(i)%below_ply)%z_bottom
+    end do
+  end subroutine find_heights
 
   !> The cells in which doublers are bonded.
   pure subroutine find_bond(setup, doublers, zone)

@@ -78,7 +78,7 @@ contains
           call find_in_cells(self, saved, columns(i), mapping, value(:, i))
         else if (mapping%is_motion) then
           value(:, i) = motion_at(self, saved, columns(i), mapping)
-        else if (self%new%bonds_doubler(columns(i))) then
+        else if (self%new%is_bond(columns(i))) then
           call find_at_bond(self, saved, columns(i), mapping, value(:, i))
         else
           call find_at_node(self, saved, columns(i), mapping, value(:, i))
@@ -114,7 +114,7 @@ contains
         do i = 1, 3
           motion = motion + shapes(i, 1)*shapes(j, 2)* &
                    unknowns_at(old, saved, old%node_at(2*place(1) + i - 3, 2*place(2) + j - 3), &
-                               self%new%point_zone(point))
+                               self%new%point_zone(point), self%new%is_under_doubler(self%new%point_node(point)))
         end do
       end do
     end associate
@@ -122,16 +122,23 @@ contains
   end function motion_at
 
   !> Unknowns of the layer below a zone at a node, with zero jumps where layers are not separate.
-  pure function unknowns_at(mesh, saved, node, zone) result(unknowns)
+  pure function unknowns_at(mesh, saved, node, zone, is_under_doubler) result(unknowns)
     type(layered_mesh_t), intent(in) :: mesh
     !> Unknowns of all points, (5, points)
     real(wp), intent(in) :: saved(:, :)
     !> Node, and zone; 0: the first layer
     integer, intent(in) :: node, zone
+    !> Whether the first layer is a doubler; if not, it is the laminate also where a doubler ends at the node
+    logical, intent(in) :: is_under_doubler
     real(wp) :: unknowns(5)
     integer :: above
 
     unknowns = saved(:, mesh%first_point(node))
+    if (zone == 0 .and. mesh%is_under_doubler(node) .and. .not. is_under_doubler) then
+      associate (lower => saved(:, mesh%first_point(node) + 1), z => mesh%zones(1)%height)
+        unknowns = [unknowns(1:2) + lower(1:2) + z*(unknowns(4:5) - lower(4:5)), unknowns(3) + lower(3), lower(4:5)]
+      end associate
+    end if
     do above = zone, 1, -1
       if (mesh%lower_point(node, above) == 0) cycle
       unknowns = saved(:, mesh%lower_point(node, above))

@@ -30,7 +30,7 @@ module model_building
   use models, only: model_t
   use setups, only: setup_t
   use symmetry_images, only: find_images
-  use layered_zones, only: zones_of
+  use layered_zones, only: find_heights, zones_of
   implicit none
   private
   public :: create_model, unrestrained
@@ -63,6 +63,7 @@ contains
       self%section = section_of(skin, setup%laminate%shear_correction)
       self%bending_section = section_of(in_bending(skin), setup%laminate%shear_correction)
       zones = zones_of(setup)
+      call find_heights(skin, zones)
       self%mesh = create_mesh(setup%plate, setup%mesh, size(skin), zones, laminate_of, &
                               [[(ply, ply=1, size(skin))], setup%zones%stations(size(skin))])
     end associate
@@ -278,35 +279,34 @@ contains
   subroutine build_interfaces(self)
     !> The model, with its elements and halo
     type(model_t), intent(inout) :: self
-    real(wp), allocatable :: areas(:, :)
+    real(wp), allocatable :: areas(:, :), below(:)
     real(wp) :: thickness
     integer :: zone, i
 
     associate (mesh => self%mesh, partition => self%distribution, plies => self%laminates(1)%plies)
-      self%map = create_layer_map(mesh, partition, plies(mesh%zones%below_ply)%z_bottom)
+      self%map = create_layer_map(mesh, partition)
       self%zone = mesh%point_zone(partition%points)
       allocate (areas(1, size(partition%points)), source=0.0_wp)
-      if (self%map%layered) then
-        areas(1, :) = nodal_areas(self, pack([(i, i=1, self%elements%elements)], &
-                                             .not. mesh%is_top(partition%elements)))
-        call self%halo%update(areas)
-        where (self%zone == 0) areas(1, :) = 0
-      end if
+      do zone = 1, size(mesh%zones)
+        below = nodal_areas(self, pack([(i, i=1, self%elements%elements)], mesh%is_below(partition%elements, zone)))
+        where (self%zone == zone) areas(1, :) = below
+      end do
+      if (self%map%layered) call self%halo%update(areas)
       self%contact_area = areas(1, :)
       self%beside_border = [(beside_border(mesh, partition%points(i)), i=1, size(partition%points))]
       allocate (self%contact_laws(size(mesh%zones)), self%cohesive_laws(size(mesh%zones)))
       do zone = 1, size(mesh%zones)
-        associate (below => mesh%zones(zone)%below_ply, interface => self%setup%delaminations(zone))
-          thickness = plies(size(plies))%z_bottom - plies(below)%z_bottom
-          if (interface%bonds_doublers()) thickness = mesh%zones(zone)%thickness
-          thickness = min(plies(below)%z_bottom - plies(1)%z_top, thickness)
+        associate (height => mesh%zones(zone)%height, interface => self%setup%delaminations(zone), &
+                   above => plies(max(1, mesh%zones(zone)%below_ply)))
+          thickness = min(height - plies(1)%z_top, plies(size(plies))%z_bottom - height)
+          if (interface%bonds_doublers()) thickness = min(self%thickness, mesh%zones(zone)%thickness)
           self%contact_laws(zone) = create_contact_law(interface%contact, interface%contact_exponent, &
-                                                       plies(below)%elasticity%e2/thickness, thickness, &
+                                                       above%elasticity%e2/thickness, thickness, &
                                                        moving=self%setup%has_inertia())
           if (interface%law == law_cohesive) &
             self%cohesive_laws(zone) = create_cohesive_law(toughnesses(interface), interface%mixing_exponent, &
                                                            [interface%strength_opening, interface%strength_shear], &
-                                                           interface%stiffness, plies(below)%elasticity%e2, &
+                                                           interface%stiffness, above%elasticity%e2, &
                                                            thickness)
         end associate
       end do
@@ -322,7 +322,7 @@ contains
     integer :: line(2)
 
     beside_border = .false.
-    if (mesh%point_zone(point) == 0 .or. mesh%bonds_doubler(point)) return
+    if (mesh%point_zone(point) == 0 .or. mesh%is_bond(point)) return
     line = [modulo(mesh%point_node(point) - 1, 2*mesh%cells(1) + 1), (mesh%point_node(point) - 1)/(2*mesh%cells(1) + 1)]
     associate (zone => mesh%zones(mesh%point_zone(point)))
       beside_border = near(line(1), zone%columns, mesh%cells(1)) .or. near(line(2), zone%rows, mesh%cells(2))

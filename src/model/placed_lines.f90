@@ -159,12 +159,19 @@ contains
     do point = first_point, last
       if (self%load%layer /= all_layers .and. point /= chosen) cycle
       ! Lines act on the laminate; doublers only where the line names their layer.
-      if (self%load%layer == all_layers .and. mesh%bonds_doubler(point)) cycle
+      if (self%load%layer == all_layers .and. mesh%is_doubler(point)) cycle
       top = plies(1)%z_top
-      if (point > first_point) top = plies(mesh%zones(mesh%point_zone(point))%below_ply)%z_bottom
+      if (point > first_point) then
+        top = mesh%zones(mesh%point_zone(point))%height
+      else if (mesh%is_doubler(point)) then
+        top = top - mesh%zones(mesh%point_zone(point + 1))%thickness
+      end if
       bottom = plies(size(plies))%z_bottom
-      if (mesh%bonds_doubler(point)) bottom = bottom + mesh%zones(mesh%point_zone(point))%thickness
-      if (point < last) bottom = plies(mesh%zones(mesh%point_zone(point + 1))%below_ply)%z_bottom
+      if (point < last) then
+        bottom = mesh%zones(mesh%point_zone(point + 1))%height
+      else if (mesh%is_doubler(point)) then
+        bottom = bottom + mesh%zones(mesh%point_zone(point))%thickness
+      end if
       self%weight = [self%weight, weight*merge((bottom - top)/total, 1.0_wp, self%load%layer == all_layers)]
       self%height = [self%height, (top + bottom)/2]
       call add_unknowns(self, map, local + point - first_point, (top + bottom)/2)

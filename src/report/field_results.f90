@@ -85,6 +85,7 @@ contains
     class(composite_plate_t), intent(in) :: model
     !> Height of each owned point
     real(wp) :: z(model%distribution%owned)
+    real(wp) :: faces(2)
     integer :: i, point, last
 
     z = 0
@@ -93,15 +94,14 @@ contains
         point = model%distribution%points(i)
         last = mesh%first_point(mesh%point_node(point) + 1) - 1
         if (mesh%first_point(mesh%point_node(point)) == last) cycle
-        z(i) = -model%thickness/2
-        if (model%zone(i) > 0) z(i) = model%map%height(i)
-        if (point < last) then
-          z(i) = (z(i) + model%map%height(model%distribution%local(point + 1)))/2
-        else if (mesh%bonds_doubler(point)) then
-          z(i) = z(i) + mesh%zones(mesh%point_zone(point))%thickness/2
-        else
-          z(i) = (z(i) + model%thickness/2)/2
+        faces = [-1, 1]*model%thickness/2
+        if (model%zone(i) > 0) faces(1) = model%map%height(i)
+        if (point < last) faces(2) = model%map%height(model%distribution%local(point + 1))
+        if (mesh%is_doubler(point)) then
+          if (model%zone(i) > 0) faces(2) = faces(1) + mesh%zones(mesh%point_zone(point))%thickness
+          if (model%zone(i) == 0) faces(1) = faces(2) - mesh%zones(mesh%point_zone(point + 1))%thickness
         end if
+        z(i) = sum(faces)/2
       end do
     end associate
   end function middles_of_layers

@@ -7,8 +7,9 @@ stiff    a strong bond tends to the rigid one
 strips   single-leg bending, and a skin with a bonded flange in three-point bending: energy release rate and load at
          growth
 explicit single-leg bending by central differences on long cells: load at growth
-ranks    two doublers with one bond, the interfaces of the plies and failing plies: 1 to 3 ranks and a restart give the
-         same history
+ranks    two doublers with one bond, one on the struck face, the interfaces of the plies and failing plies: 1 to 3 ranks
+         and a restart give the same history
+mirror   a doubler on the struck face, and the mirror image of that plate with the doubler on its back
 second   a second impact beside the first, on another mesh: areas do not shrink"""
 
 import math
@@ -27,10 +28,10 @@ INTERFACES = ("&delamination below_ply={plies} zone=60,40 " + LAW + " /",
 PLIES_FAIL = "&ply_damage criteria='hashin' /\n"
 # Time, speed, further groups, interfaces of the laminate, and end of the comparison. Open surfaces that touch amplify
 # round-off later.
-PLATES = {"implicit": ("step=2e-6", 4000, PLIES_FAIL, "", 2.1e-4),
-          "explicit": (EXPLICIT, 4000, PLIES_FAIL, "", 2.1e-4),
-          "interfaces": (EXPLICIT, 7000, "", "1, 2, ", 1.35e-4),
-          "stiffened": (EXPLICIT, 7000, STRINGER + "\n", "", 1.35e-4)}
+PLATES = {"implicit": ("step=2e-6", 4000, PLIES_FAIL, (), 2.1e-4),
+          "explicit": (EXPLICIT, 4000, PLIES_FAIL, (), 2.1e-4),
+          "interfaces": (EXPLICIT, 7000, "", (1, 2), 1.35e-4),
+          "stiffened": (EXPLICIT, 7000, STRINGER + "\n", (), 1.35e-4)}
 SAME = 1e-9  # measured: 1e-11
 COLUMNS = ("force", "deflection", "impactor_velocity", "energy_strain", "delaminated_area", "energy_delamination",
            "projected_area", "area_below_3", "energy_error")
@@ -65,6 +66,18 @@ SLOW_STRIP = """&case kinematics='linear' /
 &time integrator='central_difference' end={end} mass_scaling=1000 /
 &output history_every={every} /
 """
+MIRRORED = """&case units='SI' /
+&plate length=0.1, 0.08 edges='clamped' in_plane='fixed' /
+&mesh elements=20, 16 /
+&material library='im7_8552' name='ply' /
+&laminate materials='ply' stacking='[{laminate}]' ply_thickness=0.25e-3 /
+&doubler name='pad' face='{face}' at=0.005, 0.01 size=0.04, 0.02 materials='ply' stacking='[{doubler}]'
+         ply_thickness=0.5e-3 /
+&delamination doubler='pad' law='cohesive' G_Ic=280 G_IIc=790 starter_strip=-0.015, 0 /
+&line at=0.03 displacement={sign}1.5e-3 {rise} /
+{rest}
+"""
+MIRROR = 1e-9  # measured: 4e-14
 # Thickness, x of both edges, and of the front. Half of the span: 50 mm.
 STRIPS = {"single leg": (1e-3, -35e-3, 60e-3, -20e-3), "flange": (0.6e-3, -25e-3, 45e-3, -15e-3)}
 
@@ -130,24 +143,29 @@ def plate(folder, implam, trial, laminate, groups):
 
 
 def try_plates(implam, folder):
-    """Compare plates with a bonded doubler over their full area with the plate of all plies."""
-    bond = BOND.format(face="back", plies=OTHER_HALF) + "\n"
+    """Compare plates with a bonded doubler over their full area, on the back or in front, with the plate of all plies."""
     for name, trial in PLATES.items():
-        above, end = trial[3:]
-        expected = read_history(plate(folder / name / "all", implam, trial, ALL,
-                                      INTERFACES[0].format(plies=above + "3")))
-        others = INTERFACES[0].format(plies=above.strip(", ")) + "\n" if above else ""
-        found = read_history(plate(folder / name / "bonded", implam, trial, HALF,
-                                   bond + INTERFACES[1].format(others=others)))
-        for column in COLUMNS:
-            largest = max(map(abs, expected["energy_impactor" if column == "energy_error" else column]))
-            difference = max(abs(one - other) for time, one, other in
-                             zip(expected["time"], expected[column], found[column], strict=True) if time < end)
-            print(f"{name}, {column}: {difference / (largest or 1):.1e} of {largest:.4g}")
-            require(difference <= SAME * largest, f"{name}: {column} differs.")
-        times, areas = expected["time"], expected["area_below_3"]
-        require(max(area for time, area in zip(times, areas, strict=True) if time < end) > 0,
-                f"{name}: the bond does not fail.")
+        others, end = trial[3:]
+        for face, laminate, doubler, below in (("back", HALF, OTHER_HALF, 3), ("front", OTHER_HALF, HALF, 0)):
+            place = f"{name} {face}"
+            changed = (*trial[:2], trial[2].replace("&stringer", f"&stringer face='{face}'"))
+            plies = [3, *(ply + (0 if below else 3) for ply in others)]
+            expected = read_history(plate(folder / place / "all", implam, changed, ALL, INTERFACES[0].format(
+                plies=", ".join(map(str, sorted(plies))))))
+            of_laminate = INTERFACES[0].format(plies=", ".join(map(str, others))) + "\n" if others else ""
+            bond = BOND.format(face=face, plies=doubler) + "\n"
+            found = read_history(plate(folder / place / "bonded", implam, changed, laminate,
+                                       bond + INTERFACES[1].format(others=of_laminate)))
+            for column in COLUMNS:
+                largest = max(map(abs, expected["energy_impactor" if column == "energy_error" else column]))
+                there = found[f"area_below_{below}" if column == "area_below_3" else column]
+                difference = max(abs(one - other) for time, one, other in
+                                 zip(expected["time"], expected[column], there, strict=True) if time < end)
+                print(f"{place}, {column}: {difference / (largest or 1):.1e} of {largest:.4g}")
+                require(difference <= SAME * largest, f"{place}: {column} differs.")
+            times, areas = expected["time"], expected["area_below_3"]
+            require(max(area for time, area in zip(times, areas, strict=True) if time < end) > 0,
+                    f"{place}: the bond does not fail.")
 
 
 def try_stiff(implam, folder):
@@ -229,11 +247,13 @@ SMALL = """&case units='mm-t-s' /
 &doubler name='flange' at=0,8 size=32,12 materials='ply' stacking='[0/90]' ply_thickness=0.25 /
 &doubler name='pad' at=-16,-8 size=16,8 materials='ply' stacking='[45]' ply_thickness=0.25 /
 &doubler name='patch' at=16,-8 size=16,8 materials='ply' stacking='[90]' ply_thickness=0.25 /
+&doubler name='cap' face='front' at=0,1 size=16,26 materials='ply' stacking='[0]' ply_thickness=0.25 /
 &impactor mass=1e-4 velocity=6000 radius=8 at={at} /
 &indentation law='hertz' k=30000 /
 &ply_damage criteria='hashin' /
 &delamination below_ply='all' G_Ic=0.1 G_IIc=0.25 /
 &delamination doubler='flange','pad' G_Ic=0.1 G_IIc=0.25 /
+&delamination doubler='cap' G_Ic=0.1 G_IIc=0.25 /
 {more}
 &time integrator='central_difference' end={end} {rest} /
 &output history_every=1e-5 checkpoint_every=5e-5 fields_every=1e-4 /
@@ -241,7 +261,7 @@ SMALL = """&case units='mm-t-s' /
 
 
 def try_ranks(implam, folder, launcher):
-    """Run a plate with three doublers, of which two may come off, on 1 to 3 ranks and from a checkpoint."""
+    """Run a plate with four doublers, of which three may come off, on 1 to 3 ranks and from a checkpoint."""
     histories = []
     for ranks in range(1, 4):
         path = folder / str(ranks) / "deck.nml"
@@ -251,7 +271,7 @@ def try_ranks(implam, folder, launcher):
         require_same(histories[-1], histories[0], f"{ranks} ranks")
     require_same(go_on(implam, copy_run(folder / "1", folder / "again")), histories[0], "restart")
     rows = read_history(histories[0])
-    require(min(rows[f"area_below_{ply}"][-1] for ply in (2, 3)) > 0, "An interface does not fail.")
+    require(min(rows[f"area_below_{ply}"][-1] for ply in (0, 2, 3)) > 0, "An interface does not fail.")
     require(max(map(abs, rows["energy_error"])) < 2e-3 * rows["energy_impactor"][0], "The ledger does not close.")
 
 
@@ -271,13 +291,34 @@ def try_second(implam, folder):
         print(f"{name}: bond {rows['area_below_3'][0]:.2f} to {rows['area_below_3'][-1]:.2f} mm2, ledger "
               f"{max(map(abs, rows['energy_error'])) / largest:.1e}")
         require(max(map(abs, rows["energy_error"])) < 2e-3 * largest, f"{name}: the ledger does not close.")
-    for column in ("area_below_1", "area_below_2", "area_below_3"):
+    for column in ("area_below_0", "area_below_1", "area_below_2", "area_below_3"):
         before, after = ends[0][column][-1], ends[1][column]
         require(abs(after[0] - before) <= 0.02 * before, f"{column}: {before}, and {after[0]} in the second run.")
         require(all(later >= now * (1 - 1e-9) for now, later in pairwise(after)), f"{column} shrinks.")
 
 
-TRIALS = {"ranks": try_ranks, "second": try_second, "explicit": try_explicit, "plates": try_plates,
+def try_mirror(implam, folder):
+    """Bend a plate and its mirror image by a line, in load steps and in time, until the bond grows."""
+    for name, rise, rest in (("steps", "", "&static steps=4 /"),
+                             ("time", "rise=1.4e-4", "&time integrator='central_difference' end=1.5e-4 /")):
+        ends = []
+        for face, sign, laminate, doubler in (("front", "", "0/45/-45/90", "0/90"),
+                                              ("back", "-", "90/-45/45/0", "90/0")):
+            path = folder / name / face / "deck.nml"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(MIRRORED.format(face=face, sign=sign, laminate=laminate, doubler=doubler, rise=rise,
+                                            rest=rest), encoding="utf-8")
+            ends.append(read_history(run_deck(implam, path)))
+        for column in ("energy_strain", "energy_kinetic", "energy_delamination", "delaminated_area", "line_force_1"):
+            one, other = ends[0][column], [value * (-1 if "line" in column else 1) for value in ends[1][column]]
+            largest = max(map(abs, one))
+            difference = max(abs(here - there) for here, there in zip(one, other, strict=True))
+            print(f"{name}, {column}: {difference / (largest or 1):.1e} of {largest:.4g}")
+            require(difference <= MIRROR * largest, f"{name}: {column} differs.")
+        require(ends[0]["delaminated_area"][-1] > ends[0]["delaminated_area"][0], f"{name}: the bond does not grow.")
+
+
+TRIALS = {"ranks": try_ranks, "mirror": try_mirror, "second": try_second, "explicit": try_explicit, "plates": try_plates,
           "stiff": try_stiff, "strips": try_strips}
 
 

@@ -89,6 +89,7 @@ def _stacks_of_cell(snapshot: Snapshot, elements: list[int], lay_up: LayUp, zone
     """Return the stacks of a cell with its layers from the struck face on."""
     mesh, plies = snapshot.mesh, len(zones.laminate)
     firsts, ends = ([int(numbers[element]) for element in elements] for numbers in (mesh.first_ply, mesh.last_ply))
+    added_in_front = firsts[0] < 1  # by doublers that may come off, which are written as bonded rigidly
     if not _is_regular(lay_up, zones):  # outer layers may begin and end with a ply of a doubler, or at a missing one
         if firsts[-1] > plies:  # doublers that may come off
             ends[-2:] = [plies, plies + 1]
@@ -100,7 +101,7 @@ def _stacks_of_cell(snapshot: Snapshot, elements: list[int], lay_up: LayUp, zone
     for element, first, last, numbers in zip(elements, firsts, ends, split(lay_up.numbers, ends[:-1], plies),
                                              strict=True):
         failures = tuple(int(flags[ply][element]) if ply in flags else 0 for ply in numbers)
-        if found and not snapshot.delaminated[element]:
+        if found and (not snapshot.delaminated[element] or (added_in_front and len(found) == 1 and first == 1)):
             above = found.pop()
             first, failures, numbers = above.first, above.failures + failures, (*above.lay_up.numbers, *numbers)
         found.append(Stack(first, last, failures, LayUp(numbers, 0.0)))
@@ -178,7 +179,7 @@ def _from_deck(deck: Deck) -> Panel:
     for i in range(len(x) - 1):
         for j in range(len(y) - 1):
             middle = (x[i] + x[i + 1]) / 2, (y[j] + y[j + 1]) / 2
-            lay_up, below = zones.at(*middle), len(plies) - (not zones.may_separate(*middle))
+            lay_up, below = zones.at(*middle), len(plies) - (not zones.may_separate(*middle, "back"))
             ends = sorted({ply for ply, cells in starters if cells[i, j] and ply <= below} | {below + 1})
             stacks[i, j] = placed([Stack(above + 1, end, len(numbers) * (0,), LayUp(numbers, 0.0))
                                    for above, end, numbers in zip([0, *ends], ends, split(
@@ -191,8 +192,10 @@ def _unwritten(deck: Deck, zones: Zones) -> Iterator[str]:
     yield from (f"&{group} is not written: add its supports or loads" for group in filter(deck.has, _UNWRITTEN))
     if deck.has("pressure") and deck.choice("pressure", "distribution", ("uniform", "sine")) == "sine":
         yield "the pressure is not written, as its distribution is a sine: add a load, or give a uniform --pressure"
-    if any(doubler.may_separate for doubler in zones.doublers):
-        yield "the bond of doublers is written as rigid where it has not delaminated"
+    if any(doubler.may_separate and doubler.face == "back" for doubler in zones.doublers):
+        yield "the bond of doublers on the back is written as rigid where it has not delaminated"
+    if any(doubler.may_separate and doubler.face == "front" for doubler in zones.doublers):
+        yield "the bond of doublers on the struck face is written as rigid, also where it has delaminated"
     if deck.values("laminate", "shear_correction") == ["energy"]:
         yield _BY_OTHERS
 

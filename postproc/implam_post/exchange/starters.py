@@ -36,9 +36,14 @@ def starters_of(deck: Deck, plies: Sequence[Ply], x: np.ndarray, y: np.ndarray, 
 
 
 def _interfaces(deck: Deck, group: Group, plies: Sequence[Ply]) -> Iterator[int]:
-    """Yield the plies above the interfaces of a group; the bond of doublers, always cohesive, is below the last."""
+    """Yield the plies above the interfaces of a group; the bond of doublers on the back, always cohesive, is below the
+    last, and that on the struck face is rigid in exports.
+    """
     if "doubler" in group:
-        yield len(plies)
+        names = {str(name).lower() for name in group["doubler"]}
+        if not any(str(other.get("face", ["back"])[0]).lower() == "front" for other in deck.groups.get("doubler", [])
+                   if str(other.get("name", [""])[0]).lower() in names):
+            yield len(plies)
         return
     named = group.get("below_ply", [0.0])
     if str(named[0]).lower() in ("all", "between_angles"):

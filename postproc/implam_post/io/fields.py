@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -37,10 +38,18 @@ class Mesh:
     last_ply: np.ndarray
     starter: np.ndarray
 
+    @cached_property
+    def lower(self) -> np.ndarray:
+        """Whether an element has an interface on top; first ply 1 has one below doublers that may come off."""
+        _, _, place = _plan_of(self.corners)
+        covered = np.zeros(len(place), dtype=bool)
+        covered[place[self.first_ply < 1]] = True
+        return np.asarray((self.first_ply > 1) | ((self.first_ply == 1) & covered[place]))
+
     @property
     def interfaces(self) -> list[int]:
-        """Numbers of the plies above the interfaces that may delaminate."""
-        return [int(ply) - 1 for ply in np.unique(self.first_ply) if ply > 1]
+        """Numbers of the plies above the interfaces that may delaminate; 0 for doublers on the struck face."""
+        return [int(ply) - 1 for ply in np.unique(self.first_ply[self.lower])]
 
     @property
     def plies(self) -> range:
@@ -87,7 +96,7 @@ class Snapshot:
         found = np.zeros(len(self.shares), dtype=bool)
         parts = self.shares @ WEIGHTS
         for below_ply in self.mesh.interfaces:
-            own = np.flatnonzero((self.mesh.first_ply == below_ply + 1) & (parts > 0))
+            own = np.flatnonzero(self.of_interface(below_ply) & (parts > 0))
             own = own[np.argsort(-parts[own], kind="stable")]
             sizes = areas(self.mesh.corners[own])
             # The last element counts as delaminated if more than half of it is needed to reach the area.
@@ -96,11 +105,11 @@ class Snapshot:
 
     def of_interface(self, below_ply: int) -> np.ndarray:
         """Return for each element whether this interface is on top of it."""
-        return np.asarray(self.mesh.first_ply == below_ply + 1)
+        return np.asarray(self.mesh.lower & (self.mesh.first_ply == below_ply + 1))
 
     def projected(self) -> tuple[np.ndarray, np.ndarray]:
         """Return cells in plan and at each of their points the largest share of all interfaces."""
-        layered = self.mesh.first_ply > 1
+        layered = self.mesh.lower
         corners, shares = self.mesh.corners[layered], self.shares[layered]
         _, first, place = _plan_of(corners)
         largest = np.zeros((len(first), 9))
@@ -131,7 +140,7 @@ class Snapshot:
     def projected_rest(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return `projected`, and for each of its cells the ply above the interface with the largest mean share."""
         corners, largest = self.projected()
-        layered = np.flatnonzero(self.mesh.first_ply > 1)
+        layered = np.flatnonzero(self.mesh.lower)
         _, _, place = _plan_of(self.mesh.corners[layered])
         order = np.lexsort((self.shares[layered] @ WEIGHTS, place))
         last = np.append(np.flatnonzero(np.diff(place[order])), len(order) - 1)
@@ -228,7 +237,7 @@ class Fields:
     def starter(self, below_ply: int) -> np.ndarray:
         """Return the cells of the full plate that were initially delaminated below a ply."""
         mesh = self.snapshots[-1].mesh
-        return self.full_plate(mesh.corners[mesh.starter & (mesh.first_ply == below_ply + 1)])
+        return self.full_plate(mesh.corners[mesh.starter & mesh.lower & (mesh.first_ply == below_ply + 1)])
 
     def interface(self, place: int, below_ply: int) -> Interface:
         """Return the figures of an interface at one of the times, computed from its polygons if the file has none."""
@@ -335,8 +344,8 @@ def _mesh(group: h5py.Group) -> Mesh:
     corners = _finite(points[:, :2][connectivity[:, :4]], "coordinates")
     first, last = (_finite(group[f"cells/{name}"][()].ravel(), name, len(corners)) for name in ("first_ply",
                                                                                                  "last_ply"))
-    # The layer of a doubler that may come off lies below the laminate and has none of its plies.
-    if first.min() < 1 or np.any(last < first - 1):
+    # The layer of a doubler that may come off lies above or below the laminate and has none of its plies.
+    if first.min() < 0 or np.any(last < first - 1):
         raise _MemberError("first_ply and last_ply are not numbers of plies")
     starter = group["cells/starter_above"][()].ravel() if "starter_above" in group["cells"] else np.zeros(len(first))
     return Mesh(corners, first, last, _finite(starter, "starter_above", len(first)) > 0)
@@ -364,7 +373,7 @@ def _snapshot(group: h5py.Group, meshes: dict[int, Mesh]) -> Snapshot:
         at_points = _finite(group["points/dissipated_above"][()], "dissipated_above")
         at_points = at_points[group.file[f"meshes/{number:08d}/connectivity"][()]]
         cohesive = [below_ply + 1 for below_ply, figures in interfaces.items() if figures.is_cohesive]
-        shares = np.where(np.isin(mesh.first_ply, cohesive)[:, None], at_points, shares)
+        shares = np.where((mesh.lower & np.isin(mesh.first_ply, cohesive))[:, None], at_points, shares)
     time = float(_finite(group["time"][()], "time"))
     return Snapshot(time, mesh, np.clip(shares, 0, 1), failures, release_ratio, interfaces, projected,
                     crushed, added)

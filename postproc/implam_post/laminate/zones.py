@@ -95,9 +95,10 @@ class Zones:
                 front -= sum(ply.thickness for ply in doubler.plies) if is_front else 0.0
         return LayUp(tuple(numbers), float(front))
 
-    def may_separate(self, x: float, y: float) -> bool:
-        """Return whether a doubler at a place has a layer of its own."""
-        return any(doubler.may_separate and doubler.area.contains(x, y) for doubler in self.doublers)
+    def may_separate(self, x: float, y: float, face: str) -> bool:
+        """Return whether a doubler on a face has a layer of its own at a place."""
+        return any(doubler.may_separate and doubler.face == face and doubler.area.contains(x, y)
+                   for doubler in self.doublers)
 
 
 def zones_of(deck: Deck, laminate: Sequence[Ply]) -> Zones:

@@ -58,15 +58,18 @@ class Plate:
     def layer(self, place: np.ndarray, first: int, last: int) -> Layer:
         """Return the layer of some plies of the laminate at a place, and of the doublers that are bonded to them.
 
-        A layer of doublers that may come off begins after the last ply of the laminate, and has none of it.
+        A layer of doublers that may come off has no ply of the laminate: on the struck face it ends before ply 1, on
+        the back it begins after the last one.
         """
         lay_up, plies = self.zones.at(*map(float, place)), len(self.zones.laminate)
         skin = [at for at, number in enumerate(lay_up.numbers) if number <= plies]
         inside = [at for at in skin if first <= lay_up.numbers[at] <= last]
-        begin, end = (inside[0], inside[-1] + 1) if inside else (skin[-1] + 1, len(lay_up.numbers))
-        if first == 1:
+        begin, end = inside[0] if inside else skin[-1] + 1, inside[-1] + 1 if inside else len(lay_up.numbers)
+        if last < 1:
+            begin, end = 0, skin[0]
+        elif first == 1 and not self.zones.may_separate(*map(float, place), "front"):
             begin = 0
-        if last == plies and inside and not self.zones.may_separate(*map(float, place)):
+        if last == plies and inside and not self.zones.may_separate(*map(float, place), "back"):
             end = len(lay_up.numbers)
         numbers = lay_up.numbers[begin:end]
         thicknesses = [self.zones.plies[number - 1].thickness for number in lay_up.numbers[:end]]
@@ -251,7 +254,8 @@ class Drawing:
 
     def _face(self, axes: Axes, style: PictureStyle) -> dict[str, Patch | Line2D]:
         """Draw the struck face, with the dent, and an arrow at the struck point."""
-        own = [row for row in self.rows if self.section.first_ply[row] == 1]
+        middles, first = self.section.along.mean(axis=1), self.section.first_ply
+        own = [row for row in self.rows if first[row] == first[self.rows][middles[self.rows] == middles[row]].min()]
         along, heights = (np.concatenate(values) for values in (
             [self.section.along[row] for row in own], [self.height(row, self.tops[row]) for row in own]))
         order = np.argsort(along, kind="stable")

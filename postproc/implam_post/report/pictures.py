@@ -57,7 +57,7 @@ def layup_figure(summary: Mapping[str, Any]) -> Figure:
     lines: dict[bool, Line2D] = {}
     for entry in summary.get("interfaces", []):
         grown = bool(entry["first_growth"])
-        lines[grown], = axes.plot([0, 1], 2 * [bottoms[entry["ply_above"] - 1]], color="black",
+        lines[grown], = axes.plot([0, 1], 2 * [[0.0, *bottoms][entry["ply_above"]]], color="black",
                                   linewidth=2 if grown else 1, linestyle="-" if grown else ":",
                                   label="delamination has grown" if grown else "may delaminate, has not grown")
     if lines:

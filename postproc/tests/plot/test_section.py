@@ -191,6 +191,8 @@ class LayerTest(unittest.TestCase):
                  ((pad,), (), 3, 4, (3, 4, 5, 6), 0.5), ((pad._replace(face="front"),), (), 1, 2, (5, 6, 1, 2), -0.5),
                  ((pad._replace(may_separate=True),), (), 1, 4, (1, 2, 3, 4), 0.0),
                  ((pad._replace(may_separate=True),), (), 5, 4, (5, 6), 1.0),
+                 ((pad._replace(face="front", may_separate=True),), (), 1, 4, (1, 2, 3, 4), 0.0),
+                 ((pad._replace(face="front", may_separate=True),), (), 0, 0, (5, 6), -0.5),
                  ((), (PlyDrop((1,), area, "back"),), 1, 4, (2, 3, 4), 0.25))
         for doublers, drops, first, last, plies, depth in cases:
             with self.subTest(plies):
