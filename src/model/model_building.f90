@@ -80,8 +80,8 @@ contains
                           self%distribution%points(self%distribution%owned + 1:)), error)
     if (allocated(error)) return
     call build_borders(self)
-    call build_loads(self)
     call build_interfaces(self)
+    call build_loads(self)
     call build_lines(self)
     if (allocated(setup%supports)) call build_rigs(self)
     self%has_point_stiffness = self%map%layered .or. self%rig%unilateral .or. self%rig%elastic

@@ -51,7 +51,7 @@ contains
     real(wp), allocatable :: weights(:), mass(:, :)
     real(wp) :: area
 
-    weights = nodal_areas(self, struck_elements(self, self%setup%mesh%patch))
+    weights = struck_areas(self, self%setup%mesh%patch)
     area = total_of(self%communicator, weights)
     if (area > 0) weights = weights/area
     call self%patch%spread(weights, 0.0_wp)
@@ -65,6 +65,25 @@ contains
       self%lumped = mass(:, :self%halo%points)
     end if
   end subroutine build_loads
+
+  !> Area of each point of the struck face, without ghosts. On the edge of a doubler that may come off the struck face it
+  !> is that of the doubler: the step of the surface there is not modelled, and a load acts on w of the first layer.
+  function struck_areas(self, patch) result(areas)
+    !> The model, with its elements, borders and layers
+    type(model_t), intent(in) :: self
+    !> Side of the patch; left out: the area is that of the face
+    real(wp), intent(in), optional :: patch
+    !> (local points); ghosts zero
+    real(wp), allocatable :: areas(:)
+    integer :: i
+
+    areas = nodal_areas(self, struck_elements(self, patch))
+    do i = 1, size(areas)
+      if (self%map%above(i) == 0 .or. .not. areas(i) > 0) cycle
+      areas(self%map%above(i)) = areas(self%map%above(i)) + areas(i)
+      areas(i) = 0
+    end do
+  end function struck_areas
 
   !> This rank's elements of the struck layer, ascending: those under the patch, or all.
   pure function struck_elements(self, patch) result(elements)
@@ -88,7 +107,7 @@ contains
     real(wp) :: local_area(self%halo%points), area(self%mesh%points())
     integer :: local(self%mesh%points()), i
 
-    local_area = nodal_areas(self, struck_elements(self))
+    local_area = struck_areas(self)
     area = 0
     local = 0
     associate (mesh => self%mesh, partition => self%distribution, struck => self%setup%mesh%struck)
@@ -133,5 +152,7 @@ contains
     call add_pressure(self%elements, pressure, forces)
     call self%borders%add(forces)
     self%pressure = forces(:, :self%halo%points)
+    ! Where a doubler on the struck face ends, the laminate beside it is not the first layer.
+    if (self%map%layered) call self%map%to_unknowns(self%pressure)
   end subroutine build_pressure
 end module model_loads
