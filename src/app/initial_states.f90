@@ -255,7 +255,7 @@ contains
     ! At rest, damage would only grow by errors of the mapping.
     call stepper%now%hold_damage(is_mapped(deck, old) .and. deck%setup%loading%start > 0 .and. &
                                  deck%setup%initial%motion == motion_rest)
-    call begin_contact(deck, old, stepper%now%indentation, log)
+    call begin_contact(deck, old, stepper%now%impact%indentation, log)
     call stepper%begin_inherited(model, transfer, deck%setup%initial%motion, error)
     if (allocated(error)) return
     call record%inherit(model, stepper%now)

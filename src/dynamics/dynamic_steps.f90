@@ -73,7 +73,7 @@ contains
       new%time = old%time + self%step
       new%load_factor = new%time/model%setup%loading%ramp_time
       call new%interfaces%ties%ramp_down(model, self%step)
-      self%patch_square = sum((new%contact%weights(new%contact%points)/model%mesh%multiplicity)**2)
+      self%patch_square = sum((new%impact%patch%weights(new%impact%patch%points)/model%mesh%multiplicity)**2)
       if (model%setup%impactor%is_present) self%coupling = begin_coupling(model, self%integrator, old, self%step)
       self%keeps_velocity = model%setup%impactor%is_present .and. &
                             .not. (allocated(self%guess) .or. model%has_point_stiffness)
@@ -122,18 +122,18 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
       associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
-        if (self%keeps_displacement .and. new%iterations == 0) then
+        if (self%keeps_displacement .and. new%iterations%equilibrium == 0) then
           at%energy = 0
           call weight_start_forces(size(residual), [(1 - m)/(self%integrator%beta*self%step), &
                                                       (1 - m)*0.5_wp/self%integrator%beta - 1], old%motion%momentum, &
                                    old%motion%inertia, old%motion%internal, residual)
-        else if (self%skips_elements .and. new%iterations == 1) then
+        else if (self%skips_elements .and. new%iterations%equilibrium == 1) then
           call find_internal_from_motion(self, model, old, new, at%energy)
           residual = 0
           return
         else
           call new%find_internal(model, old, at%energy)
-          if (self%keeps_velocity .and. new%iterations == 0) then
+          if (self%keeps_velocity .and. new%iterations%equilibrium == 0) then
             ! Newmark's acceleration if the velocity at the end is that at the start.
             new%motion%inertia = (1 - 0.5_wp/self%integrator%beta)*old%motion%inertia
           else
@@ -142,7 +142,7 @@ contains
           call weight_forces(size(residual), [1 - m, m, 1 - f, f], new%motion%inertia, old%motion%inertia, &
                              new%motion%internal, old%motion%internal, residual)
         end if
-        call new%contact%add_force(self%coupling%load()/model%mesh%multiplicity, residual)
+        call new%impact%patch%add_force(self%coupling%load()/model%mesh%multiplicity, residual)
         if (size(model%lines) > 0) then
           allocate (lines, lines_before, mold=residual)
           call model%line_forces(new%motion%displacement, new%load_factor, lines, prescribed=.false.)
@@ -173,7 +173,7 @@ contains
     call model%inertia(new%motion%acceleration, new%motion%inertia)
     associate (m => self%integrator%alpha_m, f => self%integrator%alpha_f)
       new%motion%internal = 0
-      call new%contact%add_force(self%coupling%load()/model%mesh%multiplicity, new%motion%internal)
+      call new%impact%patch%add_force(self%coupling%load()/model%mesh%multiplicity, new%motion%internal)
       call find_internal_forces(size(new%motion%internal), [1 - m, m, 1 - f, f], new%motion%inertia, &
                                 old%motion%inertia, old%motion%internal, new%motion%internal)
     end associate
@@ -194,11 +194,11 @@ contains
     real(wp) :: references(2, 3)
 
     associate (model => at%model, operator => at%operator, new => at%new)
-      if (self%keeps_displacement .and. new%iterations == 0) then
+      if (self%keeps_displacement .and. new%iterations%equilibrium == 0) then
         ! At least one iteration is needed.
         residual_norm = huge(residual_norm)
         return
-      else if (self%skips_elements .and. new%iterations == 1) then
+      else if (self%skips_elements .and. new%iterations%equilibrium == 1) then
         residual_norm = 0
         return
       end if
@@ -216,7 +216,7 @@ contains
     !> The iteration
     type(newton_iteration_t), intent(in) :: at
 
-    may_stop = at%new%iterations > 0 .or. .not. at%model%setup%impactor%is_present
+    may_stop = at%new%iterations%equilibrium > 0 .or. .not. at%model%setup%impactor%is_present
   end function may_stop
 
   !> Solves for a correction by the tangent, and for the impactor's force.
@@ -254,10 +254,10 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new)
       if (.not. model%setup%impactor%is_present) return
-      new%patch_mean = new%contact_deflection(model)
-      call self%coupling%find_force(model%setup%impactor%indentation, old%indentation, new%patch_mean, 0.0_wp, &
-                                    iterations, error)
-      new%force_iterations = new%force_iterations + iterations
+      new%impact%patch_mean = new%contact_deflection(model)
+      call self%coupling%find_force(model%setup%impactor%indentation, old%impact%indentation, new%impact%patch_mean, &
+                                    0.0_wp, iterations, error)
+      new%iterations%force = new%iterations%force + iterations
     end associate
   end subroutine find_force
 
@@ -282,14 +282,14 @@ contains
 
     associate (model => at%model, old => at%old, new => at%new)
       call new%count_step(old)
-      new%deflection = model%deflection(new%motion%displacement)
-      new%patch_mean = new%contact_deflection(model)
+      new%impact%deflection = model%deflection(new%motion%displacement)
+      new%impact%patch_mean = new%contact_deflection(model)
       if (model%setup%impactor%is_present) then
-        new%impactor = advance(model%setup%impactor, old%impactor, self%step, self%coupling%unknown, &
+        new%impact%impactor = advance(model%setup%impactor, old%impact%impactor, self%step, self%coupling%unknown, &
                                self%coupling%force_end)
-        new%force = self%coupling%force_end
-        call commit_indentation(model%setup%impactor%indentation, new%indentation, &
-                                new%impactor%displacement - new%patch_mean)
+        new%impact%force = self%coupling%force_end
+        call commit_indentation(model%setup%impactor%indentation, new%impact%indentation, &
+                                new%impact%impactor%displacement - new%impact%patch_mean)
       end if
       call model%profile%enter('energy ledger')
       call record_step(model, self%integrator, old, self%step, self%coupling%load(), at%energy, new)

@@ -103,12 +103,12 @@ contains
     type(tangent_product_t), intent(inout) :: tangent
     real(wp), allocatable :: push(:, :)
 
-    associate (model => at%model, numbering => at%operator%numbering, contact => at%new%contact)
+    associate (model => at%model, numbering => at%operator%numbering, contact => at%new%impact%patch)
       allocate (push(5, size(contact%weights)), source=0.0_wp)
       push(3, :) = contact%weights/model%mesh%multiplicity
       allocate (tangent%pattern(numbering%rows))
       call numbering%gather(push, tangent%pattern)
-      tangent%force_slope = coupling%slope(model%setup%impactor%indentation, at%old%indentation, &
+      tangent%force_slope = coupling%slope(model%setup%impactor%indentation, at%old%impact%indentation, &
                                            at%new%contact_deflection(model))
     end associate
   end subroutine add_force_slope

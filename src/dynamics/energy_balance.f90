@@ -78,10 +78,10 @@ contains
       new%ledger%algorithmic = new%ledger%algorithmic + taken
     end if
     if (.not. model%setup%impactor%is_present) return
-    impactor = impactor_energy(model%setup%impactor, new%impactor)
+    impactor = impactor_energy(model%setup%impactor, new%impact%impactor)
     new%ledger%impactor = impactor
-    new%ledger%indentation = new%indentation%work
-    new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%patch_mean - old%patch_mean) &
+    new%ledger%indentation = new%impact%indentation%work
+    new%ledger%algorithmic = new%ledger%algorithmic - (force*(new%impact%patch_mean - old%impact%patch_mean) &
       + impactor - old%ledger%impactor + new%ledger%indentation - old%ledger%indentation)
   end subroutine record_step
 

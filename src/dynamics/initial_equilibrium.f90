@@ -130,13 +130,13 @@ contains
     state%ledger%ply_damage = state%ledger%ply_damage + damage
     state%ledger%delamination = state%ledger%delamination &
                                 + state%interfaces%cohesive%dissipation(model, before%interfaces%cohesive)
-    state%deflection = model%deflection(state%motion%displacement)
+    state%impact%deflection = model%deflection(state%motion%displacement)
     ! The impactor starts at first contact with the deflected plate.
     if (model%setup%impactor%is_present) &
-      state%contact%offset = -state%contact%mean(model%communicator, state%motion%displacement)
+      state%impact%patch%offset = -state%impact%patch%mean(model%communicator, state%motion%displacement)
     if (allocated(model%nose)) &
-      state%contact%touched_at = model%nose%first_contact(model%communicator, state%motion%displacement(3, :))
-    state%patch_mean = state%contact_deflection(model)
+      state%impact%patch%touched_at = model%nose%first_contact(model%communicator, state%motion%displacement(3, :))
+    state%impact%patch_mean = state%contact_deflection(model)
     operator%ready = .false.
   end subroutine equilibrate
 

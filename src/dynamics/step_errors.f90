@@ -107,7 +107,7 @@ contains
     !> State at its end
     type(state_t), intent(in) :: trial
     real(wp), intent(out) :: error
-    real(wp) :: weights(past + 2), square, force, deflection
+    real(wp) :: weights(past + 2), square, struck, force, deflection
 
     error = 0
     if (self%known < past) return
@@ -116,13 +116,13 @@ contains
                              + weights(2)*now%motion%displacement(3, :size(self%share)) &
                              + weights(3)*self%deflection(:, 1) + weights(4)*self%deflection(:, 2))**2)
     call model%communicator%sum(square)
-    deflection = max(expected%deflection, self%largest, abs(trial%deflection))
-    if (deflection > 0) error = max(sqrt(square), abs(dot_product(weights, [trial%deflection, now%deflection, &
-                                                                            self%struck])))/deflection
+    deflection = max(expected%deflection, self%largest, abs(trial%impact%deflection))
+    struck = dot_product(weights, [trial%impact%deflection, now%impact%deflection, self%struck])
+    if (deflection > 0) error = max(sqrt(square), abs(struck))/deflection
     if (.not. model%setup%impactor%is_present .or. self%impact_is_over(expected, trial)) return
-    force = max(expected%force, self%force, trial%force)
+    force = max(expected%force, self%force, trial%impact%force)
     if (force > 0) error = max(error, max(self%stiffness, stiffness_of(model, trial))/force* &
-                               abs(dot_product(weights, [trial%indentation%alpha, now%indentation%alpha, &
+                               abs(dot_product(weights, [trial%impact%indentation%alpha, now%impact%indentation%alpha, &
                                                          self%indentation])))
   end subroutine estimate
 
@@ -131,7 +131,8 @@ contains
     type(model_t), intent(in) :: model
     type(state_t), intent(in) :: state
 
-    stiffness = indentation_stiffness(model%setup%impactor%indentation, state%indentation, state%indentation%alpha)
+    stiffness = indentation_stiffness(model%setup%impactor%indentation, state%impact%indentation, &
+                                      state%impact%indentation%alpha)
   end function stiffness_of
 
   !> True: the impactor has left the plate and moves away from it, and no other contact is expected.
@@ -141,7 +142,7 @@ contains
     type(expected_response_t), intent(in) :: expected
     type(state_t), intent(in) :: state
 
-    over = self%force > 0 .and. .not. state%force > 0 .and. state%impactor%velocity < 0 .and. &
+    over = self%force > 0 .and. .not. state%impact%force > 0 .and. state%impact%impactor%velocity < 0 .and. &
            state%time > expected%last_contact
   end function impact_is_over
 
@@ -156,13 +157,13 @@ contains
 
     self%known = min(self%known + 1, past)
     self%time = [now%time, self%time(1)]
-    self%indentation = [now%indentation%alpha, self%indentation(1)]
-    self%struck = [now%deflection, self%struck(1)]
+    self%indentation = [now%impact%indentation%alpha, self%indentation(1)]
+    self%struck = [now%impact%deflection, self%struck(1)]
     self%deflection(:, 2) = self%deflection(:, 1)
     self%deflection(:, 1) = now%motion%displacement(3, :size(self%share))
-    self%largest = max(self%largest, abs(next%deflection))
+    self%largest = max(self%largest, abs(next%impact%deflection))
     if (.not. model%setup%impactor%is_present) return
-    self%force = max(self%force, next%force)
+    self%force = max(self%force, next%impact%force)
     self%stiffness = max(self%stiffness, stiffness_of(model, next))
   end subroutine record
 

@@ -75,7 +75,7 @@ contains
         ledger%ply_damage = sum(now%plies%dissipated) + now%plies%permanent_shear
       end if
       if (model%setup%impactor%is_present) then
-        ledger%indentation = now%indentation%work
+        ledger%indentation = now%impact%indentation%work
         if (.not. model%setup%impactor%travel > 0) ledger%impactor = method%impact%energy(model, method%steps%now, now)
       end if
       call ledger%note_largest()

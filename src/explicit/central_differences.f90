@@ -102,8 +102,8 @@ contains
     self%lines = create_line_steps(model, self%inertia)
     self%onsets = create_front_onsets(model)
     call separate_constrained_points(self)
-    self%impact = create_impactor_steps(model, now%impactor%velocity)
-    self%impact%patch%offset = merge(-now%contact%touched_at, now%contact%offset, allocated(model%nose))
+    self%impact = create_impactor_steps(model, now%impact%impactor%velocity)
+    self%impact%patch%offset = merge(-now%impact%patch%touched_at, now%impact%patch%offset, allocated(model%nose))
     call self%impact%patch%gather(model, self%inertia%inverse_of_images())
     allocate (self%force(5, size(model%distribution%points)), self%motion(5, size(model%distribution%points)), &
               self%field(5, model%borders%columns), self%strain(lanes, model%elements%batches), source=0.0_wp)
@@ -140,7 +140,7 @@ contains
     end if
     square = self%stiffened**2
     if (model%setup%impactor%is_present) &
-      square = square + self%impact%contact_frequency_square(model, now%indentation)
+      square = square + self%impact%contact_frequency_square(model, now%impact%indentation)
     step = self%parameters%stable_step(sqrt(square))
   end function longest_step
 
@@ -294,7 +294,7 @@ contains
     call model%borders%add(self%field)
     call multiply(size(self%force), -1.0_wp, self%field, self%force)
     call model%profile%leave()
-    call self%impact%patch%add_force(model%mesh%multiplicity, now%force, self%force)
+    call self%impact%patch%add_force(model%mesh%multiplicity, now%impact%force, self%force)
     call add_clamp_forces(model, self%force)
     call self%inertia%fold(self%force)
   end subroutine find_forces

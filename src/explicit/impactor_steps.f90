@@ -81,13 +81,13 @@ contains
     type(state_t), intent(inout) :: now
     real(wp) :: w(size(self%patch%local))
 
-    call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
-    call self%patch%touch(w, now%indentation%dent)
-    now%patch_mean = now%impactor%displacement - now%indentation%dent
+    call self%patch%find_deflections(model, now%motion%displacement, w, now%impact%deflection)
+    call self%patch%touch(w, now%impact%indentation%dent)
+    now%impact%patch_mean = now%impact%impactor%displacement - now%impact%indentation%dent
     if (allocated(model%nose)) then
-      now%contact%touched_at = -self%patch%offset
+      now%impact%patch%touched_at = -self%patch%offset
     else
-      now%contact%offset = self%patch%offset
+      now%impact%patch%offset = self%patch%offset
     end if
   end subroutine place
 
@@ -105,17 +105,17 @@ contains
     if (model%setup%impactor%is_present .and. now%time <= model%setup%loading%start) then
       call self%place(model, now)
       ! The velocity at the middle of a step, with the full one at its end.
-      self%velocity = now%impactor%velocity - steps%now/2*model%setup%impactor%gravity
+      self%velocity = now%impact%impactor%velocity - steps%now/2*model%setup%impactor%gravity
       return
     end if
-    call self%patch%find_deflections(model, now%motion%displacement, w, now%deflection)
+    call self%patch%find_deflections(model, now%motion%displacement, w, now%impact%deflection)
     if (.not. model%setup%impactor%is_present) then
       call self%patch%find_indentation(w, 0.0_wp, alpha)
-      now%patch_mean = -alpha
+      now%impact%patch_mean = -alpha
       return
     end if
-    associate (impactor => now%impactor, parameters => model%setup%impactor)
-      before = now%force
+    associate (impactor => now%impact%impactor, parameters => model%setup%impactor)
+      before = now%impact%force
       if (parameters%travel > 0) then
         change = parameters%travel*smooth_ramp(now%time/model%setup%loading%ramp_time, &
                                                parameters%rise/model%setup%loading%ramp_time, 0) - impactor%displacement
@@ -126,15 +126,16 @@ contains
       end if
       impactor%displacement = impactor%displacement + change
       call self%patch%find_indentation(w, impactor%displacement, alpha)
-      now%patch_mean = impactor%displacement - alpha
-      now%force = self%patch%gain*indentation_force(model%setup%impactor%indentation, now%indentation, alpha)
-      call commit_indentation(model%setup%impactor%indentation, now%indentation, alpha)
-      impactor%force = now%force
+      now%impact%patch_mean = impactor%displacement - alpha
+      now%impact%force = self%patch%gain*indentation_force(model%setup%impactor%indentation, now%impact%indentation, &
+                                                           alpha)
+      call commit_indentation(model%setup%impactor%indentation, now%impact%indentation, alpha)
+      impactor%force = now%impact%force
       impactor%velocity = self%velocity
       if (parameters%travel > 0) then
-        self%work = self%work + (before + now%force)/2*change
+        self%work = self%work + (before + now%impact%force)/2*change
       else
-        impactor%velocity = impactor%velocity + steps%now/2*(parameters%gravity - now%force/parameters%mass)
+        impactor%velocity = impactor%velocity + steps%now/2*(parameters%gravity - now%impact%force/parameters%mass)
       end if
     end associate
   end subroutine move
@@ -166,7 +167,7 @@ contains
 
     associate (parameters => model%setup%impactor)
       energy = parameters%mass*(self%velocity*(self%velocity + step*(parameters%gravity &
-        - now%force/parameters%mass))/2 - parameters%gravity*now%impactor%displacement)
+        - now%impact%force/parameters%mass))/2 - parameters%gravity*now%impact%impactor%displacement)
     end associate
   end function energy
 

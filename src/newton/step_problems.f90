@@ -154,8 +154,8 @@ contains
       search%on = .false.
       call update_contact(problem, at, converged)
       if (converged) exit
-      if (at%multipliers_changed .and. new%contact_iterations < equilibrium%max_iterations) cycle
-      if (.not. at%norm <= huge(at%norm) .or. new%iterations >= equilibrium%max_iterations) exit
+      if (at%multipliers_changed .and. new%iterations%contact < equilibrium%max_iterations) cycle
+      if (.not. at%norm <= huge(at%norm) .or. new%iterations%equilibrium >= equilibrium%max_iterations) exit
       problem%uses_element_tangents = problem%uses_element_tangents .or. at%previous_norm > 0 &
         .and. at%norm > equilibrium%controls%element_reduction*at%previous_norm
       call correct(problem, at, search, corrected, error)
@@ -163,7 +163,7 @@ contains
       at%previous_norm = at%norm
       new%motion%displacement = new%motion%displacement + at%correction
       call problem%complete(at)
-      new%iterations = new%iterations + 1
+      new%iterations%equilibrium = new%iterations%equilibrium + 1
     end do
     if (converged) call problem%finish(at)
   end subroutine solve_step
@@ -185,7 +185,7 @@ contains
     associate (equilibrium => at%equilibrium, new => at%new)
       call new%interfaces%update_contact(at%model, new%motion%displacement, &
                                          equilibrium%controls%contact_share*equilibrium%tolerance, &
-                                         new%contact_iterations, converged)
+                                         new%iterations%contact, converged)
     end associate
     call at%model%profile%leave()
     at%multipliers_changed = .not. converged
@@ -246,8 +246,8 @@ contains
                         at%negative_curvature)
     else if (.not. corrected) then
       ! Divergence, or an operator that is not definite, as where all contacts open: a shorter step may succeed.
-      if ((problem%may_be_shortened .or. at%model%setup%impactor%is_present .or. at%new%iterations > 0) .and. &
-          error%code == exit_convergence) deallocate (error)
+      if ((problem%may_be_shortened .or. at%model%setup%impactor%is_present .or. at%new%iterations%equilibrium > 0) &
+          .and. error%code == exit_convergence) deallocate (error)
     end if
   end subroutine correct
 end module step_problems

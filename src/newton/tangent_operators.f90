@@ -130,7 +130,7 @@ contains
       call assemble_tangents(model, self%numbering, state%interfaces%cohesive%tangents, self%solver)
     call state%interfaces%added_stiffness(model, self%diagonal, stiffness_factor, self%added)
     call self%timers%stop('assembly')
-    call self%factorize(model, state%contact, error)
+    call self%factorize(model, state%impact%patch, error)
   end subroutine renew
 
   !> Factorizes the assembled matrix with the stiffness added to the jumps, and computes the unit-load solution.

@@ -65,7 +65,7 @@ contains
       if (communicator%any(stop_signal() /= 0)) exit
     end do
     coarse_run%done = .not. (stepper%now%time < end_of_run(coarse%stepping, coarse_run%record%contact_end))
-    coarse_run%velocity = stepper%now%impactor%velocity
+    coarse_run%velocity = stepper%now%impact%impactor%velocity
     figures = figures_of(model, stepper%now%interfaces)
     coarse_run%area = sum(figures%area)
     call stepper%operator%release()

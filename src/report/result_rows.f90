@@ -175,9 +175,9 @@ contains
              iteration_values(now, stepper%rejected_steps()), operator_values(stepper%operator), &
              ply_values(model, now%plies), border_values(model, now%interfaces), &
              rig_values(model, now%interfaces, now%motion, loads), heat_values(now%ledger), &
-             real(size(record%warning_kinds), wp), now%pressed_area(model), now%ledger%damping, &
+             real(size(record%warning_kinds), wp), now%impact%pressed_area(model), now%ledger%damping, &
              permanent_values(now%plies), &
-             dent_depth(model, now%motion%displacement) + now%indentation%dent, now%indentation%dent]
+             dent_depth(model, now%motion%displacement) + now%impact%indentation%dent, now%impact%indentation%dent]
       row = [pack(row, apply_to(model%setup)), interface_values(model, now%interfaces)]
       lines = line_values(model, now)
       row = [row, lines, end_values(model, lines), gauge_strains(model, now%motion%displacement), &

@@ -73,7 +73,7 @@ contains
 
     figures%interfaces = figures_of(model, now%interfaces)
     figures%projected_areas = projected_areas_of(model, now%interfaces)
-    figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%indentation%dent
+    figures%dent = [dent_depth(model, now%motion%displacement), 0.0_wp] + now%impact%indentation%dent
     figures%failures = failed_counts(model, now%plies)
     figures%failed_area = failed_areas(model, now%plies)
     figures%stressed_volume = [(now%plies%stressed_volume(ply), ply=1, model%plies)]

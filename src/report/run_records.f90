@@ -116,25 +116,25 @@ contains
     integer, intent(in) :: between_stages
     integer :: stages(size(self%stage)), zone
 
-    if (now%force > self%peak_force) then
-      self%peak_force = now%force
+    if (now%impact%force > self%peak_force) then
+      self%peak_force = now%impact%force
       self%peak_time = now%time
     end if
-    call self%filter%advance(now%time - self%time, now%force)
+    call self%filter%advance(now%time - self%time, now%impact%force)
     if (self%filter%force > self%peak_filtered) then
       self%peak_filtered = self%filter%force
       self%peak_filtered_time = now%time
     end if
-    if (abs(now%deflection) > abs(self%deflection)) then
-      self%deflection = now%deflection
+    if (abs(now%impact%deflection) > abs(self%deflection)) then
+      self%deflection = now%impact%deflection
       self%deflection_time = now%time
     end if
-    call count_contacts(self, now%time, now%force)
+    call count_contacts(self, now%time, now%impact%force)
     ! Since then the impactor flies freely under gravity; a multistep integrator needs some steps for it.
-    if (self%contacts > 0 .and. .not. now%force > 0) self%rebound = &
-      model%setup%impactor%gravity*(now%time - self%contact_end) - now%impactor%velocity
+    if (self%contacts > 0 .and. .not. now%impact%force > 0) self%rebound = &
+      model%setup%impactor%gravity*(now%time - self%contact_end) - now%impact%impactor%velocity
     self%time = now%time
-    self%force = now%force
+    self%force = now%impact%force
     if (all(self%stage == stage_grown) .or. modulo(now%step, between_stages) > 0) return
     stages = stages_of(model, now%interfaces)
     do zone = 1, size(stages)
@@ -172,7 +172,7 @@ contains
     !> The three values
     real(wp) :: figures_at(3)
 
-    figures_at = [shown_time(now%time), now%force, now%deflection]
+    figures_at = [shown_time(now%time), now%impact%force, now%impact%deflection]
   end function figures_at
 
   !> True once the impactor has left the plate, away from it.

@@ -61,7 +61,7 @@ contains
     ended = .not. (allocated(error) .or. deck%setup%is_static() .or. deck%setup%initial%is_inherited)
     needed = ended .and. needs_coarse_run(deck%settings, errors%source /= 'none')
     if (needed) call run_coarse_model(deck, model%communicator, coarse_run)
-    if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impactor%velocity, &
+    if (coarse_run%done) errors = errors_by_coarse_run(deck, record, stepper%now%impact%impactor%velocity, &
                                                      sum(figures%interfaces%area), coarse_run)
     unknown_because = ''
     if (needed .and. .not. coarse_run%done) then

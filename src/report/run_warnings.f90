@@ -102,19 +102,19 @@ contains
       call add('border', now%interfaces%border_reached(zone), zone)
       call add('core', leaves_core(deck, model%setup%delaminations(zone)))
     end do
-    call add('indentation', now%indentation%alpha > max_indentation(deck))
-    if (now%force > 0) &
-      call add('below_nose', now%depth_below_impactor(model) > limit_of('below_nose')*thickness)
+    call add('indentation', now%impact%indentation%alpha > max_indentation(deck))
+    if (now%impact%force > 0) &
+      call add('below_nose', now%impact%depth_below_impactor(model) > limit_of('below_nose')*thickness)
     call add('steps', stepper%exceeds_tolerance())
     call add('mapping', record%mapping%raises_strain())
     if (is_new(record, 'slopes')) call add('slopes', is_steep(model, now))
     if (is_new(record, 'stringer') .and. have_strengths(deck)) &
       call add('stringer', weakest_stringer(model, now%motion%displacement) > 0)
-    if (is_new(record, 'membrane') .and. abs(now%deflection) > limit_of('membrane')*thickness) &
+    if (is_new(record, 'membrane') .and. abs(now%impact%deflection) > limit_of('membrane')*thickness) &
       call add('membrane', has_fibre_failure(deck, model, now))
     ! The contact shrinks to nothing as the impactor rebounds, which it does not where it perforates.
-    if (is_new(record, 'perforation') .and. deck%setup%ply_damage%is_present .and. now%force > 0 .and. &
-        now%impactor%velocity >= 0) call add('perforation', is_perforated(model, now))
+    if (is_new(record, 'perforation') .and. deck%setup%ply_damage%is_present .and. now%impact%force > 0 .and. &
+        now%impact%impactor%velocity >= 0) call add('perforation', is_perforated(model, now))
     exceeded = energy_check%check(now%ledger, now%interfaces%unreleased(model), deck%setup%load_level(now%time), &
                                   deck%setup%is_static())
     call record%note_motion(deck, now)
@@ -236,7 +236,7 @@ contains
     if (counts(fibre_failure) < model%plies) return
     areas = failed_areas(model, now%plies)
     is_perforated = all(areas(fibre_failure, :) >= &
-      max(model%setup%mesh%patch**2, now%pressed_area(model))*(1 - rounding))
+      max(model%setup%mesh%patch**2, now%impact%pressed_area(model))*(1 - rounding))
   end function is_perforated
 
   !> True: fibres of a clamped plate have failed. Collective.

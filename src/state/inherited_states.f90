@@ -32,7 +32,7 @@ contains
     call state%interfaces%cohesive%visit(archive, model)
     call visit_friction(state%interfaces%cohesive, archive, model)
     call visit_flaws(state%interfaces%cohesive, archive, model)
-    call state%indentation%visit(archive)
+    call state%impact%indentation%visit(archive)
     call archive%item('ledger/ply_damage', state%ledger%ply_damage)
   end subroutine visit_inheritance
 end module inherited_states

@@ -62,7 +62,7 @@ contains
       self%load_factor = old%load_factor + part*old%path%factor_change
       call self%static_step_t%begin(at)
       new%motion%displacement = old%motion%displacement + part*old%path%change
-      new%force = old%force + part*old%path%force_change
+      new%impact%force = old%impact%force + part*old%path%force_change
     end associate
   end subroutine begin
 
@@ -87,7 +87,7 @@ contains
     associate (model => at%model, new => at%new)
       if (model%setup%impactor%is_present) then
         ! The impactor's travel follows from its force.
-        if (new%force < 0) then
+        if (new%impact%force < 0) then
           residual_norm = huge(residual_norm)
           return
         end if
@@ -131,15 +131,15 @@ contains
       change = 0
       if (abs(sums(2)) > 0) change = (self%target_dissipation - new%path%dissipated - sums(1))/sums(2)
       if (model%setup%impactor%is_present) then
-        new%force = new%force + self%correction_factor(new%iterations)*change
+        new%impact%force = new%impact%force + self%correction_factor(new%iterations%equilibrium)*change
       else
         ! Near a limit point a correction may be so large that the iteration diverges.
-        factor = new%load_factor + self%correction_factor(new%iterations)*change
+        factor = new%load_factor + self%correction_factor(new%iterations%equilibrium)*change
         factor = min(max(factor, old%load_factor - self%max_load_change), old%load_factor + self%max_load_change)
-        change = (factor - new%load_factor)/self%correction_factor(new%iterations)
+        change = (factor - new%load_factor)/self%correction_factor(new%iterations%equilibrium)
         new%load_factor = factor
       end if
-      correction = self%correction_factor(new%iterations)*(correction + change*response)
+      correction = self%correction_factor(new%iterations%equilibrium)*(correction + change*response)
     end associate
   end subroutine complete_correction
 end module dissipation_steps

@@ -25,7 +25,8 @@ contains
     !> Forces on the unknowns at the owned points, (5, points)
     real(wp), intent(inout) :: loads(:, :)
 
-    if (model%setup%impactor%is_present) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity*state%contact%weights
+    if (model%setup%impactor%is_present) loads(3, :) = loads(3, :) + force/model%mesh%multiplicity &
+                                                       *state%impact%patch%weights
   end subroutine add_impactor_force
 
   !> Finds the impactor's force for the travel and the deflection of the plate, and adds the unit-load solution times
@@ -53,25 +54,26 @@ contains
     call add_impactor_force(model, new, 1.0_wp, push)
     call solve_load_tangent(operator, model, new%interfaces%cohesive, push, response, error)
     if (allocated(error)) return
-    compliance = new%contact%mean(model%communicator, response)
-    mean = new%contact_deflection(model) + new%contact%mean(model%communicator, correction)
+    compliance = new%impact%patch%mean(model%communicator, response)
+    mean = new%contact_deflection(model) + new%impact%patch%mean(model%communicator, correction)
     if (compliance < 0 .and. allocated(model%elements%initial_slopes)) then
       force = force_beyond_limit(model, new, mean, compliance)
       if (force >= 0) then
-        correction = correction + (force - new%force)*response
-        new%force = new%force + part*(force - new%force)
+        correction = correction + (force - new%impact%force)*response
+        new%impact%force = new%impact%force + part*(force - new%impact%force)
         return
       end if
     end if
     ! With a negative compliance the force would be tensile: the step has to be repeated with a shorter length.
-    step = contact_step_t(model%setup%impactor%indentation, new%indentation, start=new%indentation%alpha, &
-                          free=new%load_factor*model%setup%impactor%travel - mean + new%force*compliance, &
+    step = contact_step_t(model%setup%impactor%indentation, new%impact%indentation, &
+                          start=new%impact%indentation%alpha, &
+                          free=new%load_factor*model%setup%impactor%travel - mean + new%impact%force*compliance, &
                           compliance=compliance, is_mean=.false.)
     call solve_impact_force(step, force, alpha, force_end, iterations, error)
     if (allocated(error)) return
-    new%force_iterations = new%force_iterations + iterations
-    correction = correction + (force - new%force)*response
-    new%force = new%force + part*(force - new%force)
+    new%iterations%force = new%iterations%force + iterations
+    correction = correction + (force - new%impact%force)*response
+    new%impact%force = new%impact%force + part*(force - new%impact%force)
   end subroutine find_force_change
 
   !> Force beyond the limit load of a curved plate, which needs less force the further it deflects: the root of
@@ -88,13 +90,13 @@ contains
     real(wp) :: alpha, flexibility
 
     force = -1
-    if (.not. new%force > 0) return
+    if (.not. new%impact%force > 0) return
     associate (law => model%setup%impactor%indentation)
-      alpha = indentation_of(law, new%indentation, new%force)
-      flexibility = compliance + 1/indentation_stiffness(law, new%indentation, alpha)
+      alpha = indentation_of(law, new%impact%indentation, new%impact%force)
+      flexibility = compliance + 1/indentation_stiffness(law, new%impact%indentation, alpha)
     end associate
     if (flexibility < 0) &
-      force = max(0.0_wp, new%force + (new%load_factor*model%setup%impactor%travel - mean - alpha)/flexibility)
+      force = max(0.0_wp, new%impact%force + (new%load_factor*model%setup%impactor%travel - mean - alpha)/flexibility)
   end function force_beyond_limit
 
   !> Difference between the force and that of the indentation law, relative to the larger of them.
@@ -104,9 +106,9 @@ contains
     type(state_t), intent(in) :: new
     real(wp) :: force
 
-    force = indentation_force(model%setup%impactor%indentation, new%indentation, &
+    force = indentation_force(model%setup%impactor%indentation, new%impact%indentation, &
                               new%load_factor*model%setup%impactor%travel - new%contact_deflection(model))
-    mismatch = abs(force - new%force)/max(force, new%force, tiny(force))
+    mismatch = abs(force - new%impact%force)/max(force, new%impact%force, tiny(force))
   end function force_mismatch
 
   !> Travel of the impactor for the force and the deflection of a state.
@@ -115,7 +117,7 @@ contains
     !> The state
     type(state_t), intent(in) :: new
 
-    travel = indentation_of(model%setup%impactor%indentation, new%indentation, new%force) + &
+    travel = indentation_of(model%setup%impactor%indentation, new%impact%indentation, new%impact%force) + &
              new%contact_deflection(model)
   end function travel_for
 
@@ -127,11 +129,11 @@ contains
     !> State at this load, with its deflections
     type(state_t), intent(inout) :: new
 
-    new%impactor%displacement = new%load_factor*model%setup%impactor%travel
-    call commit_indentation(model%setup%impactor%indentation, new%indentation, &
-                            new%impactor%displacement - new%patch_mean)
-    new%ledger%indentation = new%indentation%work
-    new%ledger%external_work = new%ledger%external_work + new%indentation%work - old%indentation%work + &
-                               (old%force + new%force)/2*(new%patch_mean - old%patch_mean)
+    new%impact%impactor%displacement = new%load_factor*model%setup%impactor%travel
+    call commit_indentation(model%setup%impactor%indentation, new%impact%indentation, &
+                            new%impact%impactor%displacement - new%impact%patch_mean)
+    new%ledger%indentation = new%impact%indentation%work
+    new%ledger%external_work = new%ledger%external_work + new%impact%indentation%work - old%impact%indentation%work + &
+                               (old%impact%force + new%impact%force)/2*(new%impact%patch_mean - old%impact%patch_mean)
   end subroutine move_slow_impactor
 end module slow_impactors

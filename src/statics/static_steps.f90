@@ -71,7 +71,7 @@ contains
     associate (model => at%model, old => at%old, new => at%new, residual => at%residual)
       call new%find_internal(model, old, at%energy)
       call model%static_loads(new%motion%displacement, new%load_factor, residual)
-      call add_impactor_force(model, new, new%force, residual)
+      call add_impactor_force(model, new, new%impact%force, residual)
       residual = residual - new%motion%internal
     end associate
   end subroutine find_residual
@@ -87,12 +87,12 @@ contains
     associate (model => at%model, operator => at%operator, new => at%new)
       allocate (loads, mold=at%residual)
       call model%static_loads(new%motion%displacement, new%load_factor, loads)
-      call add_impactor_force(model, new, new%force, loads)
+      call add_impactor_force(model, new, new%impact%force, loads)
       references(:, 1) = sums_of_squares(operator%numbering, new%motion%internal)
       references(:, 2) = sums_of_squares(operator%numbering, loads)
       ! A second iteration removes the round-off of the first, so it is required.
       residual_norm = relative_residual(model, operator, at%equilibrium, at%residual, references, &
-                                        new%motion%displacement, new%iterations > 1, new%largest_forces)
+                                        new%motion%displacement, new%iterations%equilibrium > 1, new%largest_forces)
       if (model%setup%impactor%is_present) residual_norm = max(residual_norm, force_mismatch(model, new))
     end associate
   end function residual_norm
@@ -115,7 +115,7 @@ contains
 
     at%negative_curvature = .false.
     associate (model => at%model, operator => at%operator, new => at%new)
-      if (.not. operator%ready .or. tangent_changes(model, new%iterations)) &
+      if (.not. operator%ready .or. tangent_changes(model, new%iterations%equilibrium)) &
         call operator%renew(model, new, 1.0_wp, 0.0_wp, error)
       if (.not. allocated(error)) &
         call solve_load_tangent(operator, model, new%interfaces%cohesive, at%residual, at%correction, error)
@@ -134,9 +134,10 @@ contains
 
     associate (model => at%model, operator => at%operator, new => at%new, correction => at%correction)
       if (model%setup%impactor%is_present) &
-        call find_force_change(model, operator, self%correction_factor(new%iterations), new, correction, error)
+        call find_force_change(model, operator, self%correction_factor(new%iterations%equilibrium), new, correction, &
+                               error)
       if (allocated(error)) error%code = exit_convergence
-      correction = self%correction_factor(new%iterations)*correction
+      correction = self%correction_factor(new%iterations%equilibrium)*correction
     end associate
   end subroutine complete_correction
 
@@ -199,14 +200,14 @@ contains
       sums(6) = model%product(change, loads - loads_before)/2
       ! After failures of plies or a change of the contact area the previous state is not in equilibrium; the energy
       ! released would become kinetic energy.
-      call add_impactor_force(model, old, old%force, loads_before)
+      call add_impactor_force(model, old, old%impact%force, loads_before)
       sums(5) = sums(5) + model%product(change, loads_before - old%motion%internal)/2
       if (.not. (model%setup%ply_damage%is_present .or. allocated(model%nose))) sums(5) = 0
       call model%communicator%sum(sums)
       sums = sums*model%mesh%multiplicity
       call new%count_step(old)
-      new%deflection = model%deflection(new%motion%displacement)
-      new%patch_mean = new%contact_deflection(model)
+      new%impact%deflection = model%deflection(new%motion%displacement)
+      new%impact%patch_mean = new%contact_deflection(model)
       new%ledger%strain = sums(1)
       new%ledger%external_work = old%ledger%external_work + sums(3)
       new%ledger%contact = old%ledger%contact - sums(4)
@@ -214,7 +215,7 @@ contains
       heat = new%interfaces%friction_heat(model, old%interfaces)
       new%ledger%friction = old%ledger%friction + heat
       if (model%setup%impactor%is_present) call move_slow_impactor(model, old, new)
-      sums(6) = sums(6) + (new%force - old%force)*(new%patch_mean - old%patch_mean)/2
+      sums(6) = sums(6) + (new%impact%force - old%impact%force)*(new%impact%patch_mean - old%impact%patch_mean)/2
       call new%plies%record(model, damage)
       new%ledger%ply_damage = old%ledger%ply_damage + damage
       new%ledger%delamination = old%ledger%delamination + fracture

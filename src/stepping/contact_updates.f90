@@ -36,13 +36,13 @@ contains
     real(wp), allocatable :: change(:)
 
     if (.not. allocated(model%nose)) return
-    associate (w => now%motion%displacement(3, :), contact => now%contact)
-      change = relaxation*(weights_of(model, w, now%indentation%alpha) - contact%weights)
+    associate (w => now%motion%displacement(3, :), contact => now%impact%patch)
+      change = relaxation*(weights_of(model, w, now%impact%indentation%alpha) - contact%weights)
       if (.not. total_of(model%communicator, abs(change)) > negligible) return
       call contact%spread(contact%weights + change, contact%offset - total_of(model%communicator, change*w))
       contact%area = model%nose%area_of(model%communicator, contact%weights)
     end associate
-    if (operator%ready) call operator%find_response(model, now%contact, error)
+    if (operator%ready) call operator%find_response(model, now%impact%patch, error)
   end subroutine update_contact_area
 
   !> Weights of the force distribution, with the sum 1 over the modelled part. Collective.

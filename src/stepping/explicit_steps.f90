@@ -69,7 +69,7 @@ contains
 
     is_damped = now%time < model%setup%loading%start
     if (.not. (model%setup%impactor%is_present .and. method%parameters%settle > 0)) return
-    is_damped = is_damped .or. now%time > 0 .and. .not. now%force > 0 .and. now%impactor%velocity < 0
+    is_damped = is_damped .or. now%time > 0 .and. .not. now%impact%force > 0 .and. now%impact%impactor%velocity < 0
   end function is_damped
 
   !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.
@@ -82,14 +82,15 @@ contains
     type(error_t), allocatable, intent(out) :: error
 
     if (allocated(model%nose)) then
-      call now%contact%spread(method%impact%patch%local_weights(size(model%patch%weights)), now%contact%offset)
-      now%contact%area = method%impact%patch%area
+      call now%impact%patch%spread(method%impact%patch%local_weights(size(model%patch%weights)), &
+                                   now%impact%patch%offset)
+      now%impact%patch%area = method%impact%patch%area
     end if
     call record_energies(method, model, now)
     now%interfaces%rig%found = method%rigs%reactions_of(model, method%force, now%motion%displacement)
     if (size(model%lines) > 0) now%line_reactions = method%lines%totals(model)
-    now%stress = struck_stress(model, now%motion%displacement)
-    now%largest_stress = max(now%largest_stress, now%stress)
+    now%impact%stress = struck_stress(model, now%motion%displacement)
+    now%impact%largest_stress = max(now%impact%largest_stress, now%impact%stress)
     call check_stability(model, now, error)
   end subroutine complete_step
 end module explicit_steps

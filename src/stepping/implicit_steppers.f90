@@ -173,7 +173,7 @@ contains
     call self%controller%visit(archive)
     if (allocated(self%step_error%share)) call self%step_error%visit(archive, model)
     call archive%item('stepper/rejected', self%rejected)
-    call self%operator%visit(archive, model, self%now%contact, error)
+    call self%operator%visit(archive, model, self%now%impact%patch, error)
   end subroutine visit
 
   !> Length of the last step.
@@ -242,8 +242,8 @@ contains
 
     associate (now => self%now, operator => self%operator)
       line = counted(to_text(now%step), 'step')//' ('//to_text(self%rejected)//' rejected), '// &
-             counted(to_text(now%all_iterations), 'iteration')//' of equilibrium, '// &
-             to_text(now%all_force_iterations)//' of the force, '// &
+             counted(to_text(now%all_iterations%equilibrium), 'iteration')//' of equilibrium, '// &
+             to_text(now%all_iterations%force)//' of the force, '// &
              counted(to_text(operator%factorizations), 'factorization')//', '// &
              counted(to_text(operator%solves), 'solve')//' by '//operator%solver%package_used()
     end associate

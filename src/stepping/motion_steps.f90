@@ -96,7 +96,7 @@ contains
       factor_is_due = operator%ready
       if (factor_is_due) then
         factor_is_due = stepper%controller%renewal_due(stepper%stepping, model%setup%mesh%kinematics == &
-          kinematics_von_karman, mass_factor/operator%mass_factor, now%deflection - operator%deflection, &
+          kinematics_von_karman, mass_factor/operator%mass_factor, now%impact%deflection - operator%deflection, &
           model%thickness)
       else
         call operator%renew(model, now, stepper%integrator%stiffness_factor(), mass_factor, error)
@@ -112,7 +112,7 @@ contains
 
     associate (trial => stepper%trial)
       trial%interfaces%contact%glued = trial%interfaces%contact%glued .or. model%setup%impactor%is_present &
-        .and. trial%impactor%velocity <= 0 .and. trial%force < stepper%now%force
+        .and. trial%impact%impactor%velocity <= 0 .and. trial%impact%force < stepper%now%impact%force
     end associate
   end subroutine complete_trial
 
@@ -130,7 +130,7 @@ contains
       ! Excess solves are counted from the step that renewed the operator.
       if (stepper%operator%factorizations /= stepper%factorizations_at_start) call controller%renewed()
       lag_iterations = stepper%operator%solves - stepper%solves_at_start
-      call controller%accept(stepping, step, now%iterations, lag_iterations, change)
+      call controller%accept(stepping, step, now%iterations%equilibrium, lag_iterations, change)
       if (model%setup%has_crack_bands()) call controller%limit_by_ply_damage(stepping, stepper%damage_lag)
       if (stepper%is_error_controlled) &
         call controller%adapt_to_error(stepping, step, stepper%error, stepping%time%end - now%time, &

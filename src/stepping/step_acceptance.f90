@@ -27,10 +27,12 @@ contains
 
     if (model%setup%loading%dissipation > 0 .and. step > 0) &
       call self%trial%record_path(self%now, model%setup%loading%dissipation)
-    self%trial%stress = struck_stress(model, self%trial%motion%displacement)
-    self%trial%largest_stress = max(self%now%largest_stress, self%trial%stress)
     change = 0
-    if (self%trial%largest_stress > 0) change = abs(self%trial%stress - self%now%stress)/self%trial%largest_stress
+    associate (now => self%now%impact, trial => self%trial%impact)
+      trial%stress = struck_stress(model, self%trial%motion%displacement)
+      trial%largest_stress = max(now%largest_stress, trial%stress)
+      if (trial%largest_stress > 0) change = abs(trial%stress - now%stress)/trial%largest_stress
+    end associate
     call update_damage(self, model)
     extended = self%trial%ledger%delamination > self%now%ledger%delamination
     if (self%is_error_controlled) then

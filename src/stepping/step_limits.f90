@@ -24,8 +24,8 @@ contains
 
     limit = huge(limit)
     if (.not. model%setup%impactor%is_present) return
-    limit = largest_safe_step(model%setup%impactor, model%setup%impactor%indentation, now%indentation, &
-                              now%indentation%alpha, now%impactor%velocity)
+    limit = largest_safe_step(model%setup%impactor, model%setup%impactor%indentation, now%impact%indentation, &
+                              now%impact%indentation%alpha, now%impact%impactor%velocity)
     if (limit < target) limit = target*2.0_wp**floor(log(limit/target)/log(2.0_wp))
   end function impactor_limit
 

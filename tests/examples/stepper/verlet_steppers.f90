@@ -79,7 +79,7 @@ contains
       call find_accelerations(self, model)
       motion%velocity = motion%velocity + self%step/2*motion%acceleration
       call record_energies(self, model)
-      now%deflection = model%deflection(motion%displacement)
+      now%impact%deflection = model%deflection(motion%displacement)
     end associate
   end subroutine advance
 
