@@ -38,7 +38,7 @@ contains
     class(impact_state_t), intent(in) :: self
     type(model_t), intent(in) :: model
 
-    area = model%setup%mesh%patch**2
+    area = model%plate%setup%mesh%patch**2
     if (allocated(model%nose)) area = self%patch%area
   end function pressed_area
 
@@ -83,8 +83,8 @@ contains
     call archive%item('contact/touched_at', patch%touched_at)
     call archive%item('contact/area', patch%area)
     weights = reshape(patch%weights, [1, size(patch%weights)])
-    associate (partition => model%distribution)
-      call archive%field('contact/weights', partition%points(:partition%owned), model%mesh%points(), weights, &
+    associate (partition => model%plate%distribution)
+      call archive%field('contact/weights', partition%points(:partition%owned), model%plate%mesh%points(), weights, &
                          area_field)
     end associate
     call patch%spread(weights(1, :), (patch%offset))

@@ -12,6 +12,7 @@ module states
   use energy_ledgers, only: ledger_t
   use load_paths, only: load_path_t
   use motions, only: motion_t
+  use composite_plates, only: composite_plate_t
   use models, only: model_t
   use ply_failures, only: ply_failure_t, new_ply_failure
   use interface_states, only: interface_state_t, new_interface_state
@@ -70,21 +71,21 @@ contains
     real(wp) :: energy
     integer :: points
 
-    points = size(model%distribution%points)
+    points = size(model%plate%distribution%points)
     allocate (self%motion%displacement(5, points), self%motion%velocity(5, points), &
               self%motion%acceleration(5, points), self%motion%internal(5, points), &
               self%motion%inertia(5, points), self%motion%momentum(5, points), source=0.0_wp)
-    self%plies = new_ply_failure(model)
+    self%plies = new_ply_failure(model%plate)
     self%interfaces = new_interface_state(model)
     ! Clamps with a force are in equilibrium with the frame from the start.
     energy = 0
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
     self%impact%patch = model%patch
-    if (.not. model%setup%moves_impactor()) return
-    self%impact%impactor = new_impactor(model%setup%impactor)
-    self%ledger%impactor = impactor_energy(model%setup%impactor, self%impact%impactor)
+    if (.not. model%plate%setup%moves_impactor()) return
+    self%impact%impactor = new_impactor(model%plate%setup%impactor)
+    self%ledger%impactor = impactor_energy(model%plate%setup%impactor, self%impact%impactor)
     self%ledger%initial = self%ledger%impactor
-    self%ledger%largest = energy_of_weight(model%setup%impactor, model%setup%impactor%indentation)
+    self%ledger%largest = energy_of_weight(model%plate%setup%impactor, model%plate%setup%impactor%indentation)
   end function new_state
 
   !> Work of gravity until the contact carries the weight of the impactor, on a plate that does not deflect. The energy
@@ -101,9 +102,9 @@ contains
 
   !> Copies the state from which a step starts; of the motion only the displacement, as velocity, acceleration and
   !> forces are computed by the step.
-  pure subroutine start_from(self, model, old)
+  pure subroutine start_from(self, plate, old)
     class(state_t), intent(inout) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The state copied
     type(state_t), intent(in) :: old
 
@@ -114,7 +115,7 @@ contains
     self%motion%displacement = old%motion%displacement
     self%impact = old%impact
     ! Plies change only by damage.
-    if (model%setup%ply_damage%is_present) self%plies = old%plies
+    if (plate%setup%ply_damage%is_present) self%plies = old%plies
     self%interfaces = old%interfaces
     self%ledger = old%ledger
     self%iterations = iteration_counts_t()
@@ -135,21 +136,21 @@ contains
 
     call self%plies%note_step(self%time - old%time)
     call self%plies%find_forces(model, self%motion%displacement, self%motion%internal, energy)
-    call model%profile%enter('interface law')
-    call self%interfaces%cohesive%add_forces(model, old%interfaces%cohesive, self%motion%displacement, &
+    call model%plate%profile%enter('interface law')
+    call self%interfaces%cohesive%add_forces(model%plate, old%interfaces%cohesive, self%motion%displacement, &
                                              self%motion%internal, energy)
-    call model%profile%leave()
-    call model%profile%enter('contact and ties')
+    call model%plate%profile%leave()
+    call model%plate%profile%enter('contact and ties')
     call self%interfaces%rig%add_springs(model, self%motion%displacement, self%motion%internal, energy)
-    call model%profile%leave()
+    call model%plate%profile%leave()
   end subroutine find_internal
 
   !> Deflection of the plate under the impactor, the same on every rank.
-  real(wp) function contact_deflection(self, model)
+  real(wp) function contact_deflection(self, plate)
     class(state_t), intent(in) :: self
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
 
-    contact_deflection = self%impact%patch%deflection(model%communicator, self%motion%displacement)
+    contact_deflection = self%impact%patch%deflection(plate%communicator, self%motion%displacement)
   end function contact_deflection
 
   !> True once plies have failed or delaminations have grown.
@@ -208,10 +209,10 @@ contains
     call archive%item(time_item, self%time)
     call archive%item('step', self%step)
     call archive%item('load_factor', self%load_factor)
-    call self%path%visit(archive, model)
-    call visit_motion(self%motion, archive, model)
+    call self%path%visit(archive, model%plate)
+    call visit_motion(self%motion, archive, model%plate)
     call self%impact%visit(archive, model)
-    call self%plies%visit(archive, model)
+    call self%plies%visit(archive, model%plate)
     call self%interfaces%visit(archive, model)
     call self%ledger%visit(archive)
     call archive%item('holds_damage', self%holds_damage)
@@ -227,14 +228,14 @@ contains
   end subroutine visit
 
   !> Saves or loads the motion of the plate.
-  subroutine visit_motion(motion, archive, model)
+  subroutine visit_motion(motion, archive, plate)
     type(motion_t), intent(inout) :: motion
     class(archive_t), intent(inout) :: archive
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: points
 
-    points = model%mesh%points()
-    associate (owned => model%distribution%points(:model%distribution%owned))
+    points = plate%mesh%points()
+    associate (owned => plate%distribution%points(:plate%distribution%owned))
       call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
       call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
       call archive%field('motion/acceleration', owned, points, motion%acceleration, motion_field)
@@ -243,8 +244,8 @@ contains
       call archive%field('motion/momentum', owned, points, motion%momentum, motion_field)
     end associate
     if (.not. archive%loading) return
-    call model%halo%update(motion%displacement)
-    call model%halo%update(motion%velocity)
-    call model%halo%update(motion%acceleration)
+    call plate%halo%update(motion%displacement)
+    call plate%halo%update(motion%velocity)
+    call plate%halo%update(motion%acceleration)
   end subroutine visit_motion
 end module states

@@ -99,10 +99,10 @@ contains
 
     do j = rows(1), rows(2)
       do i = columns(1), columns(2)
-        nodes = model%mesh%cell_nodes(model%mesh%cell_at(i, j))
-        if (norm2(model%mesh%node_coordinates(:, nodes(5))) < radius) call contact%regions(1)%release([i, j])
+        nodes = model%plate%mesh%cell_nodes(model%plate%mesh%cell_at(i, j))
+        if (norm2(model%plate%mesh%node_coordinates(:, nodes(5))) < radius) call contact%regions(1)%release([i, j])
       end do
     end do
-    call contact%free_jumps(model)
+    call contact%free_jumps(model%plate)
   end subroutine release_cells
 end module layered_plates
