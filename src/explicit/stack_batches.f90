@@ -5,7 +5,7 @@ module stack_batches
   use cohesive_interfaces, only: cohesive_interfaces_t
   use interface_stacks, only: interface_stacks_t, jump_history_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use nodal_inertia, only: nodal_inertia_t
   use stack_lanes, only: jump_lanes_t, load_states, set_surfaces, store_friction, surface_lanes_t, surface_states_t
   implicit none
@@ -61,11 +61,11 @@ module stack_batches
 contains
 
   !> Batches of all stacks. Stacks of the same number of layers and of the same kind share batches.
-  pure function new_stack_batches(stacks, inertia, model, cohesive, constrained) result(self)
+  pure function new_stack_batches(stacks, inertia, plate, cohesive, constrained) result(self)
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> True for stacks with layers that frames or lines constrain
     logical, intent(in) :: constrained(:)
@@ -77,19 +77,19 @@ contains
     allocate (self%list(2*(size(constrained)/lanes) + 6*layers), self%open(layers, 0:3))
     self%open = 0
     do i = 1, size(constrained)
-      call join(self, i, constrained(i), stacks, inertia, model, cohesive)
+      call join(self, i, constrained(i), stacks, inertia, plate, cohesive)
     end do
     self%damaged = count(stacks%damaged)
   end function new_stack_batches
 
   !> Moves stacks that have become damaged to batches of damaged stacks.
-  pure subroutine move_damaged(self, stacks, inertia, model, cohesive)
+  pure subroutine move_damaged(self, stacks, inertia, plate, cohesive)
     class(stack_batches_t), intent(inout) :: self
     !> The stacks; receive the history of the jumps of these batches
     type(interface_stacks_t), intent(inout) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: b, lane, i
 
@@ -105,16 +105,16 @@ contains
         i = self%list(b)%stack(lane)
         if (.not. stacks%damaged(i)) cycle
         ! The last stack takes its lane.
-        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, model, &
+        call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, plate, &
                        cohesive)
         self%list(b)%members = self%list(b)%members - 1
-        call join(self, i, self%list(b)%constrained, stacks, inertia, model, cohesive)
+        call join(self, i, self%list(b)%constrained, stacks, inertia, plate, cohesive)
       end do
     end do
   end subroutine move_damaged
 
   !> Adds a stack to a batch with free lanes, or to a new one, which it fills.
-  pure subroutine join(self, i, constrained, stacks, inertia, model, cohesive)
+  pure subroutine join(self, i, constrained, stacks, inertia, plate, cohesive)
     type(stack_batches_t), intent(inout) :: self
     !> Index of the stack
     integer, intent(in) :: i
@@ -123,7 +123,7 @@ contains
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: last
 
@@ -138,7 +138,7 @@ contains
       end if
       associate (batch => self%list(open))
         batch%members = batch%members + 1
-        call set_lanes(batch, batch%members, last, i, stacks, inertia, model, cohesive)
+        call set_lanes(batch, batch%members, last, i, stacks, inertia, plate, cohesive)
       end associate
     end associate
   end subroutine join
@@ -168,14 +168,14 @@ contains
   end subroutine allocate_batch
 
   !> Sets the constants of lanes.
-  pure subroutine set_lanes(self, from, to, i, stacks, inertia, model, cohesive)
+  pure subroutine set_lanes(self, from, to, i, stacks, inertia, plate, cohesive)
     type(stack_batch_t), intent(inout) :: self
     !> First and last lane, and index of the stack
     integer, intent(in) :: from, to, i
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: lane, p
 
@@ -189,7 +189,7 @@ contains
       self%diagonal(lane, :, :) = stacks%diagonal(:, p + 1:p + self%n)
       self%off_diagonal(lane, :, :) = stacks%off_diagonal(:, p + 1:p + self%n)
       self%factors(lane, :, :, :) = stacks%factors(:, :, p + 1:p + self%n)
-      if (self%damaged) call set_surfaces(self%surfaces, lane, self%n, p, stacks, model)
+      if (self%damaged) call set_surfaces(self%surfaces, lane, self%n, p, stacks, plate)
     end do
     call self%jumps%load(self%first, from, to, stacks%history)
     if (self%damaged) call load_states(self%states, self%first, from, to, cohesive, stacks%history)

@@ -6,7 +6,7 @@ module stack_lanes
   use element_batches, only: lanes
   use interface_stacks, only: friction_history_t, interface_stacks_t, jump_history_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use surface_friction, only: sliding_t
   implicit none
   private
@@ -60,17 +60,17 @@ module stack_lanes
 contains
 
   !> Sets the surfaces of a lane.
-  pure subroutine set_surfaces(self, lane, n, first, stacks, model)
+  pure subroutine set_surfaces(self, lane, n, first, stacks, plate)
     type(surface_lanes_t), intent(inout) :: self
     !> The lane, number of interfaces, and first point of the stack
     integer, intent(in) :: lane, n, first
     type(interface_stacks_t), intent(in) :: stacks
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     integer :: j
 
     do j = 1, n
-      associate (zone => model%zone(first + j))
-        associate (law => model%cohesive_laws(zone))
+      associate (zone => plate%zone(first + j))
+        associate (law => plate%interfaces%cohesive_laws(zone))
           self%area(lane, j) = stacks%area(first + j)
           self%shear(lane, j) = law%stiffness_shear
           self%opening(lane, j) = law%stiffness_opening
@@ -78,8 +78,8 @@ contains
           self%toughness(lane, j) = min(law%toughness_opening, law%toughness_shear)
           self%failure_ratio(lane, j) = law%failure_ratio
         end associate
-        self%friction(lane, j) = model%setup%delaminations(zone)%friction
-        self%contact(lane, j) = prevents_penetration(model, zone)
+        self%friction(lane, j) = plate%setup%delaminations(zone)%friction
+        self%contact(lane, j) = prevents_penetration(plate, zone)
       end associate
     end do
   end subroutine set_surfaces

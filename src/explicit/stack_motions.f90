@@ -6,7 +6,7 @@ module stack_motions
   use kinds, only: wp
   use layer_motions, only: accelerate_layers, find_rates, find_resultants, find_velocities
   use line_steps, only: line_steps_t
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
   use stack_batches, only: new_stack_batches, stack_batch_t, stack_batches_t
@@ -52,10 +52,10 @@ contains
   end subroutine store_history
 
   !> Updates all stacks.
-  subroutine move_stacks(nodes, model, cohesive, u, v)
+  subroutine move_stacks(nodes, plate, cohesive, u, v)
     !> The nodes; their stacks receive forces, changes of the jumps and losses
     type(nodal_steps_t), intent(inout) :: nodes
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> The interfaces; receive the growth of damage
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
@@ -65,14 +65,14 @@ contains
 
     call move_alloc(nodes%batches, batches)
     if (allocated(batches)) then
-      call batches%move_damaged(nodes%stacks, nodes%inertia, model, cohesive)
+      call batches%move_damaged(nodes%stacks, nodes%inertia, plate, cohesive)
       if (nodes%laws_changed) call batches%update_laws(nodes%stacks, cohesive)
     else
-      batches = new_stack_batches(nodes%stacks, nodes%inertia, model, cohesive, are_constrained(nodes))
+      batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, cohesive, are_constrained(nodes))
     end if
     nodes%laws_changed = .false.
     do b = 1, batches%filled
-      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, model, cohesive, u, v)
+      if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, plate, cohesive, u, v)
     end do
     call move_alloc(batches, nodes%batches)
   end subroutine move_stacks
@@ -95,11 +95,11 @@ contains
   end function are_constrained
 
   !> Updates the stacks of a batch.
-  subroutine move_batch(batch, nodes, model, cohesive, u, v)
+  subroutine move_batch(batch, nodes, plate, cohesive, u, v)
     type(stack_batch_t), intent(inout) :: batch
     !> The nodes
     type(nodal_steps_t), intent(inout) :: nodes
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
@@ -119,7 +119,7 @@ contains
       trial = start + steps%now*rates(:, :3, 2:)
       if (batch%damaged) then
         call begin_step(n, start, jumps, states)
-        call solve_damaged(batch, states, steps, model, cohesive, nodes%stacks, trial, tractions, friction, &
+        call solve_damaged(batch, states, steps, plate, cohesive, nodes%stacks, trial, tractions, friction, &
                            normal, given)
       else
         call solve_intact(n, batch%factors, start, jumps%last, jumps%earlier, trial, tractions)
@@ -134,7 +134,7 @@ contains
       change = steps%now*rates(:, :3, 2:)
       displacement = displacement + steps%now*rates
       if (batch%damaged) then
-        call update_damaged(batch, states, steps, model, cohesive, change, tractions, jumps%forces, friction, &
+        call update_damaged(batch, states, steps, plate, cohesive, change, tractions, jumps%forces, friction, &
                             jumps%lost)
         call store_points(states, batch%first, batch%members, cohesive)
       else
@@ -147,7 +147,7 @@ contains
       call put(5, points, rates, batch%first, n + 1, batch%members, v)
       call put(3, points, tractions, batch%first + 1, n, batch%members, nodes%stacks%history%forces)
     end associate
-    if (.not. batch%damaged) call find_onsets(batch, nodes%stacks, model, displacement, cohesive, u, jumps)
+    if (.not. batch%damaged) call find_onsets(batch, nodes%stacks, plate, displacement, cohesive, u, jumps)
     call move_alloc(states, batch%states)
     call move_alloc(jumps, batch%jumps)
   end subroutine move_batch
@@ -285,11 +285,11 @@ contains
   end subroutine record_reactions
 
   !> Finds the onset of damage in undamaged stacks.
-  subroutine find_onsets(batch, stacks, model, displacement, cohesive, u, jumps)
+  subroutine find_onsets(batch, stacks, plate, displacement, cohesive, u, jumps)
     type(stack_batch_t), intent(in) :: batch
     !> The stacks; are damaged if an interface is
     type(interface_stacks_t), intent(inout) :: stacks
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     !> Unknowns at the end of the step
     real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
     type(cohesive_interfaces_t), intent(inout) :: cohesive
@@ -305,7 +305,7 @@ contains
     do lane = 1, batch%members
       if (.not. starts(lane)) cycle
       call jumps%store(batch%first, lane, lane, stacks%history)
-      call start_damage(stacks, batch%stack(lane), model, cohesive, u)
+      call start_damage(stacks, batch%stack(lane), plate, cohesive, u)
       call jumps%load(batch%first, lane, lane, stacks%history)
     end do
   end subroutine find_onsets

@@ -15,7 +15,7 @@ module stack_solutions
   use element_batches, only: lanes
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
-  use models, only: model_t
+  use composite_plates, only: composite_plate_t
   use roundings, only: rounding
   use stack_batches, only: stack_batch_t
   use stack_lanes, only: surface_states_t
@@ -59,13 +59,13 @@ contains
   end subroutine solve_intact
 
   !> Forces of damaged stacks, with corrections where damage grows.
-  pure subroutine solve_damaged(batch, states, steps, model, cohesive, stacks, trial, forces, friction, normal, given)
+  pure subroutine solve_damaged(batch, states, steps, plate, cohesive, stacks, trial, forces, friction, normal, given)
     type(stack_batch_t), intent(in) :: batch
     !> Their surfaces
     type(surface_states_t), intent(in) :: states(batch%n)
     !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
-    type(model_t), intent(in) :: model
+    type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
     type(interface_stacks_t), intent(in) :: stacks
     !> Jumps at the end without tractions
@@ -92,7 +92,7 @@ contains
       do lane = 1, lanes
         if (.not. grows(lane)) cycle
         associate (p => batch%first(lane) + j)
-          call correct_force(cohesive%surfaces_of(model, p), cohesive%points(p), stacks%area(p), &
+          call correct_force(cohesive%surfaces_of(plate, p), cohesive%points(p), stacks%area(p), &
                              states(j)%work(lane), states(j)%start(lane, :), jumps(lane, :, j), &
                              steps%kept*states(j)%last(lane, :), secant(lane, :, j), given(lane, :, j), grows(lane))
         end associate
