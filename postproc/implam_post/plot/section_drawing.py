@@ -256,11 +256,12 @@ class Drawing:
         """Draw the struck face, with the dent, and an arrow at the struck point."""
         middles, first = self.section.along.mean(axis=1), self.section.first_ply
         own = [row for row in self.rows if first[row] == first[self.rows][middles[self.rows] == middles[row]].min()]
-        along, heights = (np.concatenate(values) for values in (
-            [self.section.along[row] for row in own], [self.height(row, self.tops[row]) for row in own]))
-        order = np.argsort(along, kind="stable")
-        axes.plot(along[order], heights[order], color="black", linewidth=1, zorder=6)
-        axes.annotate("struck point", (0, np.interp(0, along[order], heights[order])), (0, 14), ha="center",
+        own.sort(key=middles.__getitem__)
+        orders = {row: np.argsort(self.section.along[row]) for row in own}
+        along = np.concatenate([self.section.along[row][orders[row]] for row in own])
+        heights = np.concatenate([self.height(row, self.tops[row])[orders[row]] for row in own])
+        axes.plot(along, heights, color="black", linewidth=1, zorder=6)
+        axes.annotate("struck point", (0, np.interp(0, along, heights)), (0, 14), ha="center",
                       textcoords="offset points", fontsize=_LETTERS, annotation_clip=False,
                       arrowprops={"arrowstyle": "-|>", "color": "black", "shrinkA": 0, "shrinkB": 1})
         depth = "" if self.dent is None else f", dent {style.shown('length', self.dent.depth)} by the indentation law"

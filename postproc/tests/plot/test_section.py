@@ -201,7 +201,7 @@ class LayerTest(unittest.TestCase):
                 self.assertEqual(layer.plies, plies)
                 np.testing.assert_allclose(layer.depths, depth + 0.25 * np.arange(len(plies) + 1), atol=1e-12)
                 self.assertEqual(plate.layer(np.array([3.0, 0.0]), first, min(last, 4)).plies,
-                                 tuple(range(first, last + 1)))
+                                 tuple(range(max(first, 1), last + 1)))
 
 
 if __name__ == "__main__":
