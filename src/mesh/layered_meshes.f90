@@ -1,29 +1,14 @@
 !> The mesh of the modelled part: a grid of cells, and over each cell the layers of plies that may separate there. Every
 !> rank has the complete mesh, which is small compared with a factor.
 module layered_meshes
+  use interface_zones, only: zone_t
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t
   use cell_grids, only: cell_grid_t, create_grid
   use nine_node_grids, only: cells_around
   implicit none
   private
-  public :: layered_mesh_t, layer_t, zone_t, create_mesh
-
-  !> A rectangle in which the plies above and below an interface have unknowns of their own, or the cells in which the
-  !> bond of doublers has.
-  type :: zone_t
-    !> The interface lies below this ply; 0: doublers are bonded to the struck face
-    integer :: below_ply = 0
-    !> First and last column of cells, then of rows
-    integer :: columns(2) = 0, rows(2) = 0
-    !> Height z of the interface
-    real(wp) :: height = 0
-    !> True for the cells with doublers, (cells); unallocated: an interface between plies of the laminate. The edges of
-    !> doublers are free: both layers have points there
-    logical, allocatable :: bonded(:)
-    !> Thickness of the doublers
-    real(wp) :: thickness = 0
-  end type zone_t
+  public :: layered_mesh_t, layer_t, create_mesh
 
   !> The plies between two interfaces, or a face: those of a cell's laminate whose positions in the order of the layers
   !> lie in a range.
@@ -274,7 +259,7 @@ contains
     if (allocated(self%zones(zone)%bonded)) then
       in_zone = self%zones(zone)%bonded(cell)
     else
-      in_zone = covers(self%zones(zone), self%place_of(cell))
+      in_zone = self%zones(zone)%covers(self%place_of(cell))
     end if
   end function in_zone
 
@@ -315,10 +300,8 @@ contains
   !> Point of a node in the layer below a zone's interface; 0: the node has none.
   pure integer function lower_point(self, node, zone) result(point)
     class(layered_mesh_t), intent(in) :: self
-    !> Node
-    integer, intent(in) :: node
-    !> Index of the zone
-    integer, intent(in) :: zone
+    !> Node, and index of the zone
+    integer, intent(in) :: node, zone
 
     do point = self%first_point(node) + 1, self%first_point(node + 1) - 1
       if (self%point_zone(point) == zone) return
@@ -337,15 +320,6 @@ contains
       if (self%is_dependent(node)) master = self%first_point(self%turned_node(node)) + point - self%first_point(node)
     end associate
   end function master
-
-  !> True if a zone covers a cell.
-  pure logical function covers(zone, place)
-    type(zone_t), intent(in) :: zone
-    !> Column and row of the cell
-    integer, intent(in) :: place(2)
-
-    covers = all(place >= [zone%columns(1), zone%rows(1)]) .and. all(place <= [zone%columns(2), zone%rows(2)])
-  end function covers
 
   !> Points of the layer that begins with a ply: at each node the lowest point not below that ply's top.
   pure function layer_points(self, cell, first_ply) result(points)

@@ -2,7 +2,7 @@
 module layered_zones
   use cell_grids, only: cells_along, cells_from_struck
   use cell_lines, only: cell_line_t
-  use layered_meshes, only: zone_t
+  use interface_zones, only: zone_t
   use plies, only: ply_t
   use setups, only: setup_t
   implicit none

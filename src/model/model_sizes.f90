@@ -2,7 +2,7 @@
 module model_sizes
   use kinds, only: wp
   use layer_extents, only: largest_extents
-  use layered_meshes, only: zone_t
+  use interface_zones, only: zone_t
   use idle_membranes, only: is_membrane_idle
   use layered_zones, only: zones_of
   use cell_lines, only: cell_line_t

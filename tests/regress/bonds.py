@@ -143,7 +143,7 @@ def plate(folder, implam, trial, laminate, groups):
 
 
 def try_plates(implam, folder):
-    """Compare plates with a bonded doubler over their full area, on the back or in front, with the plate of all plies."""
+    """Compare plates with a doubler bonded over their full area, on either face, with the plate of all plies."""
     for name, trial in PLATES.items():
         others, end = trial[3:]
         for face, laminate, doubler, below in (("back", HALF, OTHER_HALF, 3), ("front", OTHER_HALF, HALF, 0)):
@@ -318,8 +318,8 @@ def try_mirror(implam, folder):
         require(ends[0]["delaminated_area"][-1] > ends[0]["delaminated_area"][0], f"{name}: the bond does not grow.")
 
 
-TRIALS = {"ranks": try_ranks, "mirror": try_mirror, "second": try_second, "explicit": try_explicit, "plates": try_plates,
-          "stiff": try_stiff, "strips": try_strips}
+TRIALS = {"ranks": try_ranks, "mirror": try_mirror, "second": try_second, "explicit": try_explicit,
+          "plates": try_plates, "stiff": try_stiff, "strips": try_strips}
 
 
 def main(trial, implam, folder, *launcher):

@@ -3,7 +3,8 @@ module small_regions
   use cell_lines, only: cell_line
   use delaminated_regions, only: delaminated_region_t, create_region
   use kinds, only: wp
-  use layered_meshes, only: layered_mesh_t, zone_t
+  use interface_zones, only: zone_t
+  use layered_meshes, only: layered_mesh_t
   implicit none
   private
   public :: mesh_with_zone, drawn_region, released_nodes

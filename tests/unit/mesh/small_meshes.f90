@@ -2,7 +2,8 @@
 module small_meshes
   use kinds, only: wp
   use mesh_parameters, only: plate_t, mesh_t
-  use layered_meshes, only: layered_mesh_t, zone_t, create_mesh
+  use interface_zones, only: zone_t
+  use layered_meshes, only: create_mesh, layered_mesh_t
   implicit none
   private
   public :: meshed, plain_mesh, zoned_mesh
