@@ -360,9 +360,8 @@ contains
     if (.not. cut%is_whole(old_model%setup%plate%length)) then
       call mapping%note(old_model, state, before_cutting)
       parts = cut%of_nodes(old_model%mesh)
-      if (allocated(old_model%interfaces%contact_area)) &
-        old_model%interfaces%contact_area = old_model%interfaces%contact_area &
-        *parts(old_model%mesh%point_node(old_model%distribution%points))
+      if (allocated(old_model%interfaces%contact_area)) old_model%interfaces%contact_area = &
+        old_model%interfaces%contact_area*parts(old_model%mesh%point_node(old_model%distribution%points))
       parts = cut%of_cells(old_model%mesh)
       if (allocated(state%plies%bands)) state%plies%bands%area = &
         state%plies%bands%area*parts(old_model%mesh%element_cell(old_model%distribution%elements))
