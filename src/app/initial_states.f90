@@ -349,7 +349,7 @@ contains
   subroutine note_before(cut, old_model, state, mapping)
     !> The part; the full plate: nothing is cut
     type(plate_cut_t), intent(in) :: cut
-    !> The other run's model; points and elements keep the areas inside of the part
+    !> Plate of the other run; points and elements keep the areas inside of the part
     type(composite_plate_t), intent(inout) :: old_model
     !> Its state
     type(state_t), intent(inout) :: state

@@ -68,7 +68,7 @@ module rig_steps
 
 contains
 
-  !> Support points of the circular frames of a model.
+  !> Support points of the circular frames of a plate.
   function create_circle_frames(plate) result(self)
     type(composite_plate_t), intent(in) :: plate
     type(circle_frames_t) :: self
