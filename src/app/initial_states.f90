@@ -349,7 +349,7 @@ contains
   subroutine note_before(cut, old_model, state, mapping)
     !> The part; the full plate: nothing is cut
     type(plate_cut_t), intent(in) :: cut
-    !> The other run's model; points and elements keep the areas inside of the part
+    !> Plate of the other run; points and elements keep the areas inside of the part
     type(composite_plate_t), intent(inout) :: old_model
     !> Its state
     type(state_t), intent(inout) :: state
@@ -360,9 +360,8 @@ contains
     if (.not. cut%is_whole(old_model%setup%plate%length)) then
       call mapping%note(old_model, state, before_cutting)
       parts = cut%of_nodes(old_model%mesh)
-      if (allocated(old_model%interfaces%contact_area)) &
-        old_model%interfaces%contact_area = old_model%interfaces%contact_area &
-        *parts(old_model%mesh%point_node(old_model%distribution%points))
+      if (allocated(old_model%interfaces%contact_area)) old_model%interfaces%contact_area = &
+        old_model%interfaces%contact_area*parts(old_model%mesh%point_node(old_model%distribution%points))
       parts = cut%of_cells(old_model%mesh)
       if (allocated(state%plies%bands)) state%plies%bands%area = &
         state%plies%bands%area*parts(old_model%mesh%element_cell(old_model%distribution%elements))

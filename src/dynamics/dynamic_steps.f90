@@ -74,8 +74,8 @@ contains
       new%load_factor = new%time/model%plate%setup%loading%ramp_time
       call new%interfaces%ties%ramp_down(model%plate, self%step)
       self%patch_square = sum((new%impact%patch%weights(new%impact%patch%points)/model%plate%mesh%multiplicity)**2)
-      if (model%plate%setup%impactor%is_present) self%coupling = begin_coupling(model%plate, self%integrator, old, &
-                                                                                self%step)
+      if (model%plate%setup%impactor%is_present) &
+        self%coupling = begin_coupling(model%plate, self%integrator, old, self%step)
       self%keeps_velocity = model%plate%setup%impactor%is_present .and. &
                             .not. (allocated(self%guess) .or. model%has_point_stiffness)
       self%keeps_displacement = self%keeps_velocity &
@@ -154,8 +154,8 @@ contains
           residual = residual + lines
         end if
         if (.not. allocated(model%loads%pressure)) return
-        amplitude = (1 - f)*model%plate%setup%pressure%amplitude(new%time) + f &
-                    *model%plate%setup%pressure%amplitude(old%time)
+        amplitude = (1 - f)*model%plate%setup%pressure%amplitude(new%time) + &
+                    f*model%plate%setup%pressure%amplitude(old%time)
         residual(3, :) = residual(3, :) + amplitude*model%loads%pressure(3, :)
       end associate
     end associate

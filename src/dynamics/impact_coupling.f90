@@ -95,8 +95,8 @@ contains
 
     associate (model => at%model, operator => at%operator, new => at%new)
       before = self%unknown
-      new%impact%patch_mean = new%contact_deflection(model%plate) + new%impact%patch%mean(model%plate%communicator, &
-                                                                                          at%correction)
+      new%impact%patch_mean = new%contact_deflection(model%plate) + &
+                              new%impact%patch%mean(model%plate%communicator, at%correction)
       call self%find_force(model%plate%setup%impactor%indentation, at%old%impact%indentation, new%impact%patch_mean, &
                            merge(operator%compliance, 0.0_wp, is_factored), iterations, error)
       if (is_factored) at%correction = at%correction + (self%share*(self%unknown - before))*operator%response

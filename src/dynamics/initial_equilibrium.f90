@@ -136,9 +136,8 @@ contains
     ! The impactor starts at first contact with the deflected plate.
     if (model%plate%setup%impactor%is_present) &
       state%impact%patch%offset = -state%impact%patch%mean(model%plate%communicator, state%motion%displacement)
-    if (allocated(model%nose)) &
-      state%impact%patch%touched_at = model%nose%first_contact(model%plate%communicator, state%motion%displacement(3, &
-                                                                                                                   :))
+    if (allocated(model%nose)) state%impact%patch%touched_at = model%nose%first_contact( &
+      model%plate%communicator, state%motion%displacement(3, :))
     state%impact%patch_mean = state%contact_deflection(model%plate)
     operator%ready = .false.
   end subroutine equilibrate

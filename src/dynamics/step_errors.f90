@@ -204,8 +204,7 @@ contains
     real(wp), allocatable :: field(:, :)
 
     field = transpose(self%deflection)
-    call archive%field('step_error/deflection', plate%distribution%points(:plate%distribution%owned), &
-                       plate%mesh%points(), field, area_field)
+    call plate%visit_points(archive, 'step_error/deflection', field, area_field)
     self%deflection = transpose(field)
   end subroutine visit_deflections
 end module step_errors

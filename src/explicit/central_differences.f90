@@ -387,14 +387,11 @@ contains
     call archive%item('explicit/initial_work', self%initial_work)
     call archive%item('explicit/frequency', self%stiffened)
     self%stiffened = max(self%stiffened, self%frequency)
-    associate (owned => model%plate%distribution%points(:model%plate%distribution%owned), &
-               points => model%plate%mesh%points())
-      call archive%field('explicit/forces', owned, points, self%force, motion_field)
-      call self%rigs%visit(archive, owned, points)
-      call self%impact%visit(archive)
-      if (size(model%loads%lines) > 0 .or. allocated(model%loads%pressure) &
-          .or. model%plate%setup%initial%is_inherited) call self%lines%visit(archive, owned, points)
-      if (model%plate%map%layered) call self%stacks%history%visit(archive, owned, points)
-    end associate
+    call model%plate%visit_points(archive, 'explicit/forces', self%force, motion_field)
+    call self%rigs%visit(archive, model%plate)
+    call self%impact%visit(archive)
+    if (size(model%loads%lines) > 0 .or. allocated(model%loads%pressure) .or. model%plate%setup%initial%is_inherited) &
+      call self%lines%visit(archive, model%plate)
+    if (model%plate%map%layered) call self%stacks%history%visit(archive, model%plate)
   end subroutine visit
 end module central_differences

@@ -140,8 +140,9 @@ contains
         direction = d
       end do
       if (largest < onset_share) return
-      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), stacks%history%forces(:, p) &
-                      /stacks%area(p), taken(self, of_jumps, near(behind, direction)), factors(1), factors(2))
+      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), &
+                      stacks%history%forces(:, p)/stacks%area(p), taken(self, of_jumps, near(behind, direction)), &
+                      factors(1), factors(2))
     end associate
   end subroutine find_at
 

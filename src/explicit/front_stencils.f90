@@ -29,7 +29,7 @@ module front_stencils
 
 contains
 
-  !> Stencils of a model. Collective.
+  !> Stencils of a plate. Collective.
   function create_front_stencils(plate) result(self)
     type(composite_plate_t), intent(in) :: plate
     type(front_stencils_t) :: self

@@ -35,9 +35,9 @@ contains
       call surfaces%traction(before(1:3, i), start, traction(:, 1), point)
       start%sliding%limit = self%points(i)%sliding%limit
       call surfaces%traction(after(1:3, i), start, traction(:, 2), point)
-      energy = energy + plate%interfaces%contact_area(i)*(surfaces%stored(after(1:3, i), self%points(i)) &
-                                                          - surfaces%stored( &
-        before(1:3, i), old%points(i)) - dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
+      energy = energy + plate%interfaces%contact_area(i)*( &
+        surfaces%stored(after(1:3, i), self%points(i)) - surfaces%stored(before(1:3, i), old%points(i)) - &
+        dot_product(sum(traction, 2)/2, after(1:3, i) - before(1:3, i)))
     end do
   end function stored_beyond_work
 end module cohesive_energies

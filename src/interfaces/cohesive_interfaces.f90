@@ -366,9 +366,7 @@ contains
     fields(1, :) = self%points%damage
     fields(2, :) = self%points%dissipated
     fields(3:, :) = self%stiffness
-    associate (partition => plate%distribution)
-      call archive%field('cohesive/points', partition%points(:partition%owned), plate%mesh%points(), fields, area_field)
-    end associate
+    call plate%visit_points(archive, 'cohesive/points', fields, area_field)
     if (.not. archive%loading) return
     self%points%damage = fields(1, :)
     self%points%dissipated = fields(2, :)

@@ -86,10 +86,7 @@ contains
         fields(:, i) = [sliding%slip, sliding%limit, sliding%heat]
       end associate
     end do
-    associate (partition => plate%distribution)
-      call archive%field('cohesive/sliding', partition%points(:partition%owned), plate%mesh%points(), fields, &
-                         vector_field)
-    end associate
+    call plate%visit_points(archive, 'cohesive/sliding', fields, vector_field)
     if (.not. archive%loading) return
     interfaces%points%sliding%limit = fields(3, :)
     interfaces%points%sliding%heat = fields(4, :)

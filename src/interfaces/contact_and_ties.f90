@@ -262,9 +262,7 @@ contains
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (partition => plate%distribution)
-      call archive%field('faces/pressures', partition%points(:partition%owned), plate%mesh%points(), fields, area_field)
-    end associate
+    call plate%visit_points(archive, 'faces/pressures', fields, area_field)
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)
     self%pressure = fields(2, :)

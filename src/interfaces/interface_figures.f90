@@ -101,7 +101,7 @@ contains
       do i = 1, plate%distribution%owned
         if (.not. interfaces%cohesive%cohesive(i)) cycle
         if (interfaces%cohesive%points(i)%damage < 1) cycle
-        associate (place => plate%mesh%node_coordinates(:, plate%mesh%point_node(plate%distribution%points(i))))
+        associate (place => plate%place_of(i))
           bounds(:, plate%zone(i)) = max(bounds(:, plate%zone(i)), [-place(1), place(1), -place(2), place(2)])
         end associate
       end do

@@ -126,9 +126,7 @@ contains
     fields(1, :) = interfaces%strength
     fields(2, :) = interfaces%opening
     fields(3, :) = merge(1.0_wp, 0.0_wp, interfaces%by_energy)
-    associate (partition => plate%distribution)
-      call archive%field('cohesive/law', partition%points(:partition%owned), plate%mesh%points(), fields, area_field)
-    end associate
+    call plate%visit_points(archive, 'cohesive/law', fields, area_field)
     if (.not. archive%loading) return
     interfaces%strength = fields(1, :)
     interfaces%opening = fields(2, :)

@@ -135,7 +135,7 @@ contains
     damage = interfaces%cohesive%damage(plate)
     do i = 1, plate%distribution%owned
       if (.not. damage(i) > 0) cycle
-      associate (place => plate%mesh%node_coordinates(:, plate%mesh%point_node(plate%distribution%points(i))))
+      associate (place => plate%place_of(i))
         extents(:, plate%zone(i)) = max(extents(:, plate%zone(i)), 2*abs(place - centre_of(plate, plate%zone(i))))
       end associate
     end do

@@ -239,10 +239,7 @@ contains
     fields(1, :) = self%multiplier
     fields(2, :) = self%pressure
     fields(3, :) = self%slope
-    associate (partition => model%plate%distribution)
-      call archive%field('rig/pressures', partition%points(:partition%owned), model%plate%mesh%points(), fields, &
-                         area_field)
-    end associate
+    call model%plate%visit_points(archive, 'rig/pressures', fields, area_field)
     if (.not. archive%loading) return
     self%multiplier = fields(1, :)
     self%pressure = fields(2, :)

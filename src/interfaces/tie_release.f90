@@ -192,9 +192,7 @@ contains
     allocate (fields(4, size(self%remaining)))
     fields(:3, :) = self%force
     fields(4, :) = self%remaining
-    associate (partition => plate%distribution)
-      call archive%field('ties/forces', partition%points(:partition%owned), plate%mesh%points(), fields, vector_field)
-    end associate
+    call plate%visit_points(archive, 'ties/forces', fields, vector_field)
     if (.not. archive%loading) return
     self%force = fields(:3, :)
     self%remaining = fields(4, :)

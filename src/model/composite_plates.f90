@@ -1,10 +1,12 @@
 !> The plate of composite on this rank: mesh, points, elements, plies and interfaces, without loads. All are constant in
 !> a run; new layers require a new one.
 module composite_plates
+  use archives, only: archive_t
   use border_sums, only: border_sum_t
   use communicators, only: communicator_t
   use distributions, only: distribution_t
   use element_batches, only: element_batches_t
+  use field_mappings, only: field_mapping_t
   use halos, only: halo_t
   use interface_laws, only: interface_laws_t
   use kinds, only: wp
@@ -57,14 +59,26 @@ module composite_plates
     !> The struck point
     type(struck_point_t) :: struck
   contains
+    procedure :: place_of
     procedure :: motion_of
     procedure :: deflection
     procedure :: product => field_product
     procedure :: nodal_areas
     procedure :: negligible_stiffness
+    procedure :: visit_points
   end type composite_plate_t
 
 contains
+
+  !> Coordinates of one of this rank's points from the plate's centre.
+  pure function place_of(self, point) result(place)
+    class(composite_plate_t), intent(in) :: self
+    !> The point
+    integer, intent(in) :: point
+    real(wp) :: place(2)
+
+    place = self%mesh%node_coordinates(:, self%mesh%point_node(self%distribution%points(point)))
+  end function place_of
 
   !> Motion of every layer from the unknowns.
   pure function motion_of(self, unknowns) result(motion)
@@ -122,4 +136,18 @@ contains
     stiffness = negligible_share*min(self%layup%section%stiffness(13), self%layup%section%stiffness(16)) &
                 *(pi/maxval(self%setup%plate%length))**4
   end function negligible_stiffness
+
+  !> Saves or loads values at the points.
+  subroutine visit_points(self, archive, name, values, mapping)
+    class(composite_plate_t), intent(in) :: self
+    class(archive_t), intent(inout) :: archive
+    !> Name within the archive
+    character(len=*), intent(in) :: name
+    !> (any, local points); those of ghosts are not changed
+    real(wp), intent(inout) :: values(:, :)
+    !> How they are mapped to another mesh
+    type(field_mapping_t), intent(in) :: mapping
+
+    call archive%field(name, self%distribution%points(:self%distribution%owned), self%mesh%points(), values, mapping)
+  end subroutine visit_points
 end module composite_plates

@@ -18,7 +18,7 @@ contains
   !> Adds the beams to the elements. Both cells at an edge have a half of its stringer, so that a stringer on a line of
   !> symmetry counts half in the modelled part; at an edge of the plate its only cell has all of it.
   subroutine place_stringers(plate)
-    !> The model, with its elements; receives their beams
+    !> The plate, with its elements; receives their beams
     type(composite_plate_t), intent(inout) :: plate
     type(edge_beam_t), allocatable :: beams(:), found(:)
     integer :: element, total, pass, batch

@@ -63,16 +63,16 @@ contains
     !> Set if an element is ill-shaped
     type(error_t), allocatable, intent(inout) :: error
     type(section_t), allocatable :: sections(:)
+    real(wp), allocatable :: places(:, :)
     integer :: element, i
 
     associate (mesh => self%mesh, partition => self%distribution, layup => self%layup)
       call layup%assign_stacks(mesh, partition%elements, self%setup%thermal%is_present)
       sections = [(layup%stacks(i)%section(), i=1, size(layup%stacks))]
-      call self%elements%create(mesh%node_coordinates(:, mesh%point_node(partition%points)), partition%connectivity, &
-                                self%setup%mesh%shear, error)
+      places = mesh%node_coordinates(:, mesh%point_node(partition%points))
+      call self%elements%create(places, partition%connectivity, self%setup%mesh%shear, error)
       if (allocated(error)) return
-      if (.not. is_flat(self%setup%plate)) call build_shape(self, mesh%node_coordinates(:, mesh%point_node( &
-                                                                                         partition%points)))
+      if (.not. is_flat(self%setup%plate)) call build_shape(self, places)
       do element = 1, size(partition%elements)
         associate (section => sections(layup%stack(element)))
           call self%elements%set_section(element, section%stiffness, section%mass)

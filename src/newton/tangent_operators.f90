@@ -257,15 +257,10 @@ contains
     call archive%item('operator/ready', self%ready)
     call archive%item('operator/stiffness_factor', self%stiffness_factor)
     call archive%item('operator/mass_factor', self%mass_factor)
-    associate (share => model%plate%distribution)
-      call archive%field('operator/displacement', share%points(:share%owned), model%plate%mesh%points(), &
-                         self%displacement, motion_field)
-      if (model%has_point_stiffness) &
-        call archive%field('operator/added', share%points(:share%owned), model%plate%mesh%points(), self%added, &
-                           area_field)
-    end associate
-    if (model%plate%setup%has_variable_sections()) call visit_stiffness(archive, 'operator/stiffness', model%plate, &
-                                                                        self%stiffness)
+    call model%plate%visit_points(archive, 'operator/displacement', self%displacement, motion_field)
+    if (model%has_point_stiffness) call model%plate%visit_points(archive, 'operator/added', self%added, area_field)
+    if (model%plate%setup%has_variable_sections()) &
+      call visit_stiffness(archive, 'operator/stiffness', model%plate, self%stiffness)
     if (archive%loading .and. self%ready) then
       call model%plate%halo%update(self%displacement)
       call assemble(self, model, error)

@@ -23,7 +23,7 @@ module drawn_strengths
 
 contains
 
-  !> Strengths of a model's plies. An element has that of its weakest square.
+  !> Strengths of the plies of a plate. An element has that of its weakest square.
   function new_drawn_strengths(plate, plies, states, joined) result(self)
     type(composite_plate_t), intent(in) :: plate
     !> Plies of the different laminates, one after the other

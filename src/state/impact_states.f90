@@ -83,10 +83,7 @@ contains
     call archive%item('contact/touched_at', patch%touched_at)
     call archive%item('contact/area', patch%area)
     weights = reshape(patch%weights, [1, size(patch%weights)])
-    associate (partition => model%plate%distribution)
-      call archive%field('contact/weights', partition%points(:partition%owned), model%plate%mesh%points(), weights, &
-                         area_field)
-    end associate
+    call model%plate%visit_points(archive, 'contact/weights', weights, area_field)
     call patch%spread(weights(1, :), (patch%offset))
   end subroutine visit_patch
 end module impact_states

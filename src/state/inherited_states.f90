@@ -19,15 +19,11 @@ contains
     type(state_t), intent(inout) :: state
     class(archive_t), intent(inout) :: archive
     type(composite_plate_t), intent(in) :: plate
-    integer :: points
 
-    points = plate%mesh%points()
-    associate (owned => plate%distribution%points(:plate%distribution%owned), motion => state%motion)
-      call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
-      call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
-      if (archive%loading) call plate%halo%update(motion%displacement)
-      if (archive%loading) call plate%halo%update(motion%velocity)
-    end associate
+    call plate%visit_points(archive, 'motion/displacement', state%motion%displacement, motion_field)
+    call plate%visit_points(archive, 'motion/velocity', state%motion%velocity, motion_field)
+    if (archive%loading) call plate%halo%update(state%motion%displacement)
+    if (archive%loading) call plate%halo%update(state%motion%velocity)
     call state%plies%visit(archive, plate)
     call state%interfaces%cohesive%visit(archive, plate)
     call visit_friction(state%interfaces%cohesive, archive, plate)

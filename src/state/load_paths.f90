@@ -36,10 +36,7 @@ contains
     call archive%item('path/dissipated', self%dissipated)
     call archive%item('path/force_change', self%force_change)
     if (.not. allocated(self%change)) return
-    associate (partition => plate%distribution)
-      call archive%field('path/change', partition%points(:partition%owned), plate%mesh%points(), self%change, &
-                         motion_field)
-    end associate
+    call plate%visit_points(archive, 'path/change', self%change, motion_field)
     if (archive%loading) call plate%halo%update(self%change)
   end subroutine visit
 end module load_paths

@@ -8,7 +8,6 @@ module states
   use impact_parameters, only: impactor_parameters_t, indentation_law_t
   use impactors, only: new_impactor, impactor_energy
   use impact_states, only: impact_state_t
-  use iteration_counts, only: iteration_counts_t
   use energy_ledgers, only: ledger_t
   use load_paths, only: load_path_t
   use motions, only: motion_t
@@ -22,6 +21,12 @@ module states
 
   !> Name of the time in checkpoints.
   character(len=*), parameter, public :: time_item = 'time'
+
+  !> Iterations of equilibrium, of the contact force and of the contact pressures.
+  type :: iteration_counts_t
+    !> Iterations of each
+    integer :: equilibrium = 0, force = 0, contact = 0
+  end type iteration_counts_t
 
   !> The state of plate, impactor and contact at one time.
   type :: state_t
@@ -179,7 +184,11 @@ contains
     type(state_t), intent(in) :: old
 
     self%step = old%step + 1
-    self%all_iterations = old%all_iterations%plus(self%iterations)
+    associate (all => self%all_iterations, before => old%all_iterations, now => self%iterations)
+      all%equilibrium = before%equilibrium + now%equilibrium
+      all%force = before%force + now%force
+      all%contact = before%contact + now%contact
+    end associate
   end subroutine count_step
 
   !> Stores the changes of a load step, and chooses the control of the next one: load or dissipated energy, whichever
@@ -232,17 +241,13 @@ contains
     type(motion_t), intent(inout) :: motion
     class(archive_t), intent(inout) :: archive
     type(composite_plate_t), intent(in) :: plate
-    integer :: points
 
-    points = plate%mesh%points()
-    associate (owned => plate%distribution%points(:plate%distribution%owned))
-      call archive%field('motion/displacement', owned, points, motion%displacement, motion_field)
-      call archive%field('motion/velocity', owned, points, motion%velocity, motion_field)
-      call archive%field('motion/acceleration', owned, points, motion%acceleration, motion_field)
-      call archive%field('motion/internal', owned, points, motion%internal, motion_field)
-      call archive%field('motion/inertia', owned, points, motion%inertia, motion_field)
-      call archive%field('motion/momentum', owned, points, motion%momentum, motion_field)
-    end associate
+    call plate%visit_points(archive, 'motion/displacement', motion%displacement, motion_field)
+    call plate%visit_points(archive, 'motion/velocity', motion%velocity, motion_field)
+    call plate%visit_points(archive, 'motion/acceleration', motion%acceleration, motion_field)
+    call plate%visit_points(archive, 'motion/internal', motion%internal, motion_field)
+    call plate%visit_points(archive, 'motion/inertia', motion%inertia, motion_field)
+    call plate%visit_points(archive, 'motion/momentum', motion%momentum, motion_field)
     if (.not. archive%loading) return
     call plate%halo%update(motion%displacement)
     call plate%halo%update(motion%velocity)

@@ -110,8 +110,8 @@ contains
       along = pressed_axis(model)
       sides = merge(sign(1.0_wp, lines%at), 0.0_wp, on)
       halved = is_halved(plate%symmetry)
-      ends = [-sum([(sides(i)*values(2*i), i=1, size(on))])/(count(on)*plate%length(3 - along) &
-                                                             *model%plate%layup%thickness), &
+      ends = [-sum([(sides(i)*values(2*i), i=1, size(on))]) &
+              /(count(on)*plate%length(3 - along)*model%plate%layup%thickness), &
               -merge(2, 1, halved(along))*sum([(sides(i)*values(2*i + 1), i=1, size(on))])]
       ends = [ends, ends(2)/plate%length(along)]
     end associate

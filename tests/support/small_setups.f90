@@ -114,8 +114,7 @@ contains
 
     allocate (shape(5, size(model%plate%distribution%points)), source=0.0_wp)
     do i = 1, size(shape, 2)
-      associate (x => model%plate%mesh%node_coordinates(:, &
-          model%plate%mesh%point_node(model%plate%distribution%points(i))))
+      associate (x => model%plate%place_of(i))
         shape(3, i) = sin(m*pi*(x(1) + 0.5_wp))*sin(n*pi*(x(2) + 0.5_wp))
       end associate
     end do

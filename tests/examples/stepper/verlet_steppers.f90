@@ -116,8 +116,7 @@ contains
       ledger%kinetic = model%plate%mesh%multiplicity/2*total_of(model%plate%communicator, &
                                                           sum(motion%velocity(:, :owned)*motion%momentum(:, :owned), 1))
       ledger%external_work = model%plate%mesh%multiplicity*total_of( &
-                             model%plate%communicator, sum(motion%displacement(:, :owned)*model%loads%pressure(:, &
-                             :owned), 1))
+        model%plate%communicator, sum(motion%displacement(:, :owned)*model%loads%pressure(:, :owned), 1))
       call ledger%note_largest()
     end associate
   end subroutine record_energies

@@ -89,8 +89,7 @@ contains
 
     do row = 1, numbering%rows
       call numbering%place_of(numbering%first_row + row - 1, point, component)
-      associate (place => model%plate%mesh%node_coordinates(:, &
-          model%plate%mesh%point_node(model%plate%distribution%points(point))))
+      associate (place => model%plate%place_of(point))
         motion = 0
         select case (number)
         case (:3)
