@@ -96,7 +96,6 @@ contains
   subroutine move(self, model, steps, now)
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> The state at the end of the step; receives the motion of the impactor
     type(state_t), intent(inout) :: now
@@ -143,7 +142,6 @@ contains
   pure subroutine accelerate(self, model, steps, force)
     type(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Contact force at the start of the step
     real(wp), intent(in) :: force

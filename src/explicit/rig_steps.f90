@@ -203,7 +203,6 @@ contains
     !> The points; receive their forces
     class(circle_frames_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Deflection at the end of the step, and its rate, (points); corrected
     real(wp), intent(inout) :: w(:), rate(:)
@@ -256,7 +255,6 @@ contains
     class(rig_steps_t), intent(inout) :: self
     !> First point of the node
     integer, intent(in) :: p
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Inverse inertia of w of the layer
     real(wp), intent(in) :: inverse
@@ -280,9 +278,7 @@ contains
   !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
   pure subroutine add_spring_forces(self, inertia, steps, u, v, force)
     class(rig_steps_t), intent(in) :: self
-    !> The springs
     type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Unknowns and their rates, (5, points)
     real(wp), intent(in) :: u(:, :), v(:, :)
@@ -301,9 +297,7 @@ contains
   !> (v_old**2 + v**2)/4), where the change of step length is recorded with the force -k (u_old + h v_old).
   pure subroutine record_springs(self, inertia, steps, before, after)
     class(rig_steps_t), intent(inout) :: self
-    !> The springs
     type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Rates of the unknowns before the step, (5, points with springs), and after it, (5, points)
     real(wp), intent(in) :: before(:, :), after(:, :)

@@ -11,8 +11,7 @@ module stack_updates
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use models, only: model_t
-  use stack_batches, only: stack_batch_t
-  use stack_lanes, only: surface_states_t
+  use stack_batches, only: stack_batch_t, surface_lanes_t, surface_states_t
   use stack_solutions, only: energy_of, friction_t, may_grow
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: memory
@@ -25,7 +24,6 @@ contains
   !> Adds the work of the tractions of undamaged stacks beyond the stored energy k (jump**2 - u**2)/2.
   pure subroutine update_intact(batch, steps, start, change, last, forces, before, lost)
     type(stack_batch_t), intent(in) :: batch
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Jumps at the start of the step, their change in this step and in the last
     real(wp), dimension(lanes, 3, batch%n), intent(in) :: start, change, last
@@ -48,7 +46,6 @@ contains
 
   !> Decrease of the kinetic energy at whole steps by the forces on jumps.
   pure function work_of(steps, forces, before, change, last) result(work)
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Forces in this step and in the last
     real(wp), intent(in) :: forces(lanes, 3), before(lanes, 3)
@@ -124,7 +121,6 @@ contains
     type(stack_batch_t), intent(in) :: batch
     !> Their surfaces; are updated
     type(surface_states_t), intent(inout) :: states(batch%n)
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     type(model_t), intent(in) :: model
     !> The interfaces at the start
@@ -141,14 +137,14 @@ contains
 
     do j = 1, batch%n
       old = states(j)
-      associate (new => states(j), area => batch%surfaces%area(:, j))
+      associate (new => states(j), surface => batch%surfaces(j), area => batch%surfaces(j)%area)
         to = old%start + change(:, :, j)
         work = work_of(steps, forces(:, :, j), before(:, :, j), change(:, :, j), old%last)
         call grow_damage(batch, j, model, cohesive, to, new)
-        call slip_surfaces(batch, j, friction(j), to, change(:, :, j), steps%kept*old%last, new)
+        call slip_surfaces(surface, friction(j), to, change(:, :, j), steps%kept*old%last, new)
         in_contact = lost_in_contact(batch, j, steps, old%start(:, 3), change(:, 3, j), old%last(:, 3)) &
-                     + area*closing_loss(batch, j, old%start(:, 3), to(:, 3), new%damage - old%damage)
-        released = stored(batch, j, new, to) - stored(batch, j, old, old%start) + (new%dissipated - old%dissipated) &
+                     + area*closing_loss(surface, old%start(:, 3), to(:, 3), new%damage - old%damage)
+        released = stored(surface, new, to) - stored(surface, old, old%start) + (new%dissipated - old%dissipated) &
                    + new%heat - old%heat
         lost(:, 1, j) = lost(:, 1, j) + in_contact
         lost(:, 2, j) = lost(:, 2, j) + (work - in_contact - area*released)
@@ -175,12 +171,12 @@ contains
     logical :: grows(lanes)
     integer :: lane
 
-    state%work = (1 - state%damage)*energy_of(batch, j, state, to) &
-                 - (1 - state%damage)*energy_of(batch, j, state, state%start)
-    where (.not. batch%surfaces%contact(:, j)) state%work = state%work + batch%surfaces%closing(:, j)/2* &
+    state%work = (1 - state%damage)*energy_of(batch%surfaces(j), state, to) &
+                 - (1 - state%damage)*energy_of(batch%surfaces(j), state, state%start)
+    where (.not. batch%surfaces(j)%contact) state%work = state%work + batch%surfaces(j)%closing/2* &
       ((1 - state%damage)*min(to(:, 3), 0.0_wp)**2 - (1 - state%damage)*min(state%start(:, 3), 0.0_wp)**2)
     if (cohesive%is_held) return
-    grows = may_grow(batch, j, state, to)
+    grows = may_grow(batch%surfaces(j), state, to)
     if (.not. any(grows)) return
     do lane = 1, lanes
       if (.not. grows(lane)) cycle
@@ -195,10 +191,8 @@ contains
   end subroutine grow_damage
 
   !> Energy per area stored by the jumps.
-  pure function stored(batch, j, state, jumps) result(energy)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
+  pure function stored(surface, state, jumps) result(energy)
+    type(surface_lanes_t), intent(in) :: surface
     !> Its surfaces with these jumps
     type(surface_states_t), intent(in) :: state
     !> Two shears and opening
@@ -206,12 +200,10 @@ contains
     !> One for each lane
     real(wp) :: energy(lanes)
 
-    associate (surfaces => batch%surfaces)
-      energy = (1 - state%damage)*energy_of(batch, j, state, jumps) &
-               + merge(1.0_wp, 1 - state%damage, surfaces%contact(:, j)) &
-               *surfaces%closing(:, j)*min(jumps(:, 3), 0.0_wp)**2/2 &
-               + merge(sticking_energy(surfaces%shear(:, j), jumps, state%slip), 0.0_wp, surfaces%friction(:, j) > 0)
-    end associate
+    energy = (1 - state%damage)*energy_of(surface, state, jumps) &
+             + merge(1.0_wp, 1 - state%damage, surface%contact) &
+             *surface%closing*min(jumps(:, 3), 0.0_wp)**2/2 &
+             + merge(sticking_energy(surface%shear, jumps, state%slip), 0.0_wp, surface%friction > 0)
   end function stored
 
   !> Elastic energy per area of sticking surfaces.
@@ -227,17 +219,15 @@ contains
   end function sticking_energy
 
   !> Energy per area that closed surfaces without contact lose by growing damage, by the trapezoidal rule.
-  pure function closing_loss(batch, j, from, to, growth) result(loss)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
+  pure function closing_loss(surface, from, to, growth) result(loss)
+    type(surface_lanes_t), intent(in) :: surface
     !> Opening at the start and at the end, and growth of damage
     real(wp), intent(in) :: from(lanes), to(lanes), growth(lanes)
     !> One for each lane
     real(wp) :: loss(lanes)
 
-    loss = merge(0.0_wp, batch%surfaces%closing(:, j)*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2, &
-                 batch%surfaces%contact(:, j))
+    loss = merge(0.0_wp, surface%closing*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2, &
+                 surface%contact)
   end function closing_loss
 
   !> Work of the pressure of closed surfaces, a spring at the end of each step, beyond the energy that it stores.
@@ -245,7 +235,6 @@ contains
     type(stack_batch_t), intent(in) :: batch
     !> The interface
     integer, intent(in) :: j
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Opening at the start of the step, its change and, without damping, that in the last step
     real(wp), intent(in) :: before(lanes), change(lanes), last(lanes)
@@ -256,16 +245,14 @@ contains
     from = min(before, 0.0_wp)
     to = min(before + change, 0.0_wp)
     lost = merge(batch%stiffness(:, 2, j)*(steps%work_in_lanes(to, from, change, steps%kept*last) &
-                                           - (to**2 - from**2)/2), 0.0_wp, batch%surfaces%contact(:, j))
+                                           - (to**2 - from**2)/2), 0.0_wp, batch%surfaces(j)%contact)
   end function lost_in_contact
 
   !> Slip of surfaces, change of their elastic jumps, and heat, theory (T11): the work of friction less half of the
   !> change of the energy of sticking in this step and half of that in the step before, while forces depend on a slip.
   !> Negative values are subtracted from later heat.
-  pure subroutine slip_surfaces(batch, j, friction, to, change, last, state)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
+  pure subroutine slip_surfaces(surface, friction, to, change, last, state)
+    type(surface_lanes_t), intent(in) :: surface
     !> Friction in the step
     type(friction_t), intent(in) :: friction
     !> Jumps at the end, their change, and that in the last step
@@ -276,14 +263,14 @@ contains
     logical, dimension(lanes) :: rubs, free, moves
     integer :: k
 
-    rubs = batch%surfaces%friction(:, j) > 0
-    state%limit = friction%limit/batch%surfaces%area(:, j)
+    rubs = surface%friction > 0
+    state%limit = friction%limit/surface%area
     if (.not. any(rubs)) then
       state%slip = 0
       state%heat = 0
       return
     end if
-    before = sticking_energy(batch%surfaces%shear(:, j), state%start, state%slip)
+    before = sticking_energy(surface%shear, state%start, state%slip)
     free = .not. friction%limit > 0
     moves = .false.
     do k = 1, 2
@@ -294,17 +281,19 @@ contains
       ! Forces of slipping surfaces do not depend on the forces before the slip.
       state%sticking(:, k) = merge(0.0_wp, change(:, k), friction%slips .or. free)
     end do
-    after = sticking_energy(batch%surfaces%shear(:, j), to, state%slip) - before
+    after = sticking_energy(surface%shear, to, state%slip) - before
     work = (friction%force(:, 1)*(change(:, 1) + last(:, 1)) + friction%force(:, 2)*(change(:, 2) + last(:, 2))) &
-           /(2*batch%surfaces%area(:, j))
-    where (moves) state%steps = real(memory, wp)
-    where (rubs .and. state%steps > 0)
-      heat = work - (after + state%rubbing(:, 1))/2 - state%rubbing(:, 2)
-      state%heat = state%heat + max(0.0_wp, heat)
-      state%steps = state%steps - 1
-      state%rubbing(:, 2) = max(0.0_wp, -heat)
-    end where
-    where (rubs) state%rubbing(:, 1) = after
+           /(2*surface%area)
+    associate (steps => state%rubbing(:, 1), sticking => state%rubbing(:, 2), deficit => state%rubbing(:, 3))
+      where (moves) steps = real(memory, wp)
+      where (rubs .and. steps > 0)
+        heat = work - (after + sticking)/2 - deficit
+        state%heat = state%heat + max(0.0_wp, heat)
+        steps = steps - 1
+        deficit = max(0.0_wp, -heat)
+      end where
+      where (rubs) sticking = after
+    end associate
     where (.not. rubs) state%heat = 0
   end subroutine slip_surfaces
 end module stack_updates
