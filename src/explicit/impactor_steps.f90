@@ -56,7 +56,6 @@ contains
   real(wp) function contact_frequency_square(self, model, indentation) result(square)
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The contact
     type(indentation_t), intent(in) :: indentation
     real(wp) :: slope, compliance, inverse_mass
 

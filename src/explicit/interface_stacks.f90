@@ -128,7 +128,6 @@ contains
   function create_interface_stacks(model, cohesive, inertia) result(self)
     type(model_t), intent(in) :: model
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     type(interface_stacks_t) :: self
     logical :: is_dependent(model%distribution%owned)
@@ -286,7 +285,6 @@ contains
   !> Copies the state of the interfaces of masters to their dependents.
   pure subroutine copy_to_dependents(self, inertia, cohesive)
     class(interface_stacks_t), intent(in) :: self
-    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     integer :: i

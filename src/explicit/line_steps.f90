@@ -61,7 +61,6 @@ contains
   !> The lines of a model.
   function create_line_steps(model, inertia) result(self)
     type(model_t), intent(in) :: model
-    !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     type(line_steps_t) :: self
     type(prescribed_dof_t), allocatable :: dofs(:)
@@ -131,7 +130,6 @@ contains
   subroutine start_from(self, model, inertia, motion)
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
@@ -201,7 +199,6 @@ contains
 
   !> The prescribed component of a layer's motion.
   pure real(wp) function component_of(dof, motion) result(value)
-    !> The component
     type(prescribed_dof_t), intent(in) :: dof
     !> Motion or velocity of the layer
     real(wp), intent(in) :: motion(5)

@@ -46,7 +46,6 @@ contains
   !> Inertia of the points of a model with a lumped mass.
   function create_nodal_inertia(model, scaling) result(self)
     type(model_t), intent(in) :: model
-    !> Scaling of in-plane and rotary inertia
     type(inertia_scaling_t), intent(in) :: scaling
     type(nodal_inertia_t) :: self
     real(wp), allocatable :: scaled(:, :)

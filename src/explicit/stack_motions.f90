@@ -186,7 +186,6 @@ contains
   !> Stops lowest layers at frames that they would penetrate.
   pure subroutine stop_at_frames(batch, rigs, steps, displacement, velocity, normal, given, trial, forces)
     type(stack_batch_t), intent(in) :: batch
-    !> The frames
     type(rig_steps_t), intent(inout) :: rigs
     type(step_lengths_t), intent(in) :: steps
     !> Unknowns at the start of the step, and velocities of the layers without tractions

@@ -67,7 +67,6 @@ contains
     real(wp), intent(in) :: trial(lanes, 3, batch%n)
     !> Forces on the jumps
     real(wp), intent(out) :: forces(lanes, 3, batch%n)
-    !> Friction of each interface
     type(friction_t), intent(out) :: friction(batch%n)
     !> Force per opening with the contacts found, and parts of the forces that do not depend on the jumps at the end
     real(wp), intent(out) :: normal(lanes, batch%n), given(lanes, 3, batch%n)

@@ -123,7 +123,6 @@ contains
     type(surface_states_t), intent(inout) :: states(batch%n)
     type(step_lengths_t), intent(in) :: steps
     type(model_t), intent(in) :: model
-    !> The interfaces at the start
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Change of the jumps, and forces on them in this step and in the last
     real(wp), dimension(lanes, 3, batch%n), intent(in) :: change, forces, before
@@ -159,7 +158,6 @@ contains
     !> The interface
     integer, intent(in) :: j
     type(model_t), intent(in) :: model
-    !> The interfaces at the start
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Jumps at the end
     real(wp), intent(in) :: to(lanes, 3)
@@ -193,7 +191,6 @@ contains
   !> Energy per area stored by the jumps.
   pure function stored(surface, state, jumps) result(energy)
     type(surface_lanes_t), intent(in) :: surface
-    !> Its surfaces with these jumps
     type(surface_states_t), intent(in) :: state
     !> Two shears and opening
     real(wp), intent(in) :: jumps(lanes, 3)
@@ -253,7 +250,6 @@ contains
   !> Negative values are subtracted from later heat.
   pure subroutine slip_surfaces(surface, friction, to, change, last, state)
     type(surface_lanes_t), intent(in) :: surface
-    !> Friction in the step
     type(friction_t), intent(in) :: friction
     !> Jumps at the end, their change, and that in the last step
     real(wp), dimension(lanes, 3), intent(in) :: to, change, last
