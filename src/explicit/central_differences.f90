@@ -167,7 +167,7 @@ contains
     associate (u => now%motion%displacement, v => now%motion%velocity)
       call model%profile%enter('nodes')
       if (allocated(self%inertia%springs)) then
-        call self%rigs%add_spring_forces(self%inertia, self%steps, u, v, self%force)
+        call self%inertia%add_spring_forces(step, u, v, self%force)
         rates = v(:, self%inertia%sprung)
       end if
       call change_length(self, model, v, -1)

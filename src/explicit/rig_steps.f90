@@ -59,7 +59,6 @@ module rig_steps
     type(circle_frames_t) :: circles
   contains
     procedure :: stop_at_frame
-    procedure :: add_spring_forces
     procedure :: record_springs
     procedure :: reactions_of
     procedure :: visit
@@ -274,23 +273,6 @@ contains
     self%reaction(p) = reaction
     self%approach(p) = steps%now*rate
   end subroutine stop_at_frame
-
-  !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
-  pure subroutine add_spring_forces(self, inertia, steps, u, v, force)
-    class(rig_steps_t), intent(in) :: self
-    type(nodal_inertia_t), intent(in) :: inertia
-    type(step_lengths_t), intent(in) :: steps
-    !> Unknowns and their rates, (5, points)
-    real(wp), intent(in) :: u(:, :), v(:, :)
-    !> Forces on the layers, (5, points)
-    real(wp), intent(inout) :: force(:, :)
-    integer :: i, p
-
-    do i = 1, size(inertia%sprung)
-      p = inertia%sprung(i)
-      force(:, p) = force(:, p) - inertia%springs(:, p)*(u(:, p) + steps%now*v(:, p))
-    end do
-  end subroutine add_spring_forces
 
   !> Records the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
   !> the sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)

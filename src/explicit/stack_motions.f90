@@ -12,7 +12,7 @@ module stack_motions
   use stack_batches, only: stack_batches_t, load_states, new_stack_batches, stack_batch_t, store_states, &
                            surface_states_t
   use stack_solutions, only: friction_t, solve_damaged, solve_intact
-  use stack_updates, only: may_start, start_damage, update_damaged, update_intact
+  use stack_updates, only: start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
   use tridiagonal_systems, only: solve_tractions
   use weighted_jumps, only: newest, past_jumps
@@ -134,7 +134,7 @@ contains
       call put(3, points, tractions, batch%first + 1, n, batch%members, history%forces)
       call put(2, points, lost, batch%first + 1, n, batch%members, history%lost)
     end associate
-    if (.not. batch%damaged) call find_onsets(batch, nodes%stacks, model, displacement, cohesive, u)
+    if (.not. batch%damaged) call start_damage(batch, nodes%stacks, model, displacement, cohesive, u)
   end subroutine move_batch
 
   !> Velocities of layers, and rates of the unknowns, at the end of a step without tractions.
@@ -251,29 +251,6 @@ contains
       end do
     end do
   end subroutine record_reactions
-
-  !> Finds the onset of damage in undamaged stacks.
-  subroutine find_onsets(batch, stacks, model, displacement, cohesive, u)
-    type(stack_batch_t), intent(in) :: batch
-    !> The stacks; are damaged if an interface is
-    type(interface_stacks_t), intent(inout) :: stacks
-    type(model_t), intent(in) :: model
-    !> Unknowns at the end of the step
-    real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> The same of all points, (5, points)
-    real(wp), intent(in) :: u(:, :)
-    real(wp) :: min_onset(lanes, batch%n)
-    logical :: starts(lanes)
-    integer :: lane
-
-    call take(1, size(stacks%min_onset), stacks%min_onset, batch%first + 1, batch%n, min_onset)
-    starts = may_start(batch, min_onset, displacement)
-    if (.not. any(starts)) return
-    do lane = 1, batch%members
-      if (starts(lane)) call start_damage(stacks, batch%stack(lane), model, cohesive, u)
-    end do
-  end subroutine find_onsets
 
   !> Values of consecutive points from the first of each lane on. In this module, and with arrays of explicit shape,
   !> the loop over the values of a point is unrolled, here and in `put`.

@@ -17,7 +17,7 @@ module stack_updates
   use weighted_jumps, only: memory
   implicit none
   private
-  public :: may_start, start_damage, update_damaged, update_intact
+  public :: start_damage, update_damaged, update_intact
 
 contains
 
@@ -62,29 +62,35 @@ contains
     work = works(:, 1) + works(:, 2) + works(:, 3)
   end function work_of
 
-  !> Stacks with an interface whose energy is not below the smallest at which damage starts.
-  pure function may_start(batch, min_onset, displacement) result(starts)
+  !> Finds the onset of damage in undamaged stacks at the jumps at the end of a step.
+  subroutine start_damage(batch, stacks, model, displacement, cohesive, u)
     type(stack_batch_t), intent(in) :: batch
-    !> Twice the smallest energy
-    real(wp), intent(in) :: min_onset(lanes, batch%n)
-    !> Unknowns
+    !> The stacks; are damaged if an interface is
+    type(interface_stacks_t), intent(inout) :: stacks
+    type(model_t), intent(in) :: model
+    !> Unknowns at the end of the step
     real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
-    !> True for such stacks
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> The same of all points, (5, points)
+    real(wp), intent(in) :: u(:, :)
     logical :: starts(lanes)
-    integer :: j
+    integer :: j, lane
 
     starts = .false.
     do j = 1, batch%n
       associate (jump => displacement(:, :3, j + 1))
         starts = starts .or. .not. batch%stiffness(:, 1, j)*(jump(:, 1)**2 + jump(:, 2)**2) &
-                 + batch%stiffness(:, 2, j)*max(jump(:, 3), 0.0_wp)**2 < min_onset(:, j)
+                 + batch%stiffness(:, 2, j)*max(jump(:, 3), 0.0_wp)**2 < stacks%min_onset(batch%first + j)
       end associate
     end do
-  end function may_start
+    if (.not. any(starts)) return
+    do lane = 1, batch%members
+      if (starts(lane)) call start_in_stack(stacks, batch%stack(lane), model, cohesive, u)
+    end do
+  end subroutine start_damage
 
-  !> Finds the onset of damage of a stack at the jumps at the end of a step.
-  subroutine start_damage(stacks, i, model, cohesive, u)
-    !> The stacks; the stack is damaged if an interface is
+  !> Finds the onset of damage of a stack.
+  subroutine start_in_stack(stacks, i, model, cohesive, u)
     type(interface_stacks_t), intent(inout) :: stacks
     !> Index of the stack
     integer, intent(in) :: i
@@ -113,7 +119,7 @@ contains
       end do
       if (begins) call stacks%mark_damaged(i, cohesive, u)
     end associate
-  end subroutine start_damage
+  end subroutine start_in_stack
 
   !> Updates damage and friction of damaged stacks, and adds the work of the tractions beyond what surfaces store and
   !> dissipate.
