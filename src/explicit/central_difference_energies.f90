@@ -38,15 +38,14 @@ contains
 
   !> Computes the ledger of a state. Collective.
   subroutine record_energies(method, model, now)
-    !> The method; stores the history of the jumps at the points
-    type(central_difference_t), intent(inout) :: method
+    !> The method
+    type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     !> The state; receives its ledger
     type(state_t), intent(inout) :: now
     type(exact_sum_t) :: sums(8)
     real(wp) :: totals(8)
 
-    call method%store_history()
     call add_kinetic(method, model%plate, now, 1.0_wp, sums(1), sums(2))
     call sums(3)%add(method%strain)
     call add_stored(method, model, now, sums(3))
@@ -186,11 +185,9 @@ contains
     kept = 1
     if (.not. method%steps%now > 0) return
     kept = exp(2*log(final_ratio)*method%steps%now/duration)
-    call method%store_history()
     before = kinetic_energy(method, plate, now, 1.0_wp)
     now%motion%velocity = kept*now%motion%velocity
     call method%stacks%history%damp(kept)
-    if (allocated(method%batches)) call method%batches%damp(kept)
     method%rigs%approach = kept*method%rigs%approach
     method%lines%dofs%change = kept*method%lines%dofs%change
     now%ledger%damping = now%ledger%damping + before - kinetic_energy(method, plate, now, kept)

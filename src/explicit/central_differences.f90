@@ -8,7 +8,6 @@ module central_differences
   use archives, only: archive_t
   use batch_strains, only: depends_on_slopes
   use central_difference_parameters, only: central_difference_parameters_t
-  use cohesive_interfaces, only: cohesive_interfaces_t
   use field_mappings, only: motion_field
   use impactor_steps, only: impactor_steps_t, create_impactor_steps
   use front_onsets, only: front_onsets_t, create_front_onsets
@@ -168,7 +167,7 @@ contains
       call self%lines%find_rates(model, self%steps, factors(2), plate%setup%offset_left(now%time + step), self%motion)
       call plate%profile%enter('nodes')
       if (allocated(self%inertia%springs)) then
-        call self%rigs%add_spring_forces(self%inertia, self%steps, u, v, self%force)
+        call self%inertia%add_spring_forces(step, u, v, self%force)
         rates = v(:, self%inertia%sprung)
       end if
       call change_length(self, plate, v, -1)
@@ -180,7 +179,7 @@ contains
       call self%inertia%move_dependents(v)
       call self%stacks%copy_to_dependents(self%inertia, now%interfaces%cohesive)
       call change_length(self, plate, v, 1)
-      if (self%onsets%is_due(now%step)) call soften_at_fronts(self, plate, now%interfaces%cohesive, u)
+      call self%onsets%find(plate, now%step, self%stacks, now%interfaces%cohesive, u)
       call plate%profile%leave()
       call plate%halo%update(u)
     end associate
@@ -192,27 +191,6 @@ contains
     call self%find_forces(model, now)
     call add_loads(self, model, now, factors)
   end subroutine advance
-
-  !> Reduces the laws of points whose energy release rate has reached the onset. Collective.
-  subroutine soften_at_fronts(self, plate, cohesive, u)
-    type(central_difference_t), intent(inout) :: self
-    type(composite_plate_t), intent(in) :: plate
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> Unknowns, (5, points)
-    real(wp), intent(in) :: u(:, :)
-    real(wp), allocatable :: factors(:, :)
-    integer, allocatable :: points(:)
-    integer :: i
-
-    call self%onsets%find(plate, self%stacks, cohesive, u, points, factors)
-    if (size(points) == 0) return
-    call self%store_history()
-    do i = 1, size(points)
-      call self%stacks%begin_softening(plate, cohesive, points(i), factors(:, i), u)
-    end do
-    call self%batches%load(self%stacks%history)
-    self%laws_changed = .true.
-  end subroutine soften_at_fronts
 
   !> Records the change of energy by a change of the step length: the kinetic energy at the end of a step contains the
   !> force at that time over half of the step (`step_lengths`). Before the first step the length is zero; the change is
@@ -237,7 +215,7 @@ contains
     end if
   end subroutine change_length
 
-  !> Computes inverse inertia and compliances for the step length.
+  !> Computes the inverse inertia for the step length, with which batches of stacks are formed anew.
   subroutine prepare(self, plate)
     type(central_difference_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
@@ -247,8 +225,6 @@ contains
     call self%lines%project(self%inertia%inverse)
     call self%rigs%circles%prepare(plate, self%inertia%inverse(7, :))
     call self%impact%patch%gather(plate, self%inertia%inverse_of_images())
-    call self%stacks%prepare(self%inertia, self%steps%now*self%steps%mean())
-    call self%store_history()
     if (allocated(self%batches)) deallocate (self%batches)
     self%prepared = self%steps
   end subroutine prepare
@@ -381,7 +357,6 @@ contains
     class(archive_t), intent(inout) :: archive
     type(model_t), intent(in) :: model
 
-    call self%store_history()
     call archive%item('explicit/step', self%steps%now)
     call archive%item('explicit/step_before', self%steps%last)
     call archive%item('explicit/initial_work', self%initial_work)

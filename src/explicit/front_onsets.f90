@@ -28,7 +28,6 @@ module front_onsets
     !> Values of the points of the mesh that this rank needs, (7, points of the mesh)
     real(wp), allocatable, private :: values(:, :)
   contains
-    procedure :: is_due
     procedure :: find
   end type front_onsets_t
 
@@ -47,42 +46,27 @@ contains
     allocate (self%values(7, plate%mesh%points()), source=0.0_wp)
   end function create_front_onsets
 
-  !> True in steps with a search.
-  pure logical function is_due(self, step)
-    class(front_onsets_t), intent(in) :: self
-    !> Number of the step
-    integer, intent(in) :: step
-
-    is_due = allocated(self%values) .and. modulo(step, steps_between_searches) == 0
-  end function is_due
-
-  !> Finds undamaged points at which the energy release rate has reached the onset, with the factors of their laws.
-  !> Collective.
-  subroutine find(self, plate, stacks, cohesive, u, points, factors)
+  !> Finds undamaged points at which the energy release rate has reached the onset, and reduces their laws. Collective.
+  subroutine find(self, plate, step, stacks, cohesive, u)
     class(front_onsets_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    type(interface_stacks_t), intent(in) :: stacks
-    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> Number of the step
+    integer, intent(in) :: step
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> The interfaces; receive the laws
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
-    !> The points of this rank
-    integer, allocatable, intent(out) :: points(:)
-    !> Factors of their strengths and of the stiffness of opening, (2, n)
-    real(wp), allocatable, intent(out) :: factors(:, :)
-    real(wp) :: found(2)
     integer :: i
 
-    allocate (points(0), factors(2, 0))
+    if (.not. allocated(self%values) .or. modulo(step, steps_between_searches) > 0) return
     if (cohesive%is_held) return
     call gather(self, plate, stacks, cohesive, u)
     do i = 1, size(self%stencils%points)
       associate (p => self%stencils%points(i))
         if (cohesive%points(p)%damage > 0 .or. cohesive%by_energy(p) .or. .not. stacks%may_separate(p)) cycle
         if (plate%setup%delaminations(plate%zone(p))%growth_control /= growth_by_energy) cycle
-        call find_at(self, plate, i, stacks, u, found)
-        if (.not. (found(1) < cohesive%strength(p) .or. (found(2) < 1 .and. .not. cohesive%strength(p) < 1))) cycle
-        points = [points, p]
-        factors = reshape([factors, found], [2, size(points)])
+        call find_at(self, plate, i, stacks, cohesive, u)
       end associate
     end do
   end subroutine find
@@ -111,22 +95,20 @@ contains
     call self%stencils%exchange%update(self%values)
   end subroutine gather
 
-  !> Factors of the law of a point at which the energy release rate has reached the onset in one of the directions of
-  !> growth; 1 if it has not.
-  pure subroutine find_at(self, plate, i, stacks, u, factors)
+  !> Reduces the law of a point if the energy release rate has reached the onset in one of the directions of growth.
+  pure subroutine find_at(self, plate, i, stacks, cohesive, u)
     type(front_onsets_t), intent(in) :: self
     type(composite_plate_t), intent(in) :: plate
     !> Index of the point among those with an interface
     integer, intent(in) :: i
-    type(interface_stacks_t), intent(in) :: stacks
+    type(interface_stacks_t), intent(inout) :: stacks
+    !> The interfaces; receive the law
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
     !> Unknowns, (5, points)
     real(wp), intent(in) :: u(:, :)
-    !> Of the strengths and of the stiffness of opening
-    real(wp), intent(out) :: factors(2)
-    real(wp) :: rate, largest
+    real(wp) :: rate, largest, strength, opening
     integer :: d, direction
 
-    factors = 1
     associate (p => self%stencils%points(i), near => self%stencils%near(:, :, i))
       largest = 0
       direction = 0
@@ -140,9 +122,10 @@ contains
         direction = d
       end do
       if (largest < onset_share) return
-      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), &
-                      stacks%history%forces(:, p)/stacks%area(p), taken(self, of_jumps, near(behind, direction)), &
-                      factors(1), factors(2))
+      call reduce_law(plate%interfaces%cohesive_laws(plate%zone(p)), u(1:3, p), stacks%history%forces(:, p)/stacks%area(p), &
+                      taken(self, of_jumps, near(behind, direction)), strength, opening)
+      if (strength < cohesive%strength(p) .or. (opening < 1 .and. .not. cohesive%strength(p) < 1)) &
+        call stacks%begin_softening(plate, cohesive, p, [strength, opening], u)
     end associate
   end subroutine find_at
 

@@ -57,7 +57,6 @@ contains
   real(wp) function contact_frequency_square(self, plate, indentation) result(square)
     class(impactor_steps_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The contact
     type(indentation_t), intent(in) :: indentation
     real(wp) :: slope, compliance, inverse_mass
 
@@ -97,7 +96,6 @@ contains
   subroutine move(self, model, steps, now)
     class(impactor_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> The state at the end of the step; receives the motion of the impactor
     type(state_t), intent(inout) :: now
@@ -145,7 +143,6 @@ contains
   pure subroutine accelerate(self, plate, steps, force)
     type(impactor_steps_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Contact force at the start of the step
     real(wp), intent(in) :: force

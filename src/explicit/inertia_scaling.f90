@@ -41,7 +41,6 @@ contains
 
   !> Scaling with a mean factor of the laminate's rotary inertia over the core, or over the plate without one.
   pure function create_inertia_scaling(setup, mean) result(self)
-    !> Plate, mesh and laminate
     class(setup_t), intent(in) :: setup
     !> The mean factor, at least 1
     real(wp), intent(in) :: mean
@@ -86,7 +85,6 @@ contains
 
   !> Sides of the cells of the core, or of all cells without a core.
   pure function core_sides(setup, direction) result(sides)
-    !> Plate and mesh
     class(setup_t), intent(in) :: setup
     !> 1 for x, 2 for y
     integer, intent(in) :: direction
@@ -104,7 +102,6 @@ contains
   !> Largest transverse shear modulus over the largest in-plane modulus. A radius of gyration r limits the step by
   !> rotations to 2 r sqrt(rho/G), a side tau of the elements that by in-plane waves to 2 tau sqrt(rho/(24 E)).
   pure real(wp) function ratio_of_moduli(setup) result(ratio)
-    !> Laminate and materials
     class(setup_t), intent(in) :: setup
     integer, allocatable :: used(:)
 
@@ -116,7 +113,6 @@ contains
 
   !> Square of the radius of gyration of the laminate at the struck point about its centre of mass.
   pure real(wp) function laminate_radius_square(setup) result(square)
-    !> Laminate and materials
     class(setup_t), intent(in) :: setup
     real(wp) :: mass(3)
 

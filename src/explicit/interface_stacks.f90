@@ -1,5 +1,4 @@
-!> Nodes with several layers and the interfaces between them: coupling of the jumps of a node in a step,
-!> and data of earlier steps.
+!> Nodes with several layers and the interfaces between them, and their data of earlier steps.
 module interface_stacks
   use archives, only: archive_t
   use cohesive_interfaces, only: cohesive_interfaces_t
@@ -8,22 +7,10 @@ module interface_stacks
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
   use models, only: model_t
-  use nodal_inertia, only: nodal_inertia_t, along_x, along_y, along_z
-  use tridiagonal_systems, only: factorize
-  use weighted_jumps, only: newest
+  use nodal_inertia, only: nodal_inertia_t
   implicit none
   private
-  public :: jump_history_t, friction_history_t, interface_stacks_t, create_interface_stacks, last_layer
-
-  !> Data of earlier steps of the friction at a point, for its heat.
-  type :: friction_history_t
-    !> Number of further steps whose forces depend on the last slip
-    integer :: steps = 0
-    !> Change of the elastic energy of sticking surfaces in the last step, per area
-    real(wp) :: stored = 0
-    !> Negative heat of earlier steps, which is subtracted from later heat, per area
-    real(wp) :: deficit = 0
-  end type friction_history_t
+  public :: jump_history_t, interface_stacks_t, create_interface_stacks, last_layer
 
   !> Earlier steps of the jumps at each point.
   type :: jump_history_t
@@ -33,13 +20,15 @@ module interface_stacks
     real(wp), allocatable :: change(:, :), earlier(:, :)
     !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before, (4, points)
     real(wp), allocatable :: sticking(:, :)
-    !> Friction, (points)
-    type(friction_history_t), allocatable :: friction(:)
+    !> Friction, for its heat: number of further steps whose forces depend on the last slip, change of the energy of
+    !> sticking in the last step and negative heat of earlier steps, both per area, (3, points)
+    real(wp), allocatable :: rubbing(:, :)
     !> Work on the cohesive law of damaged surfaces in the last step, (points)
     real(wp), allocatable :: work(:)
     !> Energy dissipated by contact of surfaces, and algorithmic dissipation of the tractions, (2, points)
     real(wp), allocatable :: lost(:, :)
   contains
+    procedure :: begin_step
     procedure :: damp
     !> Checkpoint.
     procedure :: visit
@@ -65,15 +54,9 @@ module interface_stacks
     logical, private :: is_held = .false.
     !> True for stacks with a damaged interface, (stacks)
     logical, allocatable :: damaged(:)
-    !> Square of the step times the compliance of the layers, diagonal and off-diagonal entries, along x, y and z, (3,
-    !> points); theory (T8)
-    real(wp), allocatable :: diagonal(:, :), off_diagonal(:, :)
-    !> Factors of the undamaged stacks, (2, 3, points)
-    real(wp), allocatable :: factors(:, :, :)
     !> Earlier steps of the jumps
     type(jump_history_t) :: history
   contains
-    procedure :: prepare
     procedure :: find_damaged
     !> Onset energies, reduced by flaws.
     procedure :: find_onsets
@@ -92,9 +75,19 @@ contains
     type(jump_history_t) :: self
 
     allocate (self%forces(3, points), self%change(3, points), self%earlier(3, points), self%sticking(4, points), &
-              self%work(points), self%lost(2, points), source=0.0_wp)
-    allocate (self%friction(points))
+              self%rubbing(3, points), self%work(points), self%lost(2, points), source=0.0_wp)
   end function create_jump_history
+
+  !> The last change of each jump is the earlier one of the step that begins. Its own, `change`, has no meaning until
+  !> the jump has moved: until then it is that of two steps before.
+  pure subroutine begin_step(self)
+    class(jump_history_t), intent(inout) :: self
+    real(wp), allocatable :: before(:, :)
+
+    call move_alloc(self%earlier, before)
+    call move_alloc(self%change, self%earlier)
+    call move_alloc(before, self%change)
+  end subroutine begin_step
 
   !> Reduces the work done in the last step. The changes of the jumps are not reduced: with those of the undamped motion
   !> the weighted mean is stable for springs of any stiffness, with reduced ones it is not.
@@ -104,7 +97,7 @@ contains
     real(wp), intent(in) :: ratio
 
     self%work = ratio*self%work
-    self%friction%stored = ratio*self%friction%stored
+    self%rubbing(2, :) = ratio*self%rubbing(2, :)
   end subroutine damp
 
   !> Writes or reads the history.
@@ -118,9 +111,7 @@ contains
     values(4:6, :) = self%change
     values(7:9, :) = self%earlier
     values(10:11, :) = self%lost
-    values(12, :) = self%friction%steps
-    values(13, :) = self%friction%stored
-    values(14, :) = self%friction%deficit
+    values(12:14, :) = self%rubbing
     values(15, :) = self%work
     values(16:19, :) = self%sticking
     call plate%visit_points(archive, 'explicit/interfaces', values, vector_fields([1, 4, 7, 16, 18]))
@@ -128,9 +119,7 @@ contains
     self%change = values(4:6, :)
     self%earlier = values(7:9, :)
     self%lost = values(10:11, :)
-    self%friction%steps = nint(values(12, :))
-    self%friction%stored = values(13, :)
-    self%friction%deficit = values(14, :)
+    self%rubbing = values(12:14, :)
     self%work = values(15, :)
     self%sticking = values(16:19, :)
   end subroutine visit
@@ -139,7 +128,6 @@ contains
   function create_interface_stacks(model, cohesive, inertia) result(self)
     type(model_t), intent(in) :: model
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     type(interface_stacks_t) :: self
     integer :: i, points
@@ -161,8 +149,7 @@ contains
       self%area(inertia%masters(i)) = self%area(inertia%masters(i)) + self%area(inertia%dependents(i))
       self%area(inertia%dependents(i)) = 0
     end do
-    allocate (self%stiffness(2, points), self%min_onset(points), self%strength(points), self%diagonal(3, points), &
-              self%off_diagonal(3, points), self%factors(2, 3, points), source=0.0_wp)
+    allocate (self%stiffness(2, points), self%min_onset(points), self%strength(points), source=0.0_wp)
     self%history = create_jump_history(points)
     do i = 1, model%plate%distribution%owned
       if (model%plate%zone(i) == 0) cycle
@@ -295,7 +282,6 @@ contains
   !> Copies the state of the interfaces of masters to their dependents.
   pure subroutine copy_to_dependents(self, inertia, cohesive)
     class(interface_stacks_t), intent(in) :: self
-    !> Lumped inertia, with the dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     type(cohesive_interfaces_t), intent(inout) :: cohesive
     integer :: i
@@ -312,44 +298,4 @@ contains
       end associate
     end do
   end subroutine copy_to_dependents
-
-  !> Compliances of the layers between interfaces for steps of a length, and factors of stacks without damage.
-  pure subroutine prepare(self, inertia, step_square)
-    class(interface_stacks_t), intent(inout) :: self
-    !> Lumped inertia, inverted for this step
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> Product of the step and the mean of it and the step before
-    real(wp), intent(in) :: step_square
-    integer :: i, p, k
-
-    do i = 1, size(self%first)
-      do p = self%first(i) + 1, self%first(i) + self%layers(i) - 1
-        associate (upper => inertia%inverse(:, p - 1), lower => inertia%inverse(:, p), z => self%height(p))
-          self%diagonal(:, p) = step_square*[coupling(upper(along_x:), z, z) + coupling(lower(along_x:), z, z), &
-                                             coupling(upper(along_y:), z, z) + coupling(lower(along_y:), z, z), &
-                                             upper(along_z) + lower(along_z)]
-          self%off_diagonal(:, p) = 0
-          if (p < self%first(i) + self%layers(i) - 1) self%off_diagonal(:, p) = -step_square* &
-            [coupling(lower(along_x:), z, self%height(p + 1)), coupling(lower(along_y:), z, self%height(p + 1)), &
-             lower(along_z)]
-        end associate
-      end do
-      associate (from => self%first(i) + 1, to => self%first(i) + self%layers(i) - 1)
-        do k = 1, 3
-          call factorize(newest*self%stiffness(merge(2, 1, k == 3), from:to), &
-                         self%diagonal(k, from:to), self%off_diagonal(k, from:to), self%factors(:, k, from:to))
-        end do
-      end associate
-    end do
-  end subroutine prepare
-
-  !> Displacement of a layer at one height by a unit force at another, divided by the square of the time, theory (T8).
-  pure real(wp) function coupling(inverse, z1, z2)
-    !> Inverse inertia of displacement, of both, of rotation
-    real(wp), intent(in) :: inverse(3)
-    !> The heights
-    real(wp), intent(in) :: z1, z2
-
-    coupling = inverse(1) + inverse(2)*(z1 + z2) + inverse(3)*z1*z2
-  end function coupling
 end module interface_stacks

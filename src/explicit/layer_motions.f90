@@ -5,7 +5,7 @@ module layer_motions
   use kinds, only: wp
   implicit none
   private
-  public :: accelerate, accelerate_layers, find_jump_rates, find_rates, find_resultants, find_velocities, move_points
+  public :: accelerate, accelerate_layers, find_rates, find_resultants, find_velocities, move_points
 
 contains
 
@@ -96,20 +96,6 @@ contains
     end do
   end subroutine accelerate_layers
 
-  !> Rates of the jumps between two layers.
-  pure subroutine find_jump_rates(height, upper, lower, rate)
-    !> Height of the interface
-    real(wp), intent(in) :: height(lanes)
-    !> Velocities of the layers
-    real(wp), intent(in) :: upper(lanes, 5), lower(lanes, 5)
-    !> The rates
-    real(wp), intent(out) :: rate(lanes, 3)
-
-    rate(:, 1) = lower(:, 1) - upper(:, 1) + height*(lower(:, 4) - upper(:, 4))
-    rate(:, 2) = lower(:, 2) - upper(:, 2) + height*(lower(:, 5) - upper(:, 5))
-    rate(:, 3) = lower(:, 3) - upper(:, 3)
-  end subroutine find_jump_rates
-
   !> Rates of the unknowns from the velocities of the layers.
   pure subroutine find_rates(n, height, velocity, rates)
     !> Number of interfaces
@@ -124,8 +110,12 @@ contains
 
     rates(:, :, 1) = velocity(:, :, 1)
     do j = 1, n
-      call find_jump_rates(height(:, j), velocity(:, :, j), velocity(:, :, j + 1), rates(:, :3, j + 1))
-      rates(:, 4:5, j + 1) = velocity(:, 4:5, j + 1)
+      associate (upper => velocity(:, :, j), lower => velocity(:, :, j + 1), rate => rates(:, :, j + 1))
+        rate(:, 1) = lower(:, 1) - upper(:, 1) + height(:, j)*(lower(:, 4) - upper(:, 4))
+        rate(:, 2) = lower(:, 2) - upper(:, 2) + height(:, j)*(lower(:, 5) - upper(:, 5))
+        rate(:, 3) = lower(:, 3) - upper(:, 3)
+        rate(:, 4:5) = lower(:, 4:5)
+      end associate
     end do
   end subroutine find_rates
 

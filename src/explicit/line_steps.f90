@@ -62,7 +62,6 @@ contains
   !> The lines of a model.
   function create_line_steps(model, inertia) result(self)
     type(model_t), intent(in) :: model
-    !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     type(line_steps_t) :: self
     type(prescribed_dof_t), allocatable :: dofs(:)
@@ -129,21 +128,16 @@ contains
   subroutine start_from(self, model, inertia, motion)
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> Lumped inertia, with constrained unknowns and dependent points
     type(nodal_inertia_t), intent(in) :: inertia
     !> Motion of the layers, (5, points)
     real(wp), intent(in) :: motion(:, :)
-    type(prescribed_dof_t), allocatable :: dofs(:)
-    integer :: i, p, component
+    logical :: supported(5, size(motion, 2))
+    integer :: i
 
-    dofs = self%dofs
-    do p = 1, model%plate%distribution%owned
-      do component = 1, 5
-        if (inertia%constrained(component, p) .and. .not. inertia%is_dependent(p) .and. abs(motion(component, p)) > 0) &
-          dofs = [dofs, prescribed_dof_t(point=p, component=component)]
-      end do
-    end do
-    call sort_dofs(self, dofs)
+    supported = inertia%constrained .and. abs(motion) > 0
+    supported(:, inertia%dependents) = .false.
+    supported(:, model%plate%distribution%owned + 1:) = .false.
+    call add_supported(self, supported)
     do i = 1, size(self%dofs)
       associate (dof => self%dofs(i))
         dof%offset = component_of(dof, motion(:, dof%point))
@@ -182,7 +176,6 @@ contains
   pure subroutine find_rates(self, model, steps, load_factor, left, motion)
     class(line_steps_t), intent(inout) :: self
     type(model_t), intent(in) :: model
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Ramps over their full values at the end of the step
     real(wp), intent(in) :: load_factor
@@ -204,7 +197,6 @@ contains
 
   !> The prescribed component of a layer's motion.
   pure real(wp) function component_of(dof, motion) result(value)
-    !> The component
     type(prescribed_dof_t), intent(in) :: dof
     !> Motion or velocity of the layer
     real(wp), intent(in) :: motion(5)
@@ -242,7 +234,6 @@ contains
     class(line_steps_t), intent(inout) :: self
     !> The point
     integer, intent(in) :: p
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Inertia of the layer
     real(wp), intent(in) :: mass(4)
@@ -350,20 +341,29 @@ contains
     !> Offset of each component, (5, points)
     real(wp), intent(in) :: offsets(:, :)
     logical :: missing(5, size(offsets, 2))
-    type(prescribed_dof_t), allocatable :: dofs(:)
-    integer :: i, p, component
+    integer :: i
 
     missing = abs(offsets) > 0
     do i = 1, size(self%dofs)
       missing(self%dofs(i)%component, self%dofs(i)%point) = .false.
     end do
-    if (.not. any(missing)) return
+    call add_supported(self, missing)
+  end subroutine add_offset
+
+  !> Adds supported components to the prescribed ones.
+  pure subroutine add_supported(self, supported)
+    type(line_steps_t), intent(inout) :: self
+    !> True for those to be added, (5, points)
+    logical, intent(in) :: supported(:, :)
+    type(prescribed_dof_t), allocatable :: dofs(:)
+    integer :: p, component
+
     dofs = self%dofs
-    do p = 1, size(offsets, 2)
+    do p = 1, size(supported, 2)
       do component = 1, 5
-        if (missing(component, p)) dofs = [dofs, prescribed_dof_t(point=p, component=component)]
+        if (supported(component, p)) dofs = [dofs, prescribed_dof_t(point=p, component=component)]
       end do
     end do
     call sort_dofs(self, dofs)
-  end subroutine add_offset
+  end subroutine add_supported
 end module line_steps

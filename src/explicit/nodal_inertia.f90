@@ -42,6 +42,7 @@ module nodal_inertia
     procedure :: fold
     procedure :: move_dependents
     procedure :: inverse_of_images
+    procedure :: add_spring_forces
   end type nodal_inertia_t
 
 contains
@@ -49,7 +50,6 @@ contains
   !> Inertia of the points of a model with a lumped mass.
   function create_nodal_inertia(model, scaling) result(self)
     type(model_t), intent(in) :: model
-    !> Scaling of in-plane and rotary inertia
     type(inertia_scaling_t), intent(in) :: scaling
     type(nodal_inertia_t) :: self
     real(wp), allocatable :: scaled(:, :)
@@ -146,6 +146,23 @@ contains
       end associate
     end do
   end subroutine invert
+
+  !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
+  pure subroutine add_spring_forces(self, step, u, v, force)
+    class(nodal_inertia_t), intent(in) :: self
+    !> Length of the step
+    real(wp), intent(in) :: step
+    !> Unknowns and their rates, (5, points)
+    real(wp), intent(in) :: u(:, :), v(:, :)
+    !> Forces on the layers, (5, points)
+    real(wp), intent(inout) :: force(:, :)
+    integer :: i, p
+
+    do i = 1, size(self%sprung)
+      p = self%sprung(i)
+      force(:, p) = force(:, p) - self%springs(:, p)*(u(:, p) + step*v(:, p))
+    end do
+  end subroutine add_spring_forces
 
   !> Inverse of the inertia of displacement and rotation, without constrained unknowns.
   pure function inverse_block(mass, constrained) result(inverse)

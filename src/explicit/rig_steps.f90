@@ -60,7 +60,6 @@ module rig_steps
     type(circle_frames_t) :: circles
   contains
     procedure :: stop_at_frame
-    procedure :: add_spring_forces
     procedure :: record_springs
     procedure :: reactions_of
     procedure :: visit
@@ -204,7 +203,6 @@ contains
     !> The points; receive their forces
     class(circle_frames_t), intent(inout) :: self
     type(composite_plate_t), intent(in) :: plate
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Deflection at the end of the step, and its rate, (points); corrected
     real(wp), intent(inout) :: w(:), rate(:)
@@ -257,7 +255,6 @@ contains
     class(rig_steps_t), intent(inout) :: self
     !> First point of the node
     integer, intent(in) :: p
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Inverse inertia of w of the layer
     real(wp), intent(in) :: inverse
@@ -278,33 +275,12 @@ contains
     self%approach(p) = steps%now*rate
   end subroutine stop_at_frame
 
-  !> Adds the part of the spring forces that depends on the start of the step; the other part is in the inverse inertia.
-  pure subroutine add_spring_forces(self, inertia, steps, u, v, force)
-    class(rig_steps_t), intent(in) :: self
-    !> The springs
-    type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
-    type(step_lengths_t), intent(in) :: steps
-    !> Unknowns and their rates, (5, points)
-    real(wp), intent(in) :: u(:, :), v(:, :)
-    !> Forces on the layers, (5, points)
-    real(wp), intent(inout) :: force(:, :)
-    integer :: i, p
-
-    do i = 1, size(inertia%sprung)
-      p = inertia%sprung(i)
-      force(:, p) = force(:, p) - inertia%springs(:, p)*(u(:, p) + steps%now*v(:, p))
-    end do
-  end subroutine add_spring_forces
-
   !> Records the work of springs in a step beyond their stored energy. With the force -k u at the end of the step of h,
   !> the sum of kinetic energy (`step_lengths`) and k u**2/2 decreases by k (h**2 (v_old + v) v/2 - h (h - h_old)
   !> (v_old**2 + v**2)/4), where the change of step length is recorded with the force -k (u_old + h v_old).
   pure subroutine record_springs(self, inertia, steps, before, after)
     class(rig_steps_t), intent(inout) :: self
-    !> The springs
     type(nodal_inertia_t), intent(in) :: inertia
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Rates of the unknowns before the step, (5, points with springs), and after it, (5, points)
     real(wp), intent(in) :: before(:, :), after(:, :)

@@ -55,7 +55,6 @@ contains
     type(composite_plate_t), intent(in) :: plate
     !> Section stiffness of the damaged elements, (lanes, 21, batches)
     real(wp), intent(in) :: stiffness(:, :, :)
-    !> Scaling of in-plane and rotary inertia
     type(inertia_scaling_t), intent(in) :: scaling
     !> The frequency
     real(wp), intent(out) :: omega

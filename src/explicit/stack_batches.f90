@@ -1,18 +1,35 @@
 !> Stacks of layers, several at a time: constants of stacks with the same number of layers and of the same kind, lane
-!> first, and their jumps, losses and surfaces.
+!> first, and the states of their surfaces.
 module stack_batches
   use element_batches, only: lanes
-  use cohesive_interfaces, only: cohesive_interfaces_t
+  use cohesive_interfaces, only: cohesive_interfaces_t, prevents_penetration
+  use cohesive_points, only: cohesive_point_t
   use interface_stacks, only: interface_stacks_t, jump_history_t
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
-  use nodal_inertia, only: nodal_inertia_t
-  use stack_lanes, only: jump_lanes_t, load_states, set_surfaces, store_friction, surface_lanes_t, surface_states_t
+  use nodal_inertia, only: along_x, along_y, along_z, nodal_inertia_t
+  use surface_friction, only: sliding_t
+  use tridiagonal_systems, only: factorize
+  use weighted_jumps, only: newest
   implicit none
   private
-  public :: stack_batch_t, stack_batches_t, new_stack_batches
+  public :: stack_batch_t, stack_batches_t, new_stack_batches, load_states, store_states
 
-  !> Stacks, and their constants in a step of the present length. They are many because lanes are computed from copies.
+  !> Constants of the surfaces of an interface of damaged stacks, a value for each lane, of laws without flaws.
+  type, public :: surface_lanes_t
+    !> Area
+    real(wp) :: area(lanes)
+    !> Stiffness of shear, opening and closing, pressure per jump
+    real(wp) :: shear(lanes), opening(lanes), closing(lanes)
+    !> The smaller toughness of the pure modes, and the ratio of the jumps at failure and at the onset
+    real(wp) :: toughness(lanes), failure_ratio(lanes)
+    !> Coefficient of friction
+    real(wp) :: friction(lanes)
+    !> True: they do not penetrate each other
+    logical :: contact(lanes)
+  end type surface_lanes_t
+
+  !> Stacks, and their constants in a step of the present length.
   type :: stack_batch_t
     !> Number of interfaces, and number of stacks
     integer :: n = 0, members = 0
@@ -26,18 +43,12 @@ module stack_batches
     real(wp), allocatable :: inverse(:, :, :)
     !> Undamaged stiffness of shear and opening, force per jump, (lanes, 2, n)
     real(wp), allocatable :: stiffness(:, :, :)
-    !> Twice the energy below which damage neither starts nor grows, of undamaged stacks only, (lanes, n)
-    real(wp), allocatable :: min_onset(:, :)
     !> Square of the step times the compliance of the layers, diagonal and off-diagonal entries, (lanes, 3, n)
     real(wp), allocatable :: diagonal(:, :, :), off_diagonal(:, :, :)
     !> Factors of the tridiagonal systems of undamaged stacks, (lanes, 2, 3, n)
     real(wp), allocatable :: factors(:, :, :, :)
-    !> Surfaces, of damaged stacks only
-    type(surface_lanes_t) :: surfaces
-    !> Their states, (n)
-    type(surface_states_t), allocatable :: states(:)
-    !> Jumps in earlier steps
-    type(jump_lanes_t), allocatable :: jumps
+    !> Surfaces, of damaged stacks only, (n)
+    type(surface_lanes_t), allocatable :: surfaces(:)
   end type stack_batch_t
 
   !> The batches of all stacks of this rank, in a step of the present length.
@@ -50,25 +61,42 @@ module stack_batches
     integer, allocatable, private :: open(:, :)
     !> Number of damaged stacks
     integer, private :: damaged = 0
+    !> Product of the step and the mean of it and the step before
+    real(wp), private :: step_square = 0
   contains
     procedure :: move_damaged
-    procedure :: update_laws
-    procedure :: damp
-    procedure :: store
-    procedure :: load
   end type stack_batches_t
+
+  !> Surfaces of an interface of damaged stacks, a value for each lane.
+  type, public :: surface_states_t
+    !> Damage, and energy dissipated per area
+    real(wp) :: damage(lanes), dissipated(lanes)
+    !> Slip, friction limit, and frictional heat per area
+    real(wp) :: slip(lanes, 2), limit(lanes), heat(lanes)
+    !> Factor of the stiffness of opening, that stiffness, and ratio of the jumps at failure and at the onset
+    real(wp) :: part(lanes), opening(lanes), failure_ratio(lanes)
+    !> Change of the elastic jumps of sticking surfaces in the last step, and in the one before
+    real(wp) :: sticking(lanes, 4)
+    !> Data of earlier steps of friction, as in jump_history_t
+    real(wp) :: rubbing(lanes, 3)
+    !> Work on the cohesive law in the last step
+    real(wp) :: work(lanes)
+    !> Jumps, and their change in the last step and in the one before
+    real(wp) :: start(lanes, 3), last(lanes, 3), earlier(lanes, 3)
+  end type surface_states_t
 
 contains
 
   !> Batches of all stacks. Stacks of the same number of layers and of the same kind share batches.
-  pure function new_stack_batches(stacks, inertia, plate, cohesive, constrained) result(self)
+  pure function new_stack_batches(stacks, inertia, plate, constrained, step_square) result(self)
     type(interface_stacks_t), intent(in) :: stacks
     !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(composite_plate_t), intent(in) :: plate
-    type(cohesive_interfaces_t), intent(in) :: cohesive
     !> True for stacks with layers that frames or lines constrain
     logical, intent(in) :: constrained(:)
+    !> Product of the step and the mean of it and the step before
+    real(wp), intent(in) :: step_square
     type(stack_batches_t) :: self
     integer :: i, layers
 
@@ -76,55 +104,47 @@ contains
     ! All stacks may become damaged. For each number of layers and kind, one batch has free lanes.
     allocate (self%list(2*(size(constrained)/lanes) + 6*layers), self%open(layers, 0:3))
     self%open = 0
+    self%step_square = step_square
     do i = 1, size(constrained)
-      call join(self, i, constrained(i), stacks, inertia, plate, cohesive)
+      call join(self, i, constrained(i), stacks, inertia, plate)
     end do
     self%damaged = count(stacks%damaged)
   end function new_stack_batches
 
   !> Moves stacks that have become damaged to batches of damaged stacks.
-  pure subroutine move_damaged(self, stacks, inertia, plate, cohesive)
+  pure subroutine move_damaged(self, stacks, inertia, plate)
     class(stack_batches_t), intent(inout) :: self
-    !> The stacks; receive the history of the jumps of these batches
-    type(interface_stacks_t), intent(inout) :: stacks
-    !> Lumped inertia, inverted for this step
+    type(interface_stacks_t), intent(in) :: stacks
     type(nodal_inertia_t), intent(in) :: inertia
     type(composite_plate_t), intent(in) :: plate
-    type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: b, lane, i
 
     if (count(stacks%damaged) == self%damaged) return
     self%damaged = count(stacks%damaged)
     do b = 1, self%filled
       if (self%list(b)%damaged) cycle
-      associate (batch => self%list(b))
-        if (.not. any(stacks%damaged(batch%stack(:batch%members)))) cycle
-        call batch%jumps%store(batch%first, 1, batch%members, stacks%history)
-      end associate
       do lane = self%list(b)%members, 1, -1
         i = self%list(b)%stack(lane)
         if (.not. stacks%damaged(i)) cycle
         ! The last stack takes its lane.
         call set_lanes(self%list(b), lane, lane, self%list(b)%stack(self%list(b)%members), stacks, inertia, plate, &
-                       cohesive)
+                       self%step_square)
         self%list(b)%members = self%list(b)%members - 1
-        call join(self, i, self%list(b)%constrained, stacks, inertia, plate, cohesive)
+        call join(self, i, self%list(b)%constrained, stacks, inertia, plate)
       end do
     end do
   end subroutine move_damaged
 
   !> Adds a stack to a batch with free lanes, or to a new one, which it fills.
-  pure subroutine join(self, i, constrained, stacks, inertia, plate, cohesive)
+  pure subroutine join(self, i, constrained, stacks, inertia, plate)
     type(stack_batches_t), intent(inout) :: self
     !> Index of the stack
     integer, intent(in) :: i
     !> True: frames or lines constrain layers
     logical, intent(in) :: constrained
     type(interface_stacks_t), intent(in) :: stacks
-    !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(composite_plate_t), intent(in) :: plate
-    type(cohesive_interfaces_t), intent(in) :: cohesive
     integer :: last
 
     associate (open => self%open(stacks%layers(i), merge(1, 0, constrained) + merge(2, 0, stacks%damaged(i))))
@@ -138,7 +158,7 @@ contains
       end if
       associate (batch => self%list(open))
         batch%members = batch%members + 1
-        call set_lanes(batch, batch%members, last, i, stacks, inertia, plate, cohesive)
+        call set_lanes(batch, batch%members, last, i, stacks, inertia, plate, self%step_square)
       end associate
     end associate
   end subroutine join
@@ -155,28 +175,20 @@ contains
     self%damaged = damaged
     self%constrained = constrained
     allocate (self%height(lanes, n), self%inverse(lanes, 7, n + 1), self%stiffness(lanes, 2, n), &
-              self%diagonal(lanes, 3, n), self%off_diagonal(lanes, 3, n), self%factors(lanes, 2, 3, n), self%jumps)
-    allocate (self%jumps%last(lanes, 3, n), self%jumps%earlier(lanes, 3, n), self%jumps%forces(lanes, 3, n), &
-              self%jumps%lost(lanes, 2, n))
-    if (.not. damaged) allocate (self%min_onset(lanes, n))
-    if (.not. damaged) return
-    allocate (self%states(n))
-    associate (its => self%surfaces)
-      allocate (its%area(lanes, n), its%shear(lanes, n), its%opening(lanes, n), its%closing(lanes, n), &
-                its%toughness(lanes, n), its%failure_ratio(lanes, n), its%friction(lanes, n), its%contact(lanes, n))
-    end associate
+              self%diagonal(lanes, 3, n), self%off_diagonal(lanes, 3, n), self%factors(lanes, 2, 3, n))
+    if (damaged) allocate (self%surfaces(n))
   end subroutine allocate_batch
 
   !> Sets the constants of lanes.
-  pure subroutine set_lanes(self, from, to, i, stacks, inertia, plate, cohesive)
+  pure subroutine set_lanes(self, from, to, i, stacks, inertia, plate, step_square)
     type(stack_batch_t), intent(inout) :: self
     !> First and last lane, and index of the stack
     integer, intent(in) :: from, to, i
     type(interface_stacks_t), intent(in) :: stacks
-    !> Lumped inertia, inverted for this step
     type(nodal_inertia_t), intent(in) :: inertia
     type(composite_plate_t), intent(in) :: plate
-    type(cohesive_interfaces_t), intent(in) :: cohesive
+    !> Product of the step and the mean of it and the step before
+    real(wp), intent(in) :: step_square
     integer :: lane, p
 
     p = stacks%first(i)
@@ -186,91 +198,130 @@ contains
       self%height(lane, :) = stacks%height(p + 1:p + self%n)
       self%inverse(lane, :, :) = inertia%inverse(:, p:p + self%n)
       self%stiffness(lane, :, :) = stacks%stiffness(:, p + 1:p + self%n)
-      self%diagonal(lane, :, :) = stacks%diagonal(:, p + 1:p + self%n)
-      self%off_diagonal(lane, :, :) = stacks%off_diagonal(:, p + 1:p + self%n)
-      self%factors(lane, :, :, :) = stacks%factors(:, :, p + 1:p + self%n)
-      if (self%damaged) call set_surfaces(self%surfaces, lane, self%n, p, stacks, plate)
+      call couple(self, lane, step_square)
+      if (self%damaged) call set_surfaces(self%surfaces, lane, p, stacks, plate)
     end do
-    call self%jumps%load(self%first, from, to, stacks%history)
-    if (self%damaged) call load_states(self%states, self%first, from, to, cohesive, stacks%history)
-    call set_laws(self, from, to, stacks, cohesive)
   end subroutine set_lanes
 
-  !> Sets what flaws and fronts change in lanes: the reductions of laws, or the onset of damage.
-  pure subroutine set_laws(self, from, to, stacks, cohesive)
+  !> Compliances of the layers between the interfaces of a lane, and factors of an undamaged stack.
+  pure subroutine couple(self, lane, step_square)
     type(stack_batch_t), intent(inout) :: self
-    !> First and last lane
-    integer, intent(in) :: from, to
-    type(interface_stacks_t), intent(in) :: stacks
-    type(cohesive_interfaces_t), intent(in) :: cohesive
-    integer :: lane, j, p
+    !> The lane
+    integer, intent(in) :: lane
+    !> Product of the step and the mean of it and the step before
+    real(wp), intent(in) :: step_square
+    real(wp) :: upper(7), lower(7), next
+    integer :: j, k
 
     do j = 1, self%n
-      do lane = from, to
-        p = self%first(lane) + j
-        if (self%damaged) then
-          self%states(j)%part(lane) = cohesive%opening(p)
-          self%states(j)%opening(lane) = cohesive%opening(p)*self%surfaces%opening(lane, j)
-          self%states(j)%failure_ratio(lane) = self%surfaces%failure_ratio(lane, j)/cohesive%strength(p)**2
-        else
-          self%min_onset(lane, j) = stacks%min_onset(p)
-        end if
-      end do
-    end do
-  end subroutine set_laws
-
-  !> Updates the laws of all stacks, after flaws or fronts may have reduced them.
-  pure subroutine update_laws(self, stacks, cohesive)
-    class(stack_batches_t), intent(inout) :: self
-    type(interface_stacks_t), intent(in) :: stacks
-    type(cohesive_interfaces_t), intent(in) :: cohesive
-    integer :: b
-
-    do b = 1, self%filled
-      call set_laws(self%list(b), 1, lanes, stacks, cohesive)
-    end do
-  end subroutine update_laws
-
-  !> Stores the history of all stacks at their points, except for the damage, which is there.
-  pure subroutine store(self, history)
-    class(stack_batches_t), intent(in) :: self
-    type(jump_history_t), intent(inout) :: history
-    integer :: b
-
-    do b = 1, self%filled
-      associate (batch => self%list(b))
-        call batch%jumps%store(batch%first, 1, batch%members, history)
-        if (batch%damaged) call store_friction(batch%states, batch%first, batch%members, history)
+      upper = self%inverse(lane, :, j)
+      lower = self%inverse(lane, :, j + 1)
+      associate (z => self%height(lane, j))
+        self%diagonal(lane, :, j) = step_square*[coupling(upper(along_x:), z, z) + coupling(lower(along_x:), z, z), &
+                                                 coupling(upper(along_y:), z, z) + coupling(lower(along_y:), z, z), &
+                                                 upper(along_z) + lower(along_z)]
+        self%off_diagonal(lane, :, j) = 0
+        if (j == self%n) exit
+        next = self%height(lane, j + 1)
+        self%off_diagonal(lane, :, j) = -step_square*[coupling(lower(along_x:), z, next), &
+                                                      coupling(lower(along_y:), z, next), lower(along_z)]
       end associate
     end do
-  end subroutine store
-
-  !> Loads the jumps of all stacks, after others have changed them at the points.
-  pure subroutine load(self, history)
-    class(stack_batches_t), intent(inout) :: self
-    type(jump_history_t), intent(in) :: history
-    integer :: b
-
-    do b = 1, self%filled
-      call self%list(b)%jumps%load(self%list(b)%first, 1, lanes, history)
+    do k = 1, 3
+      call factorize(newest*self%stiffness(lane, merge(2, 1, k == 3), :), self%diagonal(lane, k, :), &
+                     self%off_diagonal(lane, k, :), self%factors(lane, :, k, :))
     end do
-  end subroutine load
+  end subroutine couple
 
-  !> Reduces the work done in the last step, as `damp` of the history.
-  pure subroutine damp(self, ratio)
-    class(stack_batches_t), intent(inout) :: self
-    !> Factor of the work
-    real(wp), intent(in) :: ratio
-    integer :: b, j
+  !> Displacement of a layer at one height by a unit force at another, divided by the square of the time, theory (T8).
+  pure real(wp) function coupling(inverse, z1, z2)
+    !> Inverse inertia of displacement, of both, of rotation
+    real(wp), intent(in) :: inverse(3)
+    !> The heights
+    real(wp), intent(in) :: z1, z2
 
-    do b = 1, self%filled
-      if (.not. self%list(b)%damaged) cycle
-      do j = 1, self%list(b)%n
-        associate (state => self%list(b)%states(j))
-          state%work = ratio*state%work
-          state%rubbing(:, 1) = ratio*state%rubbing(:, 1)
+    coupling = inverse(1) + inverse(2)*(z1 + z2) + inverse(3)*z1*z2
+  end function coupling
+
+  !> Sets the surfaces of a lane.
+  pure subroutine set_surfaces(surfaces, lane, first, stacks, plate)
+    !> One for each interface
+    type(surface_lanes_t), intent(inout) :: surfaces(:)
+    !> The lane, and first point of the stack
+    integer, intent(in) :: lane, first
+    type(interface_stacks_t), intent(in) :: stacks
+    type(composite_plate_t), intent(in) :: plate
+    integer :: j
+
+    do j = 1, size(surfaces)
+      associate (surface => surfaces(j), zone => plate%zone(first + j))
+        associate (law => plate%interfaces%cohesive_laws(zone))
+          surface%area(lane) = stacks%area(first + j)
+          surface%shear(lane) = law%stiffness_shear
+          surface%opening(lane) = law%stiffness_opening
+          surface%closing(lane) = law%stiffness_closing
+          surface%toughness(lane) = min(law%toughness_opening, law%toughness_shear)
+          surface%failure_ratio(lane) = law%failure_ratio
         end associate
-      end do
+        surface%friction(lane) = plate%setup%delaminations(zone)%friction
+        surface%contact(lane) = prevents_penetration(plate, zone)
+      end associate
     end do
-  end subroutine damp
+  end subroutine set_surfaces
+
+  !> Loads the surfaces of a damaged batch.
+  pure subroutine load_states(batch, cohesive, history, jumps, last, earlier, states)
+    type(stack_batch_t), intent(in) :: batch
+    type(cohesive_interfaces_t), intent(in) :: cohesive
+    type(jump_history_t), intent(in) :: history
+    !> Jumps, and their change in the last step and in the one before
+    real(wp), dimension(lanes, 3, batch%n), intent(in) :: jumps, last, earlier
+    type(surface_states_t), intent(out) :: states(batch%n)
+    integer :: lane, j, p
+
+    do j = 1, batch%n
+      associate (state => states(j))
+        do lane = 1, lanes
+          p = batch%first(lane) + j
+          associate (point => cohesive%points(p))
+            state%damage(lane) = point%damage
+            state%dissipated(lane) = point%dissipated
+            state%slip(lane, :) = point%sliding%slip
+            state%heat(lane) = point%sliding%heat
+          end associate
+          state%part(lane) = cohesive%opening(p)
+          state%failure_ratio(lane) = batch%surfaces(j)%failure_ratio(lane)/cohesive%strength(p)**2
+          state%sticking(lane, :) = history%sticking(:, p)
+          state%rubbing(lane, :) = history%rubbing(:, p)
+          state%work(lane) = history%work(p)
+        end do
+        state%opening = state%part*batch%surfaces(j)%opening
+        state%start = jumps(:, :, j)
+        state%last = last(:, :, j)
+        state%earlier = earlier(:, :, j)
+      end associate
+    end do
+  end subroutine load_states
+
+  !> Stores the surfaces of a damaged batch.
+  pure subroutine store_states(batch, states, cohesive, history)
+    type(stack_batch_t), intent(in) :: batch
+    type(surface_states_t), intent(in) :: states(batch%n)
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    type(jump_history_t), intent(inout) :: history
+    integer :: lane, j, p
+
+    do j = 1, batch%n
+      associate (state => states(j))
+        do lane = 1, batch%members
+          p = batch%first(lane) + j
+          cohesive%points(p) = cohesive_point_t(state%damage(lane), state%dissipated(lane), &
+                                                sliding_t(state%slip(lane, :), state%limit(lane), state%heat(lane)))
+          history%sticking(:, p) = state%sticking(lane, :)
+          history%rubbing(:, p) = state%rubbing(lane, :)
+          history%work(p) = state%work(lane)
+        end do
+      end associate
+    end do
+  end subroutine store_states
 end module stack_batches

@@ -9,10 +9,10 @@ module stack_motions
   use composite_plates, only: composite_plate_t
   use nodal_inertia, only: nodal_inertia_t
   use rig_steps, only: rig_steps_t
-  use stack_batches, only: new_stack_batches, stack_batch_t, stack_batches_t
-  use stack_lanes, only: jump_lanes_t, store_points, surface_states_t
+  use stack_batches, only: stack_batches_t, load_states, new_stack_batches, stack_batch_t, store_states, &
+                           surface_states_t
   use stack_solutions, only: friction_t, solve_damaged, solve_intact
-  use stack_updates, only: may_start, start_damage, update_damaged, update_intact
+  use stack_updates, only: start_damage, update_damaged, update_intact
   use step_lengths, only: step_lengths_t
   use tridiagonal_systems, only: solve_tractions
   use weighted_jumps, only: newest, past_jumps
@@ -30,26 +30,15 @@ module stack_motions
     type(interface_stacks_t) :: stacks
     !> Batches of stacks; unallocated: to be formed for the step
     type(stack_batches_t), allocatable :: batches
-    !> True: the laws of damaged points may have changed
-    logical :: laws_changed = .false.
     !> Lines
     type(line_steps_t) :: lines
     !> Frames and springs
     type(rig_steps_t) :: rigs
     !> The step taken last and the one before it
     type(step_lengths_t) :: steps
-  contains
-    procedure :: store_history
   end type nodal_steps_t
 
 contains
-
-  !> Stores the history of the jumps at the points.
-  pure subroutine store_history(self)
-    class(nodal_steps_t), intent(inout) :: self
-
-    if (allocated(self%batches)) call self%batches%store(self%stacks%history)
-  end subroutine store_history
 
   !> Updates all stacks.
   subroutine move_stacks(nodes, plate, cohesive, u, v)
@@ -65,12 +54,12 @@ contains
 
     call move_alloc(nodes%batches, batches)
     if (allocated(batches)) then
-      call batches%move_damaged(nodes%stacks, nodes%inertia, plate, cohesive)
-      if (nodes%laws_changed) call batches%update_laws(nodes%stacks, cohesive)
+      call batches%move_damaged(nodes%stacks, nodes%inertia, plate)
     else
-      batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, cohesive, are_constrained(nodes))
+      batches = new_stack_batches(nodes%stacks, nodes%inertia, plate, are_constrained(nodes), &
+                                  nodes%steps%now*nodes%steps%mean())
     end if
-    nodes%laws_changed = .false.
+    call nodes%stacks%history%begin_step()
     do b = 1, batches%filled
       if (batches%list(b)%members > 0) call move_batch(batches%list(b), nodes, plate, cohesive, u, v)
     end do
@@ -96,7 +85,7 @@ contains
 
   !> Updates the stacks of a batch.
   subroutine move_batch(batch, nodes, plate, cohesive, u, v)
-    type(stack_batch_t), intent(inout) :: batch
+    type(stack_batch_t), intent(in) :: batch
     !> The nodes
     type(nodal_steps_t), intent(inout) :: nodes
     type(composite_plate_t), intent(in) :: plate
@@ -104,26 +93,26 @@ contains
     !> Unknowns and their rates, (5, points)
     real(wp), contiguous, intent(inout) :: u(:, :), v(:, :)
     real(wp), dimension(lanes, 5, batch%n + 1) :: displacement, rates, loads, velocity
-    real(wp), dimension(lanes, 3, batch%n) :: start, trial, tractions, change
-    real(wp) :: normal(lanes, batch%n), given(lanes, 3, batch%n)
+    real(wp), dimension(lanes, 3, batch%n) :: jumps, trial, tractions, before, change, last
+    real(wp) :: lost(lanes, 2, batch%n), normal(lanes, batch%n), given(lanes, 3, batch%n)
+    type(surface_states_t) :: states(batch%n)
     type(friction_t) :: friction(batch%n)
-    type(surface_states_t), allocatable :: states(:)
-    type(jump_lanes_t), allocatable :: jumps
 
-    call move_alloc(batch%states, states)
-    call move_alloc(batch%jumps, jumps)
-    associate (n => batch%n, points => size(u, 2), steps => nodes%steps)
+    associate (n => batch%n, history => nodes%stacks%history, points => size(u, 2), steps => nodes%steps)
       call take(5, points, u, batch%first, n + 1, displacement)
-      start = displacement(:, :3, 2:)
+      call take(3, points, history%earlier, batch%first + 1, n, last)
+      call take(3, points, history%change, batch%first + 1, n, change)
+      call take(3, points, history%forces, batch%first + 1, n, before)
+      call take(2, points, history%lost, batch%first + 1, n, lost)
+      jumps = displacement(:, :3, 2:)
       call find_free_motion(batch, nodes, v, velocity, rates)
-      trial = start + steps%now*rates(:, :3, 2:)
+      trial = jumps + steps%now*rates(:, :3, 2:)
       if (batch%damaged) then
-        call begin_step(n, start, jumps, states)
-        call solve_damaged(batch, states, steps, plate, cohesive, nodes%stacks, trial, tractions, friction, &
-                           normal, given)
+        call load_states(batch, cohesive, history, jumps, last, change, states)
+        call solve_damaged(batch, states, steps, plate, cohesive, trial, tractions, friction, normal, given)
       else
-        call solve_intact(n, batch%factors, start, jumps%last, jumps%earlier, trial, tractions)
-        if (batch%constrained) call weigh_openings(n, batch%stiffness, start, jumps%last, jumps%earlier, normal, given)
+        call solve_intact(n, batch%factors, jumps, last, change, trial, tractions)
+        if (batch%constrained) call weigh_openings(n, batch%stiffness, jumps, last, change, normal, given)
       end if
       if (batch%constrained) &
         call stop_at_frames(batch, nodes%rigs, steps, displacement, velocity, normal, given, trial, tractions)
@@ -134,41 +123,19 @@ contains
       change = steps%now*rates(:, :3, 2:)
       displacement = displacement + steps%now*rates
       if (batch%damaged) then
-        call update_damaged(batch, states, steps, plate, cohesive, change, tractions, jumps%forces, friction, &
-                            jumps%lost)
-        call store_points(states, batch%first, batch%members, cohesive)
+        call update_damaged(batch, states, steps, plate, cohesive, change, tractions, before, friction, lost)
+        call store_states(batch, states, cohesive, history)
       else
-        call update_intact(batch, steps, start, change, jumps%last, tractions, jumps%forces, jumps%lost)
+        call update_intact(batch, steps, jumps, change, last, tractions, before, lost)
       end if
-      jumps%earlier = jumps%last
-      jumps%last = change
-      jumps%forces = tractions
       call put(5, points, displacement, batch%first, n + 1, batch%members, u)
       call put(5, points, rates, batch%first, n + 1, batch%members, v)
-      call put(3, points, tractions, batch%first + 1, n, batch%members, nodes%stacks%history%forces)
+      call put(3, points, change, batch%first + 1, n, batch%members, history%change)
+      call put(3, points, tractions, batch%first + 1, n, batch%members, history%forces)
+      call put(2, points, lost, batch%first + 1, n, batch%members, history%lost)
     end associate
-    if (.not. batch%damaged) call find_onsets(batch, nodes%stacks, plate, displacement, cohesive, u, jumps)
-    call move_alloc(states, batch%states)
-    call move_alloc(jumps, batch%jumps)
+    if (.not. batch%damaged) call start_damage(batch, nodes%stacks, plate, displacement, cohesive, u)
   end subroutine move_batch
-
-  !> Jumps of the surfaces of damaged stacks at the start of a step.
-  pure subroutine begin_step(n, start, jumps, states)
-    !> Number of interfaces
-    integer, intent(in) :: n
-    !> The jumps, and their changes in earlier steps
-    real(wp), intent(in) :: start(lanes, 3, n)
-    type(jump_lanes_t), intent(in) :: jumps
-    !> Receive them
-    type(surface_states_t), intent(inout) :: states(n)
-    integer :: j
-
-    do j = 1, n
-      states(j)%start = start(:, :, j)
-      states(j)%last = jumps%last(:, :, j)
-      states(j)%earlier = jumps%earlier(:, :, j)
-    end do
-  end subroutine begin_step
 
   !> Velocities of layers, and rates of the unknowns, at the end of a step without tractions.
   pure subroutine find_free_motion(batch, nodes, v, velocity, rates)
@@ -207,18 +174,19 @@ contains
     real(wp), dimension(lanes, 3, n), intent(in) :: jumps, last, earlier
     !> Force per opening, and given parts of the forces; those along the jumps are not used
     real(wp), intent(out) :: normal(lanes, n), given(lanes, 3, n)
+    integer :: j
 
     normal = newest*stiffness(:, 2, :)
     given = 0
-    given(:, 3, :) = stiffness(:, 2, :)*past_jumps(jumps(:, 3, :), last(:, 3, :), earlier(:, 3, :))
+    do j = 1, n
+      given(:, 3, j) = stiffness(:, 2, j)*past_jumps(jumps(:, 3, j), last(:, 3, j), earlier(:, 3, j))
+    end do
   end subroutine weigh_openings
 
   !> Stops lowest layers at frames that they would penetrate.
   pure subroutine stop_at_frames(batch, rigs, steps, displacement, velocity, normal, given, trial, forces)
     type(stack_batch_t), intent(in) :: batch
-    !> The frames
     type(rig_steps_t), intent(inout) :: rigs
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Unknowns at the start of the step, and velocities of the layers without tractions
     real(wp), dimension(lanes, 5, batch%n + 1), intent(in) :: displacement, velocity
@@ -283,32 +251,6 @@ contains
       end do
     end do
   end subroutine record_reactions
-
-  !> Finds the onset of damage in undamaged stacks.
-  subroutine find_onsets(batch, stacks, plate, displacement, cohesive, u, jumps)
-    type(stack_batch_t), intent(in) :: batch
-    !> The stacks; are damaged if an interface is
-    type(interface_stacks_t), intent(inout) :: stacks
-    type(composite_plate_t), intent(in) :: plate
-    !> Unknowns at the end of the step
-    real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
-    type(cohesive_interfaces_t), intent(inout) :: cohesive
-    !> The same of all points, (5, points)
-    real(wp), intent(in) :: u(:, :)
-    !> The jumps of the batch
-    type(jump_lanes_t), intent(inout) :: jumps
-    logical :: starts(lanes)
-    integer :: lane
-
-    starts = may_start(batch, batch%min_onset, displacement)
-    if (.not. any(starts)) return
-    do lane = 1, batch%members
-      if (.not. starts(lane)) cycle
-      call jumps%store(batch%first, lane, lane, stacks%history)
-      call start_damage(stacks, batch%stack(lane), plate, cohesive, u)
-      call jumps%load(batch%first, lane, lane, stacks%history)
-    end do
-  end subroutine find_onsets
 
   !> Values of consecutive points from the first of each lane on. In this module, and with arrays of explicit shape,
   !> the loop over the values of a point is unrolled, here and in `put`.

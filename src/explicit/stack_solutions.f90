@@ -13,15 +13,13 @@ module stack_solutions
   use cohesive_points, only: cohesive_point_t, grown_damage, opened, separation_of
   use cohesive_surfaces, only: cohesive_surfaces_t
   use element_batches, only: lanes
-  use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
   use roundings, only: rounding
-  use stack_batches, only: stack_batch_t
-  use stack_lanes, only: surface_states_t
+  use stack_batches, only: stack_batch_t, surface_lanes_t, surface_states_t
   use step_lengths, only: step_lengths_t
   use tridiagonal_systems, only: solve_factored, solve_tractions
-  use weighted_jumps, only: newest, past_jumps_in_lanes, past_openings_in_lanes, past_weights
+  use weighted_jumps, only: newest, past_jumps, past_openings, past_weights
   implicit none
   private
   public :: friction_t, energy_of, may_grow, solve_damaged, solve_intact
@@ -59,20 +57,16 @@ contains
   end subroutine solve_intact
 
   !> Forces of damaged stacks, with corrections where damage grows.
-  pure subroutine solve_damaged(batch, states, steps, plate, cohesive, stacks, trial, forces, friction, normal, given)
+  pure subroutine solve_damaged(batch, states, steps, plate, cohesive, trial, forces, friction, normal, given)
     type(stack_batch_t), intent(in) :: batch
-    !> Their surfaces
     type(surface_states_t), intent(in) :: states(batch%n)
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     type(composite_plate_t), intent(in) :: plate
     type(cohesive_interfaces_t), intent(in) :: cohesive
-    type(interface_stacks_t), intent(in) :: stacks
     !> Jumps at the end without tractions
     real(wp), intent(in) :: trial(lanes, 3, batch%n)
     !> Forces on the jumps
     real(wp), intent(out) :: forces(lanes, 3, batch%n)
-    !> Friction of each interface
     type(friction_t), intent(out) :: friction(batch%n)
     !> Force per opening with the contacts found, and parts of the forces that do not depend on the jumps at the end
     real(wp), intent(out) :: normal(lanes, batch%n), given(lanes, 3, batch%n)
@@ -87,12 +81,12 @@ contains
     call find_jumps(batch, trial, forces, jumps)
     any_grows = .false.
     do j = 1, batch%n
-      grows = may_grow(batch, j, states(j), jumps(:, :, j))
+      grows = may_grow(batch%surfaces(j), states(j), jumps(:, :, j))
       if (.not. any(grows)) cycle
       do lane = 1, lanes
         if (.not. grows(lane)) cycle
         associate (p => batch%first(lane) + j)
-          call correct_force(cohesive%surfaces_of(plate, p), cohesive%points(p), stacks%area(p), &
+          call correct_force(cohesive%surfaces_of(plate, p), cohesive%points(p), batch%surfaces(j)%area(lane), &
                              states(j)%work(lane), states(j)%start(lane, :), jumps(lane, :, j), &
                              steps%kept*states(j)%last(lane, :), secant(lane, :, j), given(lane, :, j), grows(lane))
         end associate
@@ -107,7 +101,6 @@ contains
   !> Stiffness of the weighted jumps and contribution of the earlier ones, with the damage at the start.
   pure subroutine weigh_jumps(batch, states, secant, given, friction)
     type(stack_batch_t), intent(in) :: batch
-    !> Their surfaces
     type(surface_states_t), intent(in) :: states(batch%n)
     !> Force per jump at the end of the step, shear and opening, and the part of the forces that does not depend on
     !> these jumps
@@ -123,14 +116,13 @@ contains
         secant(:, 1, j) = intact*batch%stiffness(:, 1, j)
         secant(:, 2, j) = intact*state%part*batch%stiffness(:, 2, j)
         do k = 1, 2
-          friction(j)%past(:, k) = past_jumps_in_lanes(state%start(:, k) - state%slip(:, k), state%sticking(:, k), &
-                                                       state%sticking(:, k + 2))
-          given(:, k, j) = secant(:, 1, j) &
-                           *past_jumps_in_lanes(state%start(:, k), state%last(:, k), state%earlier(:, k))
+          friction(j)%past(:, k) = past_jumps(state%start(:, k) - state%slip(:, k), state%sticking(:, k), &
+                                              state%sticking(:, k + 2))
+          given(:, k, j) = secant(:, 1, j)*past_jumps(state%start(:, k), state%last(:, k), state%earlier(:, k))
         end do
         given(:, 3, j) = secant(:, 2, j)*merge( &
-          past_openings_in_lanes(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), &
-          past_jumps_in_lanes(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), batch%surfaces%contact(:, j))
+          past_openings(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), &
+          past_jumps(state%start(:, 3), state%last(:, 3), state%earlier(:, 3)), batch%surfaces(j)%contact)
         secant(:, :, j) = newest*secant(:, :, j)
       end associate
     end do
@@ -140,7 +132,6 @@ contains
   !> the law is monotonic, so the iteration converges. Lanes that have converged repeat their solution.
   pure subroutine solve_openings(batch, states, secant, given, trial, forces, friction, normal)
     type(stack_batch_t), intent(in) :: batch
-    !> Their surfaces
     type(surface_states_t), intent(in) :: states(batch%n)
     !> Force per jump, and forces without it
     real(wp), intent(in) :: secant(lanes, 2, batch%n), given(lanes, 3, batch%n)
@@ -157,7 +148,7 @@ contains
     integer :: iteration, j
 
     do j = 1, batch%n
-      closed(:, j) = states(j)%start(:, 3) < 0 .and. batch%surfaces%contact(:, j)
+      closed(:, j) = states(j)%start(:, 3) < 0 .and. batch%surfaces(j)%contact
     end do
     do iteration = 0, batch%n + 1
       normal = merge(batch%stiffness(:, 2, :), secant(:, 2, :), closed)
@@ -165,15 +156,15 @@ contains
       call find_reduction(batch, 3, forces, reduction)
       changed = .false.
       do j = 1, batch%n
-        now = trial(:, 3, j) - reduction(:, j) < 0 .and. batch%surfaces%contact(:, j)
+        now = trial(:, 3, j) - reduction(:, j) < 0 .and. batch%surfaces(j)%contact
         changed = changed .or. any(now .neqv. closed(:, j))
         closed(:, j) = now
       end do
       if (.not. changed) exit
     end do
     do j = 1, batch%n
-      friction(j)%limit = merge(batch%surfaces%friction(:, j)*states(j)%damage*max(0.0_wp, -forces(:, 3, j)), 0.0_wp, &
-                                batch%surfaces%contact(:, j))
+      friction(j)%limit = merge(batch%surfaces(j)%friction*states(j)%damage*max(0.0_wp, -forces(:, 3, j)), 0.0_wp, &
+                                batch%surfaces(j)%contact)
     end do
   end subroutine solve_openings
 
@@ -214,7 +205,6 @@ contains
   !> Tangential forces: of the cohesive law, and of friction with elastic sticking up to its limit.
   pure subroutine solve_shears(batch, states, secant, given, trial, forces, friction)
     type(stack_batch_t), intent(in) :: batch
-    !> Their surfaces
     type(surface_states_t), intent(in) :: states(batch%n)
     !> Force per jump, and forces without it
     real(wp), intent(in) :: secant(lanes, 2, batch%n), given(lanes, 3, batch%n)
@@ -296,11 +286,8 @@ contains
   end subroutine solve_both
 
   !> False where jumps certainly do not increase the damage, as `may_grow` of `cohesive_points`.
-  pure function may_grow(batch, j, state, jumps) result(grows)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
-    !> Its surfaces
+  pure function may_grow(surface, state, jumps) result(grows)
+    type(surface_lanes_t), intent(in) :: surface
     type(surface_states_t), intent(in) :: state
     !> Two shears and opening
     real(wp), intent(in) :: jumps(lanes, 3)
@@ -309,23 +296,20 @@ contains
     real(wp) :: ratio(lanes)
 
     ratio = state%failure_ratio/(state%failure_ratio - state%damage*(state%failure_ratio - 1))
-    grows = state%damage < 1 .and. .not. state%failure_ratio*energy_of(batch, j, state, jumps) &
-            < (1 - rounding)*batch%surfaces%toughness(:, j)*ratio**2
+    grows = state%damage < 1 .and. .not. state%failure_ratio*energy_of(surface, state, jumps) &
+            < (1 - rounding)*surface%toughness*ratio**2
   end function may_grow
 
   !> Energy per area of jumps of an undamaged interface, without that of closing.
-  pure function energy_of(batch, j, state, jumps) result(energy)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
-    !> Its surfaces
+  pure function energy_of(surface, state, jumps) result(energy)
+    type(surface_lanes_t), intent(in) :: surface
     type(surface_states_t), intent(in) :: state
     !> Two shears and opening
     real(wp), intent(in) :: jumps(lanes, 3)
     !> One for each lane
     real(wp) :: energy(lanes)
 
-    energy = (batch%surfaces%shear(:, j)*(jumps(:, 1)**2 + jumps(:, 2)**2) &
+    energy = (surface%shear*(jumps(:, 1)**2 + jumps(:, 2)**2) &
               + state%opening*max(jumps(:, 3), 0.0_wp)**2)/2
   end function energy_of
 

@@ -11,21 +11,19 @@ module stack_updates
   use interface_stacks, only: interface_stacks_t
   use kinds, only: wp
   use composite_plates, only: composite_plate_t
-  use stack_batches, only: stack_batch_t
-  use stack_lanes, only: surface_states_t
+  use stack_batches, only: stack_batch_t, surface_lanes_t, surface_states_t
   use stack_solutions, only: energy_of, friction_t, may_grow
   use step_lengths, only: step_lengths_t
   use weighted_jumps, only: memory
   implicit none
   private
-  public :: may_start, start_damage, update_damaged, update_intact
+  public :: start_damage, update_damaged, update_intact
 
 contains
 
   !> Adds the work of the tractions of undamaged stacks beyond the stored energy k (jump**2 - u**2)/2.
   pure subroutine update_intact(batch, steps, start, change, last, forces, before, lost)
     type(stack_batch_t), intent(in) :: batch
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Jumps at the start of the step, their change in this step and in the last
     real(wp), dimension(lanes, 3, batch%n), intent(in) :: start, change, last
@@ -48,7 +46,6 @@ contains
 
   !> Decrease of the kinetic energy at whole steps by the forces on jumps.
   pure function work_of(steps, forces, before, change, last) result(work)
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Forces in this step and in the last
     real(wp), intent(in) :: forces(lanes, 3), before(lanes, 3)
@@ -65,29 +62,35 @@ contains
     work = works(:, 1) + works(:, 2) + works(:, 3)
   end function work_of
 
-  !> Stacks with an interface whose energy is not below the smallest at which damage starts.
-  pure function may_start(batch, min_onset, displacement) result(starts)
+  !> Finds the onset of damage in undamaged stacks at the jumps at the end of a step.
+  subroutine start_damage(batch, stacks, plate, displacement, cohesive, u)
     type(stack_batch_t), intent(in) :: batch
-    !> Twice the smallest energy
-    real(wp), intent(in) :: min_onset(lanes, batch%n)
-    !> Unknowns
+    !> The stacks; are damaged if an interface is
+    type(interface_stacks_t), intent(inout) :: stacks
+    type(composite_plate_t), intent(in) :: plate
+    !> Unknowns at the end of the step
     real(wp), intent(in) :: displacement(lanes, 5, batch%n + 1)
-    !> True for such stacks
+    type(cohesive_interfaces_t), intent(inout) :: cohesive
+    !> The same of all points, (5, points)
+    real(wp), intent(in) :: u(:, :)
     logical :: starts(lanes)
-    integer :: j
+    integer :: j, lane
 
     starts = .false.
     do j = 1, batch%n
       associate (jump => displacement(:, :3, j + 1))
         starts = starts .or. .not. batch%stiffness(:, 1, j)*(jump(:, 1)**2 + jump(:, 2)**2) &
-                 + batch%stiffness(:, 2, j)*max(jump(:, 3), 0.0_wp)**2 < min_onset(:, j)
+                 + batch%stiffness(:, 2, j)*max(jump(:, 3), 0.0_wp)**2 < stacks%min_onset(batch%first + j)
       end associate
     end do
-  end function may_start
+    if (.not. any(starts)) return
+    do lane = 1, batch%members
+      if (starts(lane)) call start_in_stack(stacks, batch%stack(lane), plate, cohesive, u)
+    end do
+  end subroutine start_damage
 
-  !> Finds the onset of damage of a stack at the jumps at the end of a step.
-  subroutine start_damage(stacks, i, plate, cohesive, u)
-    !> The stacks; the stack is damaged if an interface is
+  !> Finds the onset of damage of a stack.
+  subroutine start_in_stack(stacks, i, plate, cohesive, u)
     type(interface_stacks_t), intent(inout) :: stacks
     !> Index of the stack
     integer, intent(in) :: i
@@ -116,7 +119,7 @@ contains
       end do
       if (begins) call stacks%mark_damaged(i, cohesive, u)
     end associate
-  end subroutine start_damage
+  end subroutine start_in_stack
 
   !> Updates damage and friction of damaged stacks, and adds the work of the tractions beyond what surfaces store and
   !> dissipate.
@@ -124,10 +127,8 @@ contains
     type(stack_batch_t), intent(in) :: batch
     !> Their surfaces; are updated
     type(surface_states_t), intent(inout) :: states(batch%n)
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     type(composite_plate_t), intent(in) :: plate
-    !> The interfaces at the start
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Change of the jumps, and forces on them in this step and in the last
     real(wp), dimension(lanes, 3, batch%n), intent(in) :: change, forces, before
@@ -141,14 +142,14 @@ contains
 
     do j = 1, batch%n
       old = states(j)
-      associate (new => states(j), area => batch%surfaces%area(:, j))
+      associate (new => states(j), surface => batch%surfaces(j), area => batch%surfaces(j)%area)
         to = old%start + change(:, :, j)
         work = work_of(steps, forces(:, :, j), before(:, :, j), change(:, :, j), old%last)
         call grow_damage(batch, j, plate, cohesive, to, new)
-        call slip_surfaces(batch, j, friction(j), to, change(:, :, j), steps%kept*old%last, new)
+        call slip_surfaces(surface, friction(j), to, change(:, :, j), steps%kept*old%last, new)
         in_contact = lost_in_contact(batch, j, steps, old%start(:, 3), change(:, 3, j), old%last(:, 3)) &
-                     + area*closing_loss(batch, j, old%start(:, 3), to(:, 3), new%damage - old%damage)
-        released = stored(batch, j, new, to) - stored(batch, j, old, old%start) + (new%dissipated - old%dissipated) &
+                     + area*closing_loss(surface, old%start(:, 3), to(:, 3), new%damage - old%damage)
+        released = stored(surface, new, to) - stored(surface, old, old%start) + (new%dissipated - old%dissipated) &
                    + new%heat - old%heat
         lost(:, 1, j) = lost(:, 1, j) + in_contact
         lost(:, 2, j) = lost(:, 2, j) + (work - in_contact - area*released)
@@ -163,7 +164,6 @@ contains
     !> The interface
     integer, intent(in) :: j
     type(composite_plate_t), intent(in) :: plate
-    !> The interfaces at the start
     type(cohesive_interfaces_t), intent(in) :: cohesive
     !> Jumps at the end
     real(wp), intent(in) :: to(lanes, 3)
@@ -175,12 +175,12 @@ contains
     logical :: grows(lanes)
     integer :: lane
 
-    state%work = (1 - state%damage)*energy_of(batch, j, state, to) &
-                 - (1 - state%damage)*energy_of(batch, j, state, state%start)
-    where (.not. batch%surfaces%contact(:, j)) state%work = state%work + batch%surfaces%closing(:, j)/2* &
+    state%work = (1 - state%damage)*energy_of(batch%surfaces(j), state, to) &
+                 - (1 - state%damage)*energy_of(batch%surfaces(j), state, state%start)
+    where (.not. batch%surfaces(j)%contact) state%work = state%work + batch%surfaces(j)%closing/2* &
       ((1 - state%damage)*min(to(:, 3), 0.0_wp)**2 - (1 - state%damage)*min(state%start(:, 3), 0.0_wp)**2)
     if (cohesive%is_held) return
-    grows = may_grow(batch, j, state, to)
+    grows = may_grow(batch%surfaces(j), state, to)
     if (.not. any(grows)) return
     do lane = 1, lanes
       if (.not. grows(lane)) cycle
@@ -195,23 +195,18 @@ contains
   end subroutine grow_damage
 
   !> Energy per area stored by the jumps.
-  pure function stored(batch, j, state, jumps) result(energy)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
-    !> Its surfaces with these jumps
+  pure function stored(surface, state, jumps) result(energy)
+    type(surface_lanes_t), intent(in) :: surface
     type(surface_states_t), intent(in) :: state
     !> Two shears and opening
     real(wp), intent(in) :: jumps(lanes, 3)
     !> One for each lane
     real(wp) :: energy(lanes)
 
-    associate (surfaces => batch%surfaces)
-      energy = (1 - state%damage)*energy_of(batch, j, state, jumps) &
-               + merge(1.0_wp, 1 - state%damage, surfaces%contact(:, j)) &
-               *surfaces%closing(:, j)*min(jumps(:, 3), 0.0_wp)**2/2 &
-               + merge(sticking_energy(surfaces%shear(:, j), jumps, state%slip), 0.0_wp, surfaces%friction(:, j) > 0)
-    end associate
+    energy = (1 - state%damage)*energy_of(surface, state, jumps) &
+             + merge(1.0_wp, 1 - state%damage, surface%contact) &
+             *surface%closing*min(jumps(:, 3), 0.0_wp)**2/2 &
+             + merge(sticking_energy(surface%shear, jumps, state%slip), 0.0_wp, surface%friction > 0)
   end function stored
 
   !> Elastic energy per area of sticking surfaces.
@@ -227,17 +222,15 @@ contains
   end function sticking_energy
 
   !> Energy per area that closed surfaces without contact lose by growing damage, by the trapezoidal rule.
-  pure function closing_loss(batch, j, from, to, growth) result(loss)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
+  pure function closing_loss(surface, from, to, growth) result(loss)
+    type(surface_lanes_t), intent(in) :: surface
     !> Opening at the start and at the end, and growth of damage
     real(wp), intent(in) :: from(lanes), to(lanes), growth(lanes)
     !> One for each lane
     real(wp) :: loss(lanes)
 
-    loss = merge(0.0_wp, batch%surfaces%closing(:, j)*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2, &
-                 batch%surfaces%contact(:, j))
+    loss = merge(0.0_wp, surface%closing*growth*min(from, 0.0_wp)*min(to, 0.0_wp)/2, &
+                 surface%contact)
   end function closing_loss
 
   !> Work of the pressure of closed surfaces, a spring at the end of each step, beyond the energy that it stores.
@@ -245,7 +238,6 @@ contains
     type(stack_batch_t), intent(in) :: batch
     !> The interface
     integer, intent(in) :: j
-    !> The step and the one before
     type(step_lengths_t), intent(in) :: steps
     !> Opening at the start of the step, its change and, without damping, that in the last step
     real(wp), intent(in) :: before(lanes), change(lanes), last(lanes)
@@ -256,17 +248,14 @@ contains
     from = min(before, 0.0_wp)
     to = min(before + change, 0.0_wp)
     lost = merge(batch%stiffness(:, 2, j)*(steps%work_in_lanes(to, from, change, steps%kept*last) &
-                                           - (to**2 - from**2)/2), 0.0_wp, batch%surfaces%contact(:, j))
+                                           - (to**2 - from**2)/2), 0.0_wp, batch%surfaces(j)%contact)
   end function lost_in_contact
 
   !> Slip of surfaces, change of their elastic jumps, and heat, theory (T11): the work of friction less half of the
   !> change of the energy of sticking in this step and half of that in the step before, while forces depend on a slip.
   !> Negative values are subtracted from later heat.
-  pure subroutine slip_surfaces(batch, j, friction, to, change, last, state)
-    type(stack_batch_t), intent(in) :: batch
-    !> The interface
-    integer, intent(in) :: j
-    !> Friction in the step
+  pure subroutine slip_surfaces(surface, friction, to, change, last, state)
+    type(surface_lanes_t), intent(in) :: surface
     type(friction_t), intent(in) :: friction
     !> Jumps at the end, their change, and that in the last step
     real(wp), dimension(lanes, 3), intent(in) :: to, change, last
@@ -276,14 +265,14 @@ contains
     logical, dimension(lanes) :: rubs, free, moves
     integer :: k
 
-    rubs = batch%surfaces%friction(:, j) > 0
-    state%limit = friction%limit/batch%surfaces%area(:, j)
+    rubs = surface%friction > 0
+    state%limit = friction%limit/surface%area
     if (.not. any(rubs)) then
       state%slip = 0
       state%heat = 0
       return
     end if
-    before = sticking_energy(batch%surfaces%shear(:, j), state%start, state%slip)
+    before = sticking_energy(surface%shear, state%start, state%slip)
     free = .not. friction%limit > 0
     moves = .false.
     do k = 1, 2
@@ -294,17 +283,19 @@ contains
       ! Forces of slipping surfaces do not depend on the forces before the slip.
       state%sticking(:, k) = merge(0.0_wp, change(:, k), friction%slips .or. free)
     end do
-    after = sticking_energy(batch%surfaces%shear(:, j), to, state%slip) - before
+    after = sticking_energy(surface%shear, to, state%slip) - before
     work = (friction%force(:, 1)*(change(:, 1) + last(:, 1)) + friction%force(:, 2)*(change(:, 2) + last(:, 2))) &
-           /(2*batch%surfaces%area(:, j))
-    where (moves) state%steps = real(memory, wp)
-    where (rubs .and. state%steps > 0)
-      heat = work - (after + state%rubbing(:, 1))/2 - state%rubbing(:, 2)
-      state%heat = state%heat + max(0.0_wp, heat)
-      state%steps = state%steps - 1
-      state%rubbing(:, 2) = max(0.0_wp, -heat)
-    end where
-    where (rubs) state%rubbing(:, 1) = after
+           /(2*surface%area)
+    associate (steps => state%rubbing(:, 1), sticking => state%rubbing(:, 2), deficit => state%rubbing(:, 3))
+      where (moves) steps = real(memory, wp)
+      where (rubs .and. steps > 0)
+        heat = work - (after + sticking)/2 - deficit
+        state%heat = state%heat + max(0.0_wp, heat)
+        steps = steps - 1
+        deficit = max(0.0_wp, -heat)
+      end where
+      where (rubs) sticking = after
+    end associate
     where (.not. rubs) state%heat = 0
   end subroutine slip_surfaces
 end module stack_updates

@@ -10,8 +10,7 @@ module weighted_jumps
   use kinds, only: wp
   implicit none
   private
-  public :: memory, newest, past_weights, past_jumps, past_openings, past_jumps_in_lanes, &
-            past_openings_in_lanes
+  public :: memory, newest, past_weights, past_jumps, past_openings
 
   !> Factor per step by which motions of stiff springs decay, the spectral radius. With 0.5 and 0.8 instead of 0.9
   !> `energy_algorithmic` is up to 3 and 1.5 times larger, with the same areas and forces
@@ -32,37 +31,23 @@ module weighted_jumps
 contains
 
   !> Contribution of earlier jumps to the weighted mean.
-  elemental real(wp) function past_jumps(start, change, earlier)
+  pure function past_jumps(start, change, earlier) result(past)
     !> Jump at the start of the step, its change in the step before, and its change in the step before that
-    real(wp), intent(in) :: start, change, earlier
+    real(wp), dimension(lanes), intent(in) :: start, change, earlier
+    !> One for each lane
+    real(wp) :: past(lanes)
 
-    past_jumps = past_weights(1)*start - past_weights(2)*change - past_weights(3)*earlier
+    past = past_weights(1)*start - past_weights(2)*change - past_weights(3)*earlier
   end function past_jumps
 
   !> The same for openings. Negative openings are carried by contact and do not contribute.
-  elemental real(wp) function past_openings(start, change, earlier)
+  pure function past_openings(start, change, earlier) result(past)
     !> Opening at the start of the step, its change in the step before, and its change in the step before that
-    real(wp), intent(in) :: start, change, earlier
+    real(wp), dimension(lanes), intent(in) :: start, change, earlier
+    !> One for each lane
+    real(wp) :: past(lanes)
 
-    past_openings = weights(1)*max(0.0_wp, start) + weights(2)*max(0.0_wp, start - change) &
-                    + weights(3)*max(0.0_wp, start - change - earlier)
+    past = weights(1)*max(0.0_wp, start) + weights(2)*max(0.0_wp, start - change) &
+           + weights(3)*max(0.0_wp, start - change - earlier)
   end function past_openings
-
-  !> `past_jumps` for the lanes of a batch: here the elemental function is expanded and vectorized.
-  pure function past_jumps_in_lanes(start, change, earlier) result(past)
-    !> As there
-    real(wp), dimension(lanes), intent(in) :: start, change, earlier
-    real(wp) :: past(lanes)
-
-    past = past_jumps(start, change, earlier)
-  end function past_jumps_in_lanes
-
-  !> `past_openings` for the lanes of a batch.
-  pure function past_openings_in_lanes(start, change, earlier) result(past)
-    !> As there
-    real(wp), dimension(lanes), intent(in) :: start, change, earlier
-    real(wp) :: past(lanes)
-
-    past = past_openings(start, change, earlier)
-  end function past_openings_in_lanes
 end module weighted_jumps

@@ -40,23 +40,34 @@ contains
     end associate
   end subroutine build_loads
 
-  !> Area of each point of the struck face. On the edge of a doubler that may come off the struck face it is that of the
-  !> doubler: the step of the surface there is not modelled, and a load acts on w of the first layer. Collective.
+  !> Area of each point of the struck face. Collective.
   function struck_areas(plate, patch) result(areas)
     type(composite_plate_t), intent(in) :: plate
     !> Side of the patch; left out: the area is that of the face
     real(wp), intent(in), optional :: patch
     !> (local points); ghosts zero
     real(wp), allocatable :: areas(:)
+    real(wp) :: field(1, plate%halo%points)
+
+    field(1, :) = plate%nodal_areas(struck_elements(plate, patch))
+    call move_to_first_layer(plate, field)
+    areas = field(1, :)
+  end function struck_areas
+
+  !> Moves what acts on the struck face to the first layer. On the edge of a doubler that may come off this face the
+  !> laminate beside it is the second one; the step of the surface there is not modelled.
+  pure subroutine move_to_first_layer(plate, field)
+    type(composite_plate_t), intent(in) :: plate
+    !> Values of the points of the struck face, (rows, local points)
+    real(wp), intent(inout) :: field(:, :)
     integer :: i
 
-    areas = plate%nodal_areas(struck_elements(plate, patch))
-    do i = 1, size(areas)
-      if (plate%map%above(i) == 0 .or. .not. areas(i) > 0) cycle
-      areas(plate%map%above(i)) = areas(plate%map%above(i)) + areas(i)
-      areas(i) = 0
+    do i = 1, size(field, 2)
+      if (plate%map%above(i) == 0) cycle
+      field(:, plate%map%above(i)) = field(:, plate%map%above(i)) + field(:, i)
+      field(:, i) = 0
     end do
-  end function struck_areas
+  end subroutine move_to_first_layer
 
   !> This rank's elements of the struck layer, ascending: those under the patch, or all.
   pure function struck_elements(plate, patch) result(elements)
@@ -128,7 +139,6 @@ contains
     call add_pressure(plate%elements, pressure, forces)
     call plate%borders%add(forces)
     loads = forces(:, :plate%halo%points)
-    ! Where a doubler on the struck face ends, the laminate beside it is not the first layer.
-    if (plate%map%layered) call plate%map%to_unknowns(loads)
+    call move_to_first_layer(plate, loads)
   end subroutine build_pressure
 end module model_loads

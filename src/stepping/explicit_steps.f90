@@ -42,7 +42,6 @@ contains
     if (modulo(now%step, steps_between_flaws) > 0) return
     call model%plate%profile%enter('flaws')
     call update_flaws(model%plate, now%plies, now%motion%displacement, now%interfaces)
-    method%laws_changed = .true.
     if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
     call model%plate%profile%leave()
   end subroutine advance_explicit
@@ -55,7 +54,6 @@ contains
     type(state_t), intent(inout) :: now
 
     call now%hold_damage(.false.)
-    method%laws_changed = .true.
     if (model%plate%map%layered) call method%stacks%find_onsets(model, now%interfaces%cohesive)
   end subroutine release_damage
 
@@ -75,7 +73,7 @@ contains
   !> Computes energies, reactions and stress, which are needed only when output or a check is due. Collective.
   subroutine complete_step(method, model, now, error)
     !> Central differences
-    type(central_difference_t), intent(inout) :: method
+    type(central_difference_t), intent(in) :: method
     type(model_t), intent(in) :: model
     type(state_t), intent(inout) :: now
     !> Set if the motion has become unstable

@@ -37,6 +37,8 @@ MODELS = {"fronts": ("../small/damage.nml", [*GROWING, "time%end=400e-6", "outpu
                                                      "output%fields_every=30e-6"])}
 # Range of the signals: the fronts grow until 170e-6, and a run outlasts the latest signal by a dozen steps.
 SIGNALLED = "time%end=240e-6"
+# A few steps behind the checkpoint of a signal at the start.
+SHORT = "time%end=60e-6"
 PATIENCE = 1800  # seconds, on a busy machine
 MPIRUN_STOPPED = 1  # exit code of Open MPI's launcher after TERM and INT
 
@@ -245,8 +247,8 @@ def check_early(implam, folder, _, launcher):
     library = folder / "early.so"
     folder.mkdir(parents=True)
     run(["cc", "-shared", "-fPIC", "-o", library, HERE.parent / "support/early_signals.c", "-ldl"])
-    models = {1: Model(implam, folder / "1", "fronts", settings=[SIGNALLED]),
-              2: Model(implam, folder / "2", "fronts", (*launcher, "2"), [SIGNALLED])}
+    models = {1: Model(implam, folder / "1", "fronts", settings=[SHORT]),
+              2: Model(implam, folder / "2", "fronts", (*launcher, "2"), [SHORT])}
     cases = [("load", stop, 1) for stop in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)]
     for moment, stop, ranks in (*cases, ("metis", signal.SIGTERM, 2)):
         model, mark = models[ranks], folder / "mark"

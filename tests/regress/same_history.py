@@ -5,7 +5,7 @@ Usage: same_history.py ranks IMPLAM DECK FOLDER TOLERANCE LAUNCHER... [-- SETTIN
        same_history.py mirror IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
        same_history.py tolerances IMPLAM DECK FOLDER TOLERANCE [-- SETTING...]
 
-ranks    on 1 and 3 ranks, and from the checkpoint of 3 ranks on 2
+ranks    on 1 and 2 ranks, and from the checkpoint of 2 ranks on 3
 all_ranks  on 1 to 3 ranks, and from a checkpoint on another number of ranks, up to 4
 quarter  a quarter of the plate against the full one
 half_x   a half along x against the full plate
@@ -44,14 +44,15 @@ from solver_runs import (
 COUNTS = ("iterations", "force_iterations", "contact_iterations", "total_iterations", "total_force_iterations",
           "total_contact_iterations", "refactorisations", "solves", "complementarity")
 PARTS = ("quarter", "half_x", "half_y", "point")
-# Numbers of ranks, and those before and after the restarts. Ranks beyond the cores take turns, and most of the time.
-RANKS = {"ranks": ((1, 3), ((3, 2),)), "all_ranks": ((1, 2, 3), ((1, 4), (3, 1), (3, 2)))}
+# Numbers of ranks, and those before and after the restarts. Ranks beyond the cores take
+# turns, and most of the time: they have the last part of a run.
+RANKS = {"ranks": ((1, 2), ((2, 3),)), "all_ranks": ((1, 2, 3), ((1, 4), (3, 1), (3, 2)))}
 
 
 def within(deck, settings):
-    """Settings that leave one checkpoint within the run, at 53 % of its time or load."""
+    """Settings that leave one checkpoint within the run, at 70 % of its time or load."""
     found = re.search(r"^&time\b.*?\bend=(\S+)", change_deck((DECKS / deck).read_text("utf-8"), settings), re.MULTILINE)
-    return [*settings, f"output%checkpoint_every={0.53 * float(found[1] if found else 1)!r}"]
+    return [*settings, f"output%checkpoint_every={0.7 * float(found[1] if found else 1)!r}"]
 
 
 def histories_of_ranks(kind, implam, deck, folder, launcher, settings):
