@@ -16,7 +16,7 @@ class Implam(CMakePackage):
     license("BSD-3-Clause")
 
     # No archive is published: the source is the folder given as dev_path.
-    version("0.1.0")
+    version("0.2.0")
 
     variant("tests", default=False, description="Build the tests")
 
